@@ -16,8 +16,10 @@ from lumen.app.recording.tape_file import FileTape
 from lumen.buses.memory import MemoryBus
 from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import RecordingFile
+from lumen.language.causes import MessageOrigin
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
+from lumen.ports import Message
 from tests.journal.making import minimal
 from tests.recording.making import bodies, picture, said
 from tests.waiting import until
@@ -146,3 +148,27 @@ def test_whom_the_memory_forgets_no_recording_names(tmp_path: Path) -> None:
 )
 def test_what_happens_is_known_from_the_bus(key: str, body: object, why: str) -> None:
     assert happening(said(key, body), "NAO") == why
+
+
+@pytest.mark.parametrize("message", [said("lumen.a", {"n": 2**63 - 1}), said("lumen.a", {})._replace(time=2.5e11)])
+def test_what_any_sender_may_say_is_written(tmp_path: Path, message: Message) -> None:
+    bus, path = MemoryBus(), tmp_path / "a.mcap"
+    recorder = Recorder(bus, project(), [tape(path)])
+    recorder.start()
+    bus.publish("lumen.a", message.body, origin=MessageOrigin(time=message.time))
+    recorder.close()
+    assert bodies(path) == [("lumen.a", message.body)]
+
+
+def test_a_fault_with_one_message_costs_no_other(tmp_path: Path) -> None:
+    def extra(message: Message, came: float) -> Sequence[Recorded]:
+        raise RuntimeError("no such link")
+
+    bus, path = MemoryBus(), tmp_path / "a.mcap"
+    recorder = Recorder(bus, project(), [tape(path)], extra=extra)
+    recorder.start()
+    for number in range(10):
+        bus.publish("lumen.a", {"number": number})
+    recorder.close()
+    assert [body["number"] for _, body in bodies(path)] == [*range(10)]
+    assert recorder.dropped == 10

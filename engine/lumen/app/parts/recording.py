@@ -18,7 +18,7 @@ from lumen.errors import LumenError, RecordingError, UsageError
 from lumen.extras import MissingExtraError
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import Recorded, RecordedNotes
-from lumen.formats.recordings.recording_file import writable
+from lumen.formats.recordings.recording_file import demand_recording, writable
 from lumen.language.projects import Project
 from lumen.runtime.home import home_of
 
@@ -95,6 +95,7 @@ class RecordingPart(Part):
     def _ringing(self) -> RingTape | None:
         """The ring, None where what it needs is not installed: an exhibition begins all the same."""
         try:
+            demand_recording()
             return RingTape(
                 self._folder,
                 self._project.record,

@@ -167,8 +167,11 @@ class Recorder:
             message, came = self._waiting.popleft()
             self._look_for_names(message, came)
             message = self._scrubbed(message, came)
-            items += self._encoder.encode(message, came)
-            items += self._extra(message, came) if self._extra else ()
+            try:
+                items += self._encoder.encode(message, came)
+                items += self._extra(message, came) if self._extra else ()
+            except Exception as error:  # one message that nobody can encode costs no other
+                self._drops.add(message.key, f"it can't be written: {error!r}")
             if why := happening(message, self._project.robot):
                 marks.append((why, came))
         for tape in self.tapes:

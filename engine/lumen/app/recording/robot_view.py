@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import LumenError
 from lumen.extras import demand
+from lumen.formats.recordings.encoding import nanoseconds
 from lumen.formats.recordings.foxglove import NANO, form_class, foxglove_channel, stamp
 from lumen.formats.recordings.recorded import RecordedMessage
 from lumen.language.projects import Project
@@ -41,7 +42,7 @@ class RobotView:
         joints = decode_reading(Sense.JOINT, message.body, tuple(self._body.joints))
         if not isinstance(joints, Joints) or not all(map(math.isfinite, joints.angles)):
             return
-        at, sent = int(came * NANO), int(message.time * NANO)
+        at, sent = nanoseconds(came), nanoseconds(message.time)
         update = form_class("FrameTransforms")()
         for frame in self._links.frames(joints):
             one = update.transforms.add(parent_frame_id=frame.parent, child_frame_id=frame.name)

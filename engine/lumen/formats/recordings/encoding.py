@@ -19,6 +19,8 @@ ABOUT = ".about"
 """What follows the topic of a picture for what else its message said."""
 CAMERA = "camera"
 """The frame of reference of pictures."""
+MAX_NANOSECONDS = 2**63 - 1
+"""The year 2262."""
 MAX_TOPICS = 4_096
 """Keys whose channels are remembered."""
 
@@ -29,6 +31,11 @@ _ORIGIN_SCHEMA = {
         name: {"type": "string"} for name in ("id", "sender", "cause", "reply_to", "correlation_id")
     },
 }  # fmt: skip
+
+
+def nanoseconds(moment: float) -> int:
+    """A time [s since 1970] in [ns], as far as MCAP can say it: a sender may say any."""
+    return min(max(int(moment * NANO), 0), MAX_NANOSECONDS)
 
 
 class MessageEncoder:
@@ -52,7 +59,7 @@ class MessageEncoder:
 
     def encode(self, message: Message, came: float) -> Iterator[RecordedMessage]:
         """What is written of a message that came then [s since 1970, in UTC]."""
-        at, sent = int(came * NANO), int(message.time * NANO)
+        at, sent = nanoseconds(came), nanoseconds(message.time)
         body, topic = message.body, message.key
         if jpeg := _jpeg(body):
             yield RecordedMessage(

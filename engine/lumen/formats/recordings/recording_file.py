@@ -21,6 +21,11 @@ MAX_CHANNELS = 60_000
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
 
+def demand_recording() -> None:
+    """Raise MissingExtraError where what writes and reads recordings is not installed."""
+    demand("recording", "a recording", "mcap", "google.protobuf", "foxglove_schemas_protobuf")
+
+
 class RecordingFile:
     """Writes a new recording, for its owner alone; `messages` counts what is in it, `bytes` how long it is.
 
@@ -29,7 +34,7 @@ class RecordingFile:
     """
 
     def __init__(self, path: Path) -> None:
-        demand("recording", "a recording", "mcap", "google.protobuf", "foxglove_schemas_protobuf")
+        demand_recording()
         from mcap.writer import Writer  # 0.4 s, and only who records needs it
 
         self.path, self.messages = path, 0
