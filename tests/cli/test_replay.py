@@ -74,3 +74,12 @@ def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str
     Path(file).write_bytes(b"not a journal")
     assert main(["replay", "--project", str(played), file]) == 2
     assert "no journal" in capsys.readouterr().err
+
+
+def test_a_diff_plays_the_visits_that_are_kept(played: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    journal = played / ".lumen" / "journal"
+    for file in (journal / "rehearsed").glob("*.journal"):
+        file.rename(journal / file.name)
+    capsys.readouterr()
+    assert main(["diff", str(played), str(played), "--visits"]) == 0
+    assert "1 visit, " in capsys.readouterr().out

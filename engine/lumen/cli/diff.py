@@ -2,11 +2,17 @@
 
 import argparse
 import json
+from pathlib import Path
 from typing import Any
 
 from lumen.app.reload.migration_preview import MigrationOutcome, MigrationPreview, outcome_of, preview
+from lumen.app.replaying.journals import chosen
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import against
+from lumen.app.replaying.replay_report import ReplayReport
 from lumen.app.versions import LIVE, Version, version
 from lumen.cli.progress import progress
+from lumen.cli.replay_text import replay_lines
 from lumen.cli.terminal import coloured, paint
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 
@@ -21,6 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--configurations", action="store_true", help="say of everywhere that the behaviour can be where it would go"
     )
+    parser.add_argument("--visits", action="store_true", help="play every visit that is kept with NEW")
     parser.add_argument("--bound", type=int, metavar="N", default=BOUND, help=f"how many at most (default: {BOUND:,})")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
@@ -29,14 +36,24 @@ def run(options: argparse.Namespace) -> int:
     """1 where a reload would be refused somewhere, else 0, whatever differs."""
     old, new = version(options.old), version(options.new)
     found = changes(old.project, new.project)
+    visits = _visits(new) if options.visits else None
     running = outcome_of(old.project, live(old.project, new.project), old.snapshot) if old.snapshot else None
     everywhere = _fates(old, new, options.bound) if options.configurations else None
     if options.format == "json":
-        print(json.dumps(_json(old, new, found, running, everywhere), indent=2, ensure_ascii=False))
+        body = _json(old, new, found, running, everywhere) | ({"visits": visits.to_json()} if visits else {})
+        print(json.dumps(body, indent=2, ensure_ascii=False))
     else:
         print("\n".join(_text(found, running, everywhere, coloured())))
+        if visits:
+            print("\n".join(replay_lines(visits, other=True)))
     said = (*(everywhere.rows if everywhere else ()), *([running] if running else ()))
     return int(any(fate.outcome == "refused" for fate in said))
+
+
+def _visits(new: Version) -> ReplayReport:
+    """What the new files would have done in the visits of the project here."""
+    root = Path(new.project.root)
+    return against(chosen(root, None, all=True).entries(), KeptBundles(root), new.project)
 
 
 def _fates(old: Version, new: Version, bound: int) -> MigrationPreview:

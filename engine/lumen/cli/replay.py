@@ -1,7 +1,7 @@
 """`lumen replay`: what happened, taken again with the files that ran then, or with others."""
 
 import argparse
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 
@@ -9,18 +9,16 @@ import lumen
 from lumen.app.replaying.journals import chosen, listed, until
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
-from lumen.app.replaying.replay_report import ReplayReport, replayed
+from lumen.app.replaying.replay_report import replayed
 from lumen.app.replaying.show import show
 from lumen.app.setup import SPEEDS, set_up
 from lumen.app.versions import version
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
+from lumen.cli.replay_text import replay_lines
 from lumen.cli.transcript import Transcript
 from lumen.interpreters.replay.entries import RecordedEntry
 from lumen.loading.packaged import find_project
-
-SHOWN = 10
-"""How many differences are shown."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -62,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     if options.format == "json":
         print_object(report.to_json())
     else:
-        print("\n".join(_lines(report, other=options.bundle is not None)))
+        print("\n".join(replay_lines(report, other=options.bundle is not None)))
     return int(bool(report.differ))
 
 
@@ -75,35 +73,6 @@ def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, op
     finally:
         setup.robot.close()
     return 0
-
-
-def _lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
-    """What a person reads."""
-    counts = [f"{report.same} the same"]
-    for how in ("differs", "says something else", "ends elsewhere"):
-        count = sum(row.how == how and row.visit > 0 for row in report.differ)
-        if count:
-            counts.append(f"{count} {_plural(how, count)}")
-    if report.redacted:
-        counts.append(f"{report.redacted} redacted, for somebody was forgotten")
-    yield f"{report.visits} visit{'s' * (report.visits != 1)}, {report.steps:,} steps: {', '.join(counts)}"
-    for row in report.differ[:SHOWN]:
-        when = datetime.fromtimestamp(row.at).strftime("%Y-%m-%d %H:%M:%S")
-        yield f"  {f'visit {row.visit}' if row.visit else 'between visits'}, {when}: {row.how}"
-        yield f"    was  {row.was}"
-        yield f"    {'here' if other else 'now '} {row.now}"
-    if len(report.differ) > SHOWN:
-        yield f"  and {len(report.differ) - SHOWN} more"
-    if report.lost:
-        yield f"  not in the journal: {report.lost:,} entries, which the disk refused or was too slow for"
-    for why, count in report.unknown.items():
-        yield f"  not compared: {count:,} {why if other else f'entries: {why}'}"
-
-
-def _plural(how: str, count: int) -> str:
-    if count == 1:
-        return how
-    return {"differs": "differ", "says something else": "say something else", "ends elsewhere": "end elsewhere"}[how]
 
 
 def _list(root: Path) -> int:

@@ -1,0 +1,38 @@
+"""What came of a replay, as a person reads it."""
+
+from collections.abc import Iterator
+from datetime import datetime
+
+from lumen.app.replaying.replay_report import ReplayReport
+
+SHOWN = 10
+"""How many differences are shown."""
+
+
+def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
+    """What a person reads."""
+    counts = [f"{report.same} the same"]
+    for how in ("differs", "says something else", "ends elsewhere"):
+        count = sum(row.how == how and row.visit > 0 for row in report.differ)
+        if count:
+            counts.append(f"{count} {_plural(how, count)}")
+    if report.redacted:
+        counts.append(f"{report.redacted} redacted, for somebody was forgotten")
+    yield f"{report.visits} visit{'s' * (report.visits != 1)}, {report.steps:,} steps: {', '.join(counts)}"
+    for row in report.differ[:SHOWN]:
+        when = datetime.fromtimestamp(row.at).strftime("%Y-%m-%d %H:%M:%S")
+        yield f"  {f'visit {row.visit}' if row.visit else 'between visits'}, {when}: {row.how}"
+        yield f"    was  {row.was}"
+        yield f"    {'here' if other else 'now '} {row.now}"
+    if len(report.differ) > SHOWN:
+        yield f"  and {len(report.differ) - SHOWN} more"
+    if report.lost:
+        yield f"  not in the journal: {report.lost:,} entries, which the disk refused or was too slow for"
+    for why, count in report.unknown.items():
+        yield f"  not compared: {count:,} {why if other else f'entries: {why}'}"
+
+
+def _plural(how: str, count: int) -> str:
+    if count == 1:
+        return how
+    return {"differs": "differ", "says something else": "say something else", "ends elsewhere": "end elsewhere"}[how]
