@@ -240,7 +240,7 @@ def test_a_start_that_is_refused(hall: Hall, only: tuple[str, ...], capsys: pyte
 def test_a_start_without_a_broker_and_with_a_main_file_that_can_not_be_read(
     hall: Hall, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def connect(url: str) -> None:
+    def connect(url: str, **_: object) -> None:
         raise BusUnreachableError(f"no broker listens at {url.rpartition('@')[2]}")
 
     with monkeypatch.context() as patch:

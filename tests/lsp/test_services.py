@@ -246,7 +246,7 @@ def test_a_route_that_goes_to_a_device_is_one_of_the_route_table() -> None:
     devices = "modules:\n  show: {mqtt: {host: h, routes: {st|ate: lamp/state}}}"
     analysis, where = written("lumen.yaml", "modules:", devices)
     (known,) = definitions(analysis, *where)
-    assert analysis.text("lumen.yaml").splitlines()[known.line - 1].startswith("  state: {key: lumen.state")
+    assert analysis.text("lumen.yaml").splitlines()[known.line - 1].startswith("  state: {key: ")
     renamed, (_, line, column) = written("lumen.yaml", "modules:", devices.replace("st|ate", "|"))
     assert "state" in {item.text.removesuffix(": ") for item in complete(renamed, "lumen.yaml", line, column)}
 

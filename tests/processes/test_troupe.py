@@ -154,8 +154,7 @@ def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resu
     hand(pressed=True)
     troupe.until(lambda: "watching" in brain.states)
     hand(pressed=False)
-    part = robot.process.parts[0]
-    assert isinstance(part, HostedRobotPart)
+    (part,) = [part for part in robot.process.parts if isinstance(part, HostedRobotPart)]
     assert part.server.hold.stopped is None
     ask("rest", by="Ada")
     troupe.until(lambda: "stopped" in brain.states)

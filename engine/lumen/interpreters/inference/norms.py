@@ -33,8 +33,8 @@ def _drastic_sum(m: Arithmetic, a: Number, b: Number) -> Number:
 
 
 def _hamacher_sum(m: Arithmetic, a: Number, b: Number) -> Number:
-    rest = 1.0 - a * b
-    return m.where(rest == 0.0, 1.0, (a + b - 2.0 * a * b) / m.where(rest == 0.0, 1.0, rest))
+    rest = 1.0 - a * b  # (a + b - 2ab) / rest, written so that nothing is cancelled near 1
+    return 1.0 - (1.0 - a) * (1.0 - b) / m.where(rest == 0.0, 1.0, rest)
 
 
 def _nilpotent_maximum(m: Arithmetic, a: Number, b: Number) -> Number:
