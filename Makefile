@@ -7,8 +7,8 @@ WITH := sh scripts/with_packages.sh
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
-# One more than there are cores: many tests wait for processes of their own.
-WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+# Two more than there are cores: many tests wait for processes of their own.
+WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 2)
 LEFT_OUT := soak or slow or broker or physics or npm
 
 # Where Python may not write what it has compiled, each of the processes that tests start compiles everything again.
