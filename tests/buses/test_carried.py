@@ -106,7 +106,7 @@ def test_old_telemetry_is_not_handed_on(opened: Open) -> None:
 
 
 def test_a_command_waits_for_a_reader_that_is_away_but_not_for_long(opened: Open, stranger: Any) -> None:
-    way = route("avatar.A.command", Carried.COMMAND, ttl=1.0)
+    way = route("avatar.A.command", Carried.COMMAND, ttl=4.0)  # longer than a busy machine needs to connect
     bus, sender, seen, dead = opened(way), opened(way), Collector(), copies(stranger, "lumen.dead")
     bus.subscribe(way.key, Collector())
     bus.close()
