@@ -11,15 +11,15 @@ import pytest
 import lumen
 from lumen.app.answering import reply
 from lumen.app.exhibition import Exhibition
-from lumen.app.journal_pages import journal_page
 from lumen.cli.answers import why_lines, why_not_lines
 from lumen.cli.main import main
 from lumen.cli.moments import moment
 from lumen.errors import UsageError
 from lumen.language.people import PersonName
+from lumen.runtime.inputs.journal_writer import JournalWriter
 
 LINK = {"kind", "text", "at", "file", "line", "id", "values"}
-NOWHERE = Path("no such folder")
+NOWHERE = JournalWriter(None)
 REASON = {"because", "text", "file", "line", "false", "change", "note"}
 
 
@@ -148,24 +148,6 @@ def test_a_story_is_asked_at_its_own_time(copy: Path, capsys: pytest.CaptureFixt
     answer = json.loads(capsys.readouterr().out)
     assert datetime.fromisoformat(answer["at"]) == greeted
     assert answer["at"] < last
-
-
-@pytest.mark.slow
-def test_the_journal_is_read_page_by_page(copy: Path) -> None:
-    with lumen.open(copy) as exhibition:
-        exhibition.send("face", {"x": 160, "y": 120})
-        exhibition.run(3.0)
-    journal = copy / ".lumen" / "journal"
-    for file in (journal / "rehearsed").iterdir():
-        file.rename(journal / file.name)
-    whole = journal_page(journal.parent, 0)
-    assert [entry["position"] for entry in whole["entries"]] == list(range(whole["next"]))
-    assert whole["entries"][0]["jump"] == "start"
-    two = reply([], {"ask": "journal", "from": 2}, journal.parent)
-    assert two["entries"] == whole["entries"][2:]
-    assert journal_page(journal.parent, 1, 1) == {"entries": whole["entries"][1:2], "next": 2}
-    assert journal_page(journal.parent, 1000) == {"entries": [], "next": 1000}
-    assert reply([], {"ask": "journal", "from": "soon"}, journal.parent)["verdict"] == "refused"
 
 
 @pytest.mark.slow

@@ -3,14 +3,16 @@
 import logging
 import queue
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from datetime import datetime
-from pathlib import Path
 from typing import Any
 
 from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
 from lumen.interpreters.explaining import RecordedStep, why, why_not
 from lumen.ports import Bus, Message
+from lumen.runtime.inputs.journal_writer import JournalWriter
+from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_QUESTIONS = 20
@@ -18,7 +20,6 @@ DAY = 86_400.0
 MAX_QUESTION = 500
 """Characters of what somebody asks about."""
 WHY, WHY_NOT, JOURNAL = "why", "why-not", "journal"
-QUESTIONS = (WHY, WHY_NOT, JOURNAL)
 """What may be asked of the past."""
 
 _log = logging.getLogger(__name__)
@@ -64,12 +65,13 @@ class TooLongAgoError(UsageError):
 class AnsweringThread:
     """Answers questions one after another; `steps` is asked for what has happened, on the thread that asks.
 
-    The journal that is asked for is the one in `home`.
+    The journal that is asked for is what `journal` writes.
     """
 
-    def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]], home: Path) -> None:
-        self._bus, self._steps, self._home = bus, steps, home
+    def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]], journal: JournalWriter) -> None:
+        self._bus, self._steps, self._journal = bus, steps, journal
         self._waiting: queue.Queue[tuple[Message, Sequence[RecordedStep]] | None] = queue.Queue(MAX_WAITING_QUESTIONS)
+        self._drops = DropLog(_log, "questions")
         self._thread = WatchedThread("lumen-answering", self._run)
 
     def ask(self, message: Message) -> None:
@@ -79,30 +81,33 @@ class AnsweringThread:
         try:
             self._waiting.put_nowait((message, self._steps()))
         except queue.Full:
-            _log.warning("a question is dropped: %d others wait for their answers", MAX_WAITING_QUESTIONS)
+            self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} others wait for their answers")
 
     def close(self) -> None:
         """End the thread."""
         if self._thread.started:
-            self._waiting.put(None)
+            with suppress(queue.Full):
+                self._waiting.put(None, timeout=5.0)
             self._thread.join(5.0)
+        self._drops.tell(all=True)
 
     def _run(self) -> None:
         while (asked := self._waiting.get()) is not None:
             message, steps = asked
             try:
-                self._bus.reply(message, reply(steps, message.body, self._home))
+                self._drops.tell()
+                self._bus.reply(message, reply(steps, message.body, self._journal))
             except BusError:
                 continue  # who asked is gone
 
 
-def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], home: Path) -> dict[str, Any]:
+def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:
     """What is sent back: the answer, or a verdict that says why there is none."""
     if body.get("ask") == JOURNAL:
         position = body.get("from", 0)
         if type(position) is not int:
             return {"verdict": "refused", "reason": "`from` is the position of an entry: a whole number"}
-        return journal_page(home, position)
+        return journal_page(journal, position)
     what, at = body.get("what", ""), body.get("at")
     if not isinstance(what, str) or not (at is None or isinstance(at, str)):
         return {"verdict": "refused", "reason": "`what` and `at` are texts"}

@@ -78,7 +78,7 @@ class Exhibition:
         self.reloader: Reloader | None = None
         records = directory.records if directory else RunRecords(None)
         self.node.add(ForgettingPart(project, opened, behavior.forget, records.forget))
-        record_inputs(behavior, records, story=story, rehearsed=story is not None or directory is None)
+        journal = record_inputs(behavior, records, story=story, rehearsed=story is not None or directory is None)
         self.node.closing.append(records.close_inputs)
         if reload:
             taken_by = directory.reloader if directory else Reloader
@@ -87,6 +87,7 @@ class Exhibition:
         self._operator = OperatorPart(
             behavior,
             self.node.narrator,
+            journal,
             stopped=lambda: self.node.robot.server.hold.stopped,
             realtime=lambda: self.node.pace.realtime,
             reloaded=lambda: self.reloader.last_reload if self.reloader else None,

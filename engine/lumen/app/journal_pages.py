@@ -1,34 +1,70 @@
 """Entries of the journal from a position on, for who asks on the bus: a page at a time."""
 
+from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from lumen.errors import JournalError
 from lumen.interpreters.replay.entries import entry_data
-from lumen.runtime.inputs.journal_file import read_journal
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
+from lumen.runtime.inputs.journal_file import entry_of, read_lines
+from lumen.runtime.inputs.journal_folder import headers
+from lumen.runtime.inputs.journal_tail import PositionedLine
+from lumen.runtime.inputs.journal_writer import JournalWriter
 
 MAX_ENTRIES = 500
 """On one page."""
+MAX_PAGE_BYTES = 500_000
+"""Of their lines; one that is longer is a page of its own."""
+PATIENCE = 5.0
+"""How long a journal that begins may take to find its first position [s]."""
 
 
-def journal_page(home: Path, position: int, most: int = MAX_ENTRIES) -> dict[str, Any]:
-    """Up to `most` entries of the journal in that home, those from `position` on; `next` is where to go on.
+def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) -> dict[str, Any]:
+    """Up to `most` entries of the journal that is being written, those from `position` on; `next` is where to go on.
 
-    Each is the JSON data of its entry, with its `position`. What is not kept any more is left out, and so is what
-    stories played: the first position on the page may be a later one.
+    Each is the JSON data of its entry, with its `position`. The last ones come from memory, older ones from the files.
+    What is not kept any more is left out: the first position on the page may be a later one. `run` is the run that
+    writes now: in another one, what a power cut took may have its position once more, so `next` is never later than
+    what comes next.
     """
-    folder = home / JOURNAL_FOLDER
+    if not writer.begun.wait(PATIENCE):
+        return {"entries": [], "next": position, "run": writer.run}
+    first, lines = writer.tail.first, list[PositionedLine]()
+    if position < first and writer.folder:
+        lines = _kept(writer.folder.folder, position, most)
+    if not lines or lines[0][0] > first:
+        lines = writer.tail.since(position, most)
+    lines = _fitting(lines)
+    entries = list[dict[str, Any]]()
+    for at, line in lines:
+        with suppress(JournalError):
+            entries.append({"position": at, **entry_data(entry_of(line, at))})
+    return {"entries": entries, "next": lines[-1][0] + 1 if lines else writer.tail.next, "run": writer.run}
+
+
+def _kept(folder: Path, position: int, most: int) -> list[PositionedLine]:
+    """Lines from the files, the oldest first; those that can't be read are left out."""
     files = sorted((header.first, file) for file, header in headers(folder) if file.parent == folder)
     begin = max((number for number, (first, _) in enumerate(files) if first <= position), default=0)
-    found: list[dict[str, Any]] = []
-    for _, file in files[begin:]:
+    found = list[PositionedLine]()
+    for first, file in files[begin:]:
         if len(found) >= most:
             break
         try:
-            entries = read_journal(file).entries
+            lines = read_lines(file)
         except JournalError:
             continue
-        found += [{"position": one.position, **entry_data(one)} for one in entries if one.position >= position]
-    found = found[:most]
-    return {"entries": found, "next": found[-1]["position"] + 1 if found else position}
+        found += enumerate(lines[max(position - first, 0) :][: most - len(found)], max(position, first))
+    return found
+
+
+def _fitting(lines: Iterable[PositionedLine]) -> list[PositionedLine]:
+    """The first ones, as many as fit on a page."""
+    found, size = list[PositionedLine](), 0
+    for line in lines:
+        size += len(line[1])
+        if found and size > MAX_PAGE_BYTES:
+            break
+        found.append(line)
+    return found

@@ -2,10 +2,9 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import QUESTIONS, AnsweringThread
+from lumen.app.answering import JOURNAL, WHY, WHY_NOT, AnsweringThread
 from lumen.app.asking import operator_key
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
@@ -19,7 +18,7 @@ from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
-from lumen.runtime.home import home_of
+from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
 
 GOTO = "operator.goto"
@@ -33,7 +32,8 @@ REQUESTS = '`{"ask": "status"}`, `{"ask": "goto", "state": …}`, `{"ask": "mark
 class OperatorPart(Part, Observer):
     """Answers `lumen status` and `lumen goto` between two steps; it stands before the brain, whose `needs` it has.
 
-    What is asked of the past, `lumen why`, is answered on another thread, from `steps` that it keeps.
+    What is asked of the past, `lumen why`, is answered on another thread, from `steps` that it keeps, and from what
+    `journal` writes.
 
     `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
     last; `record` keeps an entry of the journal. `marking` says what becomes of a mark, which the
@@ -44,6 +44,7 @@ class OperatorPart(Part, Observer):
         self,
         behavior: LiveBehavior,
         narrator: Narrator,
+        journal: JournalWriter,
         *,
         stopped: Callable[[], StoppedBy | None],
         realtime: Callable[[], float],
@@ -60,7 +61,8 @@ class OperatorPart(Part, Observer):
         runtime = behavior.loop.runtime
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
         behavior.forgetting.append(self.steps.forget)
-        self._answering = AnsweringThread(self._bus, self.steps.steps, home_of(Path(runtime.project.root)).absolute())
+        self._answering = AnsweringThread(self._bus, self.steps.steps, journal)
+        self._pages = AnsweringThread(self._bus, list, journal)  # who watches the journal waits for no `why`
         self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._came.append)
         behavior.loop.observers += [self.steps, self]
 
@@ -75,7 +77,11 @@ class OperatorPart(Part, Observer):
         self.steps.look()
         while self._came:
             message = self._came.popleft()
-            if isinstance(message.body, dict) and message.body.get("ask") in QUESTIONS:
+            asked = message.body.get("ask") if isinstance(message.body, dict) else None
+            if asked == JOURNAL:
+                self._pages.ask(message)
+                continue
+            if asked in (WHY, WHY_NOT):
                 self._answering.ask(message)
                 continue
             answer = self._answer(message.body, now)
@@ -87,6 +93,7 @@ class OperatorPart(Part, Observer):
     def close(self) -> None:
         self._undo()
         self._answering.close()
+        self._pages.close()
 
     def status(self) -> dict[str, Any]:
         """How the exhibition is, as JSON data."""

@@ -105,7 +105,7 @@ def assemble(
             return watch.recovered(found) if watch else found
 
         brain.recover = recover
-        record_inputs(behavior, records, story=story, rehearsed=story is not None)
+        journal = record_inputs(behavior, records, story=story, rehearsed=story is not None)
         node.closing.append(records.close_inputs)
 
         def adopt(bundle: Project) -> None:
@@ -119,6 +119,7 @@ def assemble(
         operator = OperatorPart(
             behavior,
             narrator,
+            journal,
             stopped=lambda: robot.server.hold.stopped if robot else stopped_there(presence),
             realtime=lambda: node.pace.realtime,
             reloaded=lambda: reloader.last_reload,

@@ -18,25 +18,29 @@ REHEARSED = JournalRetention(keep=7.0, size=50.0)
 """How much is kept of what stories and programs played."""
 
 
-def record_inputs(behavior: LiveBehavior, records: RunRecords, *, story: Story | None, rehearsed: bool) -> None:
-    """Have it kept from now on what happens to a behaviour.
+def record_inputs(
+    behavior: LiveBehavior, records: RunRecords, *, story: Story | None, rehearsed: bool
+) -> JournalWriter:
+    """Have it kept from now on what happens to a behaviour, by the writer that is returned.
 
     What visitors did is in the home of the run that has it. What a story or a program plays is `rehearsed`, and beside
-    it: nobody's visit is pushed out by it. Nothing is kept where the project wants none.
+    it: nobody's visit is pushed out by it. Where the project wants no journal, the last of it is in memory alone.
     """
     project = behavior.project
-    folder = home_of(Path(project.root)) / JOURNAL_FOLDER
-    if not project.journal.wanted or not (rehearsed or records.keeper):
-        return
-    retention = project.journal
+    folder, retention = home_of(Path(project.root)) / JOURNAL_FOLDER, project.journal
     if rehearsed:
         folder, retention = folder / REHEARSED_FOLDER, REHEARSED
+    wanted = project.journal.wanted and (rehearsed or records.keeper is not None)
+    if rehearsed and wanted:
         _keep_files(project.root, project.hash)
     writer = JournalWriter(
-        JournalFolder(folder, retention.keep, retention.size), story=story.name if story else "", rehearsed=rehearsed
+        JournalFolder(folder, retention.keep, retention.size) if wanted else None,
+        story=story.name if story else "",
+        rehearsed=rehearsed,
     )
     records.inputs = behavior.loop.runtime.recorder = writer
     writer.start()
+    return writer
 
 
 def _keep_files(root: str, hash: str) -> None:

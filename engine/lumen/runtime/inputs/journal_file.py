@@ -76,23 +76,27 @@ def header_of(file: Path) -> JournalHeader:
 
 def read_journal(file: Path) -> JournalContent:
     """What a file holds, as far as it can be read. Raises JournalError where it is none."""
-    try:
-        data = read_regular(file, MAX_FILE_BYTES, follow=False)
-    except OSError as error:
-        raise JournalError(f"{file} can't be read: {error.strerror or error}") from None
-    return read_content(data, file.name)
+    return read_content(_bytes(file), file.name)
+
+
+def read_lines(file: Path) -> list[bytes]:
+    """The lines of its entries, the first at the header's position. Raises JournalError where it is none."""
+    data = _bytes(file)
+    end = _header_end(data)
+    read_header(data[:end], file.name)
+    return [line for text, _ in unpack(data, end) for line in text.split(b"\n")[:-1]]
 
 
 def read_content(data: bytes, name: str) -> JournalContent:
-    """The same of bytes."""
-    end = data.find(b"\n", 0, MAX_HEADER_BYTES) + 1
+    """What these bytes hold. Raises JournalError where they are none."""
+    end = _header_end(data)
     header = read_header(data[:end], name)
     entries, read = list[RecordedEntry](), end
     try:
         for text, until in unpack(data, end):
             read = until
             for line in text.split(b"\n")[:-1]:
-                entries.append(read_entry(_decoded(line), header.first + len(entries)))
+                entries.append(entry_of(line, header.first + len(entries)))
     except JournalError:
         return JournalContent(header, tuple(entries), whole=False)
     return JournalContent(header, tuple(entries), whole=read == len(data))
@@ -101,6 +105,22 @@ def read_content(data: bytes, name: str) -> JournalContent:
 def line_of(entry: RecordedEntry) -> bytes:
     """An entry as it stands in a frame. Raises TypeError, ValueError or RecursionError where it is no JSON data."""
     return encode(entry_data(entry)).encode("utf-8", "surrogatepass") + b"\n"
+
+
+def _header_end(data: bytes) -> int:
+    return data.find(b"\n", 0, MAX_HEADER_BYTES) + 1
+
+
+def _bytes(file: Path) -> bytes:
+    try:
+        return read_regular(file, MAX_FILE_BYTES, follow=False)
+    except OSError as error:
+        raise JournalError(f"{file} can't be read: {error.strerror or error}") from None
+
+
+def entry_of(line: bytes, position: int) -> RecordedEntry:
+    """The entry of such a line. Raises JournalError where it is none."""
+    return read_entry(_decoded(line), position)
 
 
 def _decoded(line: bytes) -> Any:

@@ -19,6 +19,7 @@ from lumen.runtime.inputs.frames import FramePacker
 from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader
 from lumen.runtime.inputs.journal_folder import JournalFolder
 from lumen.runtime.inputs.journal_pen import JournalPen, Jumped, Stepped
+from lumen.runtime.inputs.journal_tail import JournalTail
 from lumen.runtime.inputs.redaction import redact
 from lumen.upkeep.threads import WatchedThread
 
@@ -41,15 +42,19 @@ _log = logging.getLogger(__name__)
 class JournalWriter:
     """Keeps what it is told in the files of a folder, as an `InputRecorder`; `story` is what is played, if anything.
 
+    The last of it is in the `tail`, from which whoever asks often is answered. Without a folder it is there alone, and
+    its positions count from 0.
+
     Where the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: that is counted in `lost`, a gap
     says so in the journal, and `trouble` says why. What is `rehearsed` has time: a
     step waits for a slow disk, and a power cut may take what was written last.
     """
 
-    def __init__(self, folder: JournalFolder, *, story: str = "", rehearsed: bool = False) -> None:
-        self._folder, self._story, self._rehearsed = folder, story, rehearsed
+    def __init__(self, folder: JournalFolder | None, *, story: str = "", rehearsed: bool = False) -> None:
+        self.folder, self._story, self._rehearsed = folder, story, rehearsed
         self.run = uuid.uuid4().hex
         self.lost, self.trouble = 0, ""
+        self.tail, self.begun = JournalTail(), threading.Event()
         self._waiting: deque[Stepped | Jumped | PersonName] = deque()
         self._overflow, self._gone = 0, 0
         self._project: Project | None = None
@@ -57,7 +62,6 @@ class JournalWriter:
         self._pen = JournalPen()
         self._file: BinaryIO | None = None
         self._packer, self._bytes, self._synced, self._day = FramePacker(), 0, 0.0, ""
-        self._position = -1
         self._retry = 0.0
         self._thread = WatchedThread("lumen-inputs", self._run)
 
@@ -108,6 +112,9 @@ class JournalWriter:
 
     def _run(self) -> None:
         self._end_file()  # after a fault of ours a new one begins with where the behaviour stands
+        if not self.begun.is_set():
+            self.tail.begin(self.folder.next_position() if self.folder else 0)
+            self.begun.set()
         while True:
             self._wake.wait(WRITE_PERIOD)
             self._wake.clear()
@@ -137,40 +144,42 @@ class JournalWriter:
                 self._put(lines)
                 lines = []
                 self._end_file()
-            if self._file is None and self._begin_file(told):
-                lines += self._pen.keyframe(gone=self._gone) if isinstance(told, Stepped) else []
-                self._gone = 0
+            if self.folder and self._file is None:
+                self._put(lines)
+                lines = []
+                if self._begin_file(self.folder, told):
+                    lines += self._pen.keyframe(gone=self._gone) if isinstance(told, Stepped) else []
+                    self._gone = 0
             lines += self._pen.write(told)
         self._put(lines)
 
     def _put(self, lines: list[bytes]) -> None:
+        self.tail.add(lines)
+        if self.folder is None or not lines:
+            return
         if self._file is None:
             self._lose(len(lines))
-        elif lines:
-            try:
-                frame = self._packer.pack(b"".join(lines))
-                self._write_all(self._file, frame)
-                self._bytes += len(frame)
-                self._position += len(lines)
-            except OSError as error:
-                self._fail(error)
-                self._lose(len(lines))
+            return
+        try:
+            frame = self._packer.pack(b"".join(lines))
+            self._write_all(self._file, frame)
+            self._bytes += len(frame)
+        except OSError as error:
+            self._fail(error)
+            self._lose(len(lines))
 
-    def _begin_file(self, told: Stepped | Jumped) -> bool:
+    def _begin_file(self, folder: JournalFolder, told: Stepped | Jumped) -> bool:
         """Open the next file; false where the disk refuses, or has just refused."""
         if time.monotonic() < self._retry:
             return False
         bundle = told.project.hash if isinstance(told, Jumped) else self._pen.bundle
         try:
-            if self._position < 0:
-                self._position = self._folder.next_position()
-            header = JournalHeader(self._position, self.run, bundle, time.time(), self._story)
-            self._file = self._folder.open(header)
+            self._file = folder.open(JournalHeader(self.tail.next, self.run, bundle, time.time(), self._story))
         except OSError as error:
             self._fail(error)
             return False
         self._packer, self._bytes, self._day = FramePacker(), 0, time.strftime("%j")
-        self._folder.prune(time.time())
+        folder.prune(time.time())
         return True
 
     def _write_all(self, file: BinaryIO, data: bytes) -> None:
@@ -209,7 +218,8 @@ class JournalWriter:
 
     def _forget(self, person: PersonName) -> None:
         self._end_file()
-        for file in self._folder.folder.rglob(f"*{JOURNAL_SUFFIX}"):
+        self.tail.forget(person)
+        for file in self.folder.folder.rglob(f"*{JOURNAL_SUFFIX}") if self.folder else ():
             try:
                 redact(file, person)
             except ModuleError as error:

@@ -40,11 +40,10 @@ def names(entry: RecordedEntry, person: PersonName) -> bool:
     return person.is_in(entry_data(entry))
 
 
-def redacted(entries: Iterable[RecordedEntry], person: PersonName) -> Iterator[RecordedEntry]:
+def redacted(entries: Iterable[RecordedEntry], person: PersonName, *, within: bool = False) -> Iterator[RecordedEntry]:
     """The entries without the name. From the first that said it on no digest is kept, which somebody might try names
-    against, until a keyframe that does not say it.
+    against, until a keyframe that does not say it; from the beginning on where it was `within` what came before.
     """
-    within = False
     for entry in entries:
         found = names(entry, person)
         within = found or (within and not (isinstance(entry, JournalJump) and entry.snapshot is not None))

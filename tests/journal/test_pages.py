@@ -1,0 +1,221 @@
+"""The journal asked for page by page: the last entries from memory, older ones from the files, each once."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.app.answering import reply
+from lumen.app.asking import operator_key
+from lumen.app.exhibition import Exhibition
+from lumen.app.journal_pages import MAX_PAGE_BYTES, journal_page
+from lumen.interpreters.replay.entries import entry_data
+from lumen.interpreters.statechart import Step, initial, step
+from lumen.language.events import Event
+from lumen.language.people import PersonName
+from lumen.runtime.inputs import journal_writer
+from lumen.runtime.inputs.journal_file import read_journal
+from lumen.runtime.inputs.journal_folder import JournalFolder
+from lumen.runtime.inputs.journal_tail import JournalTail
+from lumen.runtime.inputs.journal_writer import JournalWriter
+from tests.journal.test_writing import MACHINE, PROJECT, Disk, steps, tell
+from tests.tour.conftest import copy
+from tests.waiting import Collector, until
+
+__all__ = ["copy"]
+
+
+@pytest.fixture
+def disk(tmp_path: Path) -> Disk:
+    return Disk(tmp_path)
+
+
+def begun(folder: JournalFolder | None, tail: JournalTail | None = None) -> JournalWriter:
+    writer = JournalWriter(folder)
+    writer.tail = tail or writer.tail
+    writer.start()
+    writer.jumped("start", PROJECT, initial(MACHINE).snapshot)
+    return writer
+
+
+def named(*names: str) -> list[Step]:
+    """A visitor after another says their name."""
+    told = [initial(MACHINE)]
+    for name in names:
+        for event in (Event("come"), Event("heard", {"name": name}), Event("go")):
+            told.append(step(MACHINE, told[-1].snapshot, event._replace(at=len(told) * 1.0)))
+    return told[1:]
+
+
+def whole(writer: JournalWriter, position: int = 0, most: int = 7) -> list[dict[str, Any]]:
+    """All pages from there on."""
+    found = list[dict[str, Any]]()
+    while (page := journal_page(writer, position, most))["entries"]:
+        assert page["run"] == writer.run
+        assert page["next"] > position
+        found, position = found + page["entries"], page["next"]
+    assert page["next"] == writer.tail.next
+    return found
+
+
+def from_files(disk: Disk) -> list[dict[str, Any]]:
+    return [
+        {"position": entry.position, **entry_data(entry)}
+        for file in disk.files()
+        for entry in read_journal(file).entries
+    ]
+
+
+def test_the_last_entries_need_no_file(disk: Disk) -> None:
+    writer = begun(disk)
+    tell(writer, steps(60))
+    assert writer.flush()
+    kept = from_files(disk)
+    for file in disk.files():
+        file.unlink()
+    assert whole(writer) == kept
+    assert [entry["position"] for entry in kept] == list(range(writer.tail.next))
+    writer.close()
+
+
+def test_older_ones_come_from_the_files_and_each_comes_once(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_writer, "FILE_BYTES", 500)
+    writer = begun(disk, JournalTail(10))
+    for at in range(0, 60, 6):
+        tell(writer, steps(60)[at : at + 6])
+        assert writer.flush()
+    assert len(disk.files()) > 2
+    assert writer.tail.first == writer.tail.next - 10
+    assert whole(writer) == from_files(disk)
+    assert whole(writer, 33) == from_files(disk)[33:]
+    writer.close()
+
+
+def test_what_the_disk_refuses_is_told_and_keeps_its_position(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_writer, "RETRY_PERIOD", 0.0)
+    writer, made = begun(disk, JournalTail(40)), steps(90)
+    for full, at in ((False, 0), (True, 30), (False, 60)):
+        disk.full = full
+        tell(writer, made[at : at + 30])
+        assert writer.flush()
+    assert writer.lost
+    told = whole(writer)
+    assert [entry["position"] for entry in told[-40:]] == list(range(writer.tail.first, writer.tail.next))
+    assert [entry for entry in from_files(disk) if entry not in told] == []
+    writer.close()
+
+
+def test_who_went_on_further_than_the_disk_is_led_back(disk: Disk) -> None:
+    writer = begun(disk)
+    assert writer.flush()
+    assert journal_page(writer, 10_000) == {"entries": [], "next": writer.tail.next, "run": writer.run}
+    assert journal_page(writer, -5)["entries"] == whole(writer)
+    writer.close()
+    assert begun_after(disk).tail.next == writer.tail.next + 1
+
+
+def begun_after(disk: Disk) -> JournalWriter:
+    writer = begun(disk)
+    writer.close()
+    return writer
+
+
+def test_without_a_journal_the_last_of_it_is_in_memory(tmp_path: Path) -> None:
+    writer = begun(None, JournalTail(10))
+    tell(writer, steps(60))
+    assert writer.flush()
+    assert not writer.lost
+    told = whole(writer)
+    assert [entry["position"] for entry in told] == list(range(writer.tail.next - 10, writer.tail.next))
+    writer.close()
+
+
+def test_memory_is_bounded_by_entries_and_by_bytes() -> None:
+    tail = JournalTail(100, 1_000)
+    for number in range(50):
+        tail.add([b"x" * 30] * number)
+        assert len(tail.since(0, 1_000)) <= 33
+    tail.add([b"x" * 2_000])
+    assert tail.since(0, 10) == []
+    assert tail.first == tail.next == sum(range(50)) + 1
+
+
+def test_a_page_is_bounded_by_its_bytes() -> None:
+    writer = begun(None)
+    big = [Event("heard", {"name": "x" * 100_000}, number * 1.0) for number in range(8)]
+    told = [initial(MACHINE)]
+    for event in big:
+        told.append(step(MACHINE, told[-1].snapshot, event))
+    tell(writer, told[1:])
+    assert writer.flush()
+    assert len(str(journal_page(writer, 1))) < MAX_PAGE_BYTES + 10_000
+    assert len(whole(writer)) == 1 + len(big)
+    writer.close()
+
+
+def test_who_is_forgotten_is_in_no_page(disk: Disk) -> None:
+    for folder in (disk, None):
+        writer = begun(folder)
+        tell(writer, named("Budi", "Ada"))
+        writer.forget(PersonName("budi"))
+        tell(writer, named("Eko"))
+        assert writer.flush()
+        told = whole(writer)
+        assert "Budi" not in str(told)
+        assert "Ada" in str(told)
+        assert "Eko" in str(told)
+        assert [entry["position"] for entry in told] == list(range(writer.tail.next))
+        writer.close()
+
+
+def test_what_a_name_can_be_tried_against_is_forgotten_too() -> None:
+    writer = begun(None, JournalTail(4))
+    tell(writer, named("Budi", "Ada"))
+    assert writer.flush()
+    assert [entry["digest"] for entry in whole(writer) if "digest" in entry]
+    writer.forget(PersonName("budi"))  # who was named before the first entry that is in memory
+    assert writer.flush()
+    assert not [entry for entry in whole(writer) if "digest" in entry]
+    writer.close()
+
+
+def journal_of(exhibition: Exhibition) -> JournalWriter:
+    writer = exhibition.node.loop.runtime.recorder
+    assert isinstance(writer, JournalWriter)
+    assert writer.flush()
+    return writer
+
+
+@pytest.mark.slow
+def test_a_running_exhibition_is_asked(copy: Path) -> None:
+    with lumen.open(copy) as exhibition:
+        exhibition.send("face", {"x": 160, "y": 120})
+        exhibition.run(3.0)
+        answers, journal = Collector(), journal_of(exhibition)
+        exhibition.node.bus.subscribe("lumen.test.answer", answers)
+        for first in (0, 2):
+            body = {"ask": "journal", "from": first}
+            exhibition.node.bus.publish(operator_key("NAO"), body, reply_to="lumen.test.answer")
+            exhibition.run(0.02)
+            until(lambda number=first // 2: len(answers.bodies) > number)
+            page = answers.bodies[-1]
+            assert page["entries"][0]["position"] == first
+            assert page["entries"] == journal_page(journal, first)["entries"][: len(page["entries"])]
+        for wrong in ("soon", True, 0.5, None):
+            assert reply([], {"ask": "journal", "from": wrong}, journal)["verdict"] == "refused"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kept", ["keep: 30", "keep: 0"])
+def test_a_page_tells_of_this_run_also_where_nothing_is_kept(copy: Path, kept: str) -> None:
+    with (copy / "lumen.yaml").open("a", encoding="utf-8") as file:
+        file.write(f"\njournal: {{{kept}}}\n")
+    with lumen.open(copy) as exhibition:
+        exhibition.send("face", {"x": 160, "y": 120})
+        exhibition.run(3.0)
+        told = whole(journal_of(exhibition))
+    assert told[0]["jump"] == "start"
+    assert [entry["position"] for entry in told] == list(range(len(told)))
+    assert "face" in [entry.get("heard") for entry in told]
+    assert (copy / ".lumen" / "journal").exists() == (kept == "keep: 30")
