@@ -1,0 +1,37 @@
+// What is asked of a robot, and what became of it: told at the page's foot until it is read.
+import { html, redraw, t, useRedraw } from "./ui.js";
+
+const LASTS = 5000; // [ms] that good news stays
+const told = [];
+
+/** Send a command; `label` is what people call it. Returns when it is known what became of it. */
+export async function command(robot, name, fields = {}, label = t(`command.${name}`)) {
+  const mine = { label, state: "sending", answer: {}, key: Math.random() };
+  told.push(mine);
+  if (told.length > 4) told.shift();
+  await lumen.post({ robot, command: name, ...fields }, (state, answer) => {
+    Object.assign(mine, { state, answer });
+    if (state === "finished") setTimeout(() => dismiss(mine), LASTS);
+    redraw();
+  });
+  return mine;
+}
+
+function dismiss(mine) {
+  if (told.includes(mine)) told.splice(told.indexOf(mine), 1);
+  redraw();
+}
+
+const SIGNS = { sending: "…", sent: "→", finished: "✓", failed: "✕", unsent: "✕", unknown: "?" };
+
+function sentence({ label, state, answer }) {
+  const reason = answer.reason ? `: ${answer.reason}` : "";
+  return `${label}: ${t(`told.${state}`, { seconds: (answer.seconds ?? 0).toFixed(1) })}${state === "finished" ? "" : reason}`;
+}
+
+export function Told() {
+  useRedraw();
+  return html`<div class="told" role="status">${told.map((one) => html`<p key=${one.key} data-state=${one.state}>
+    <span class="sign" aria-hidden="true">${SIGNS[one.state] ?? "?"}</span><span>${sentence(one)}</span>
+    <button type="button" class="plain" onClick=${() => dismiss(one)}>${t("close")}</button></p>`)}</div>`;
+}

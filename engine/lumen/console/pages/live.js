@@ -1,0 +1,120 @@
+// What happens, as it happens: one stream of the console's events, read by fetch so that a silent cut is noticed too.
+// Entries come once, in order, by the journal's position; a page that was away goes on where it was.
+import { redraw } from "./ui.js";
+
+const SILENCE = 3000, AGAIN = 500, ANSWER = 2500, BEFORE = 60, MOST = 300; // [ms], [ms], [ms], entries, entries
+
+export const live = {
+  state: "connecting", since: Date.now(), role: null, robots: new Map(), entries: [], commands: [], skew: 0,
+};
+const positions = new Map(), heard = new Set();
+let stream = null, timer = 0;
+
+/** Have `handler(kind, data)` told of each `entry`, `now` and `command`; what it returns ends that. */
+export function listen(handler) { heard.add(handler); return () => heard.delete(handler); }
+
+const params = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
+
+/** JSON of one of the console's paths; the error has what it says. */
+export async function get(path, values = {}, limit = 15000) {
+  const query = params(values);
+  const answer = await fetch(query ? `${path}?${query}` : path, { signal: AbortSignal.timeout(limit), cache: "no-store" });
+  const data = await answer.json().catch(() => ({}));
+  if (!answer.ok) throw Object.assign(new Error(data.reason ?? data.detail ?? `${answer.status}`), { status: answer.status });
+  return data;
+}
+
+/** The state of the robot that is looked into, with `skew`: how far its clock is ahead of this one's [ms]. */
+export const robotOf = (name) => live.robots.get(name);
+
+function took(robot) {
+  const before = live.robots.get(robot.robot), told = Date.parse(robot.time ?? robot.heard ?? "");
+  const skew = Number.isNaN(told) ? 0 : told - Date.now();
+  live.robots.set(robot.robot, { ...robot, skew: before && Math.abs(before.skew - skew) < 700 ? before.skew : skew });
+}
+
+function become(state) {
+  if (live.state !== state) Object.assign(live, { state, since: Date.now() });
+  redraw();
+}
+
+/** Begin, or begin again: after signing in, when the page is seen again. */
+export async function connect() {
+  clearTimeout(timer);
+  stream?.abort();
+  const mine = (stream = new AbortController());
+  try {
+    const now = await get("/api/now", {}, ANSWER);
+    live.role = now.role ?? "author";
+    live.robots.clear();
+    now.robots.forEach(took);
+    if (live.role === "nobody" && lumen.page !== "subtitles") return become("live"), again(mine, 2000);
+    await read(mine, now.robots);
+  } catch (error) {
+    if (mine.signal.aborted) return;
+    if (error.status === 401 || error.status === 403) { live.role = "nobody"; become("live"); return again(mine, 2000); }
+  }
+  again(mine, AGAIN);
+}
+
+function again(mine, after) {
+  if (mine !== stream) return;
+  if (live.role !== "nobody") become("away");
+  timer = setTimeout(connect, after);
+}
+
+/** Where to go on: what was seen last of each robot, else a few entries before now. */
+function after(robots) {
+  const at = ({ robot, position }) => positions.get(robot) ?? Math.max(0, (position ?? 0) - BEFORE);
+  if (lumen.robot) return String(at(robots.find((one) => one.robot === lumen.robot) ?? { robot: lumen.robot }));
+  return robots.length === 1 ? String(at(robots[0])) : robots.map((one) => `${one.robot}:${at(one)}`).join(",");
+}
+
+async function read(mine, robots) {
+  let silent = 0;
+  const alive = () => { clearTimeout(silent); silent = setTimeout(() => { mine.abort(); again(mine, 0); }, SILENCE); };
+  alive();
+  try {
+    const answer = await fetch(`/api/events?${params({ robot: lumen.robot, after: after(robots) })}`,
+      { signal: mine.signal, cache: "no-store", headers: { Accept: "text/event-stream" } });
+    if (!answer.ok) throw Object.assign(new Error(`${answer.status}`), { status: answer.status });
+    become("live");
+    const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+    let text = "";
+    for (;;) {
+      const { done, value } = await reader.read();
+      if (done) return;
+      alive();
+      text += value.replaceAll("\r\n", "\n");
+      let end;
+      while ((end = text.indexOf("\n\n")) >= 0) { take(text.slice(0, end)); text = text.slice(end + 2); }
+    }
+  } finally { clearTimeout(silent); }
+}
+
+function take(block) {
+  let kind = "message", data = "";
+  for (const line of block.split("\n")) {
+    if (line.startsWith("event:")) kind = line.slice(6).trim();
+    else if (line.startsWith("data:")) data += line.slice(5);
+  }
+  if (!data) return;
+  const body = JSON.parse(data);
+  if (kind === "entry") {
+    if (body.position <= (positions.get(body.robot) ?? -1)) return;
+    positions.set(body.robot, body.position);
+    live.entries.push(body);
+    if (live.entries.length > MOST) live.entries.splice(0, live.entries.length - MOST);
+  } else if (kind === "now") took(body);
+  else if (kind === "command") live.commands = [body, ...live.commands].slice(0, 20);
+  for (const handler of heard) handler(kind, body);
+  redraw();
+}
+
+// A page that nobody sees leaves its connection to those that are seen: a browser has six for one server.
+document.addEventListener("visibilitychange", () => {
+  if (document.hidden) timer = setTimeout(() => { if (document.hidden) { stream?.abort(); stream = null; become("asleep"); } }, 10000);
+  else if (live.state !== "live") connect();
+  else clearTimeout(timer);
+});
+addEventListener("online", connect);

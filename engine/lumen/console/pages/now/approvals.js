@@ -1,0 +1,27 @@
+// Transitions that wait for a person's GO, with the time after which they go or don't; and how far the robot goes alone.
+import { command } from "../commands.js";
+import { may } from "../session.js";
+import { Part, Place, Until, html, t } from "../ui.js";
+
+function Waiting({ robot, one }) {
+  const answer = (go) => command(robot.robot, "approve", { approval: one.id, go }, `${one.event} → ${one.targets.join(", ")}: ${t(go ? "approve.go" : "approve.stay")}`);
+  return html`<li class="approval"><p><b>${one.event}</b>: ${one.source} → ${one.targets.join(", ")} <${Place} file=${one.file} line=${one.line} /></p>
+    ${one.until && html`<p class="countdown">${t(one.else === "go" ? "approve.goes" : "approve.stays")} <strong><${Until} at=${one.until} skew=${robot.skew} /></strong></p>`}
+    <div class="actions"><button type="button" class="go" onClick=${() => answer(true)}>${t("approve.go")}</button>
+      <button type="button" onClick=${() => answer(false)}>${t("approve.stay")}</button></div></li>`;
+}
+
+export function Approvals({ robot }) {
+  const waiting = robot.waiting ?? [];
+  return html`<div role="status">${waiting.length > 0 && html`<span class="hidden">${t("approvals.count", { count: waiting.length })}</span>`}</div>
+    ${waiting.length > 0 && html`<${Part} title=${t("approvals")} kind="approvals">
+      <ul class="plain-list">${waiting.map((one) => html`<${Waiting} key=${one.id} robot=${robot} one=${one} />`)}</ul></${Part}>`}`;
+}
+
+/** Whether transitions that are marked wait for a person. */
+export function Autonomy({ robot }) {
+  if (!robot.autonomy || !may("operator")) return null;
+  const set = (level) => level !== robot.autonomy && command(robot.robot, "autonomy", { level }, t(`autonomy.${level}`));
+  return html`<fieldset class="choice"><legend>${t("autonomy")}</legend>${["ask", "alone"].map((level) => html`<label>
+    <input type="radio" name="autonomy-${robot.robot}" value=${level} checked=${robot.autonomy === level} onChange=${() => set(level)} /><span>${t(`autonomy.${level}`)}</span></label>`)}</fieldset>`;
+}

@@ -1,0 +1,51 @@
+// How the robot and what runs it are: power, heat, distance, time, processes, modules, queues.
+import { Part, Since, clock, fixed, html, percent, t } from "../ui.js";
+import { Autonomy } from "./approvals.js";
+
+export const LOW = 20; // [%]
+const HOT = 75, SLOW = 0.95; // [°C], of real time
+
+/** The greatest number in a reading, however its joints or sides are called. */
+export function greatest(reading) {
+  if (typeof reading === "number") return reading;
+  const found = Object.entries(reading ?? {}).filter(([, value]) => typeof value === "number").sort((a, b) => b[1] - a[1])[0];
+  return found ?? null;
+}
+
+function Fact({ name, value, level = 0, state = "well", words = "", full = null }) {
+  return html`<div class="fact" data-state=${state}><dt>${name}</dt><dd><b>${value}</b>${words && html` <span class="badge" data-state=${state === "well" ? "open" : "bad"}>${words}</span>`}
+    ${full !== null && html`<meter min="0" max="1" value=${level} aria-label=${name} ></meter>`}</dd></div>`;
+}
+
+function Senses({ robot }) {
+  const { senses = {}, realtime } = robot, hot = greatest(senses.temperatures);
+  const battery = robot.battery ?? senses.battery?.percentage ?? null, sonar = senses.sonar ?? {};
+  const heat = Array.isArray(hot) ? hot[1] : hot;
+  const metres = (value) => value == null ? t("unknown") : `${fixed(value, 2)} m`;
+  return html`<dl class="body-facts">
+    <${Fact} name=${t("battery")} value=${battery === null ? t("unknown") : percent(battery)} full=${battery === null ? null : true}
+      level=${(battery ?? 0) / 100} state=${battery !== null && battery < LOW ? "bad" : "well"} words=${battery !== null && battery < LOW ? t("battery.low") : ""} />
+    <${Fact} name=${t("heat")} value=${heat === null ? t("unknown") : `${fixed(heat)} °C${Array.isArray(hot) ? ` ${hot[0]}` : ""}`}
+      state=${heat > HOT ? "bad" : "well"} words=${heat > HOT ? t("heat.high") : ""} />
+    <${Fact} name=${t("sonar")} value=${`${t("left")} ${metres(sonar.left)} · ${t("right")} ${metres(sonar.right)}`} />
+    <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : `${fixed(realtime * 100)} %`}
+      state=${realtime < SLOW ? "bad" : "well"} words=${realtime < SLOW ? t("realtime.slow") : ""} />
+    <${Fact} name=${t("queues")} value=${robot.queues ? t("queues.both", robot.queues) : t("unknown")} /></dl>`;
+}
+
+function Processes({ robot }) {
+  const processes = robot.processes ?? [];
+  return html`<h3>${t("processes")}</h3>${processes.length ? html`<ul class="processes">${processes.map((one) => {
+    const gone = one.state !== "here";
+    return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}><span>${one.parts.join(", ")}</span>
+      <span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>
+      <span class="quiet">${one.word ? `${one.word} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} skew=${0} /></span></li>`;
+  })}</ul>` : html`<p class="quiet">${t("unknown")}</p>`}`;
+}
+
+export function Body({ robot }) {
+  const reload = robot.last_reload;
+  return html`<${Part} title=${t("body")} kind="body"><${Autonomy} robot=${robot} /><${Senses} robot=${robot} /><${Processes} robot=${robot} />
+    ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>
+      <span class="quiet">${clock(reload.at)}</span> ${reload.text} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}</${Part}>`;
+}

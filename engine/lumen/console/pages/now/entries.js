@@ -1,0 +1,40 @@
+// The latest of what happened; each opens its why.
+import { get, live } from "../live.js";
+import { Dialog, Part, Place, clock, html, t, useEffect, useState } from "../ui.js";
+
+const SHOWN = 80;
+
+function Link({ link }) {
+  const values = Object.entries(link.values ?? {});
+  return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span> ${link.text}</p>
+    <p class="place">${clock(link.at)} <${Place} file=${link.file} line=${link.line} /></p>
+    ${values.length > 0 && html`<p class="values">${values.map(([name, value]) => html`<span>${name} = <b>${JSON.stringify(value)}</b></span> `)}</p>`}</li>`;
+}
+
+/** Why something was done: asked of the robot when it opens. */
+export function Why({ robot, what, at, text, onClose }) {
+  const [found, set] = useState(null), [failed, fail] = useState("");
+  useEffect(() => { get("/api/why", { robot, what, at }).then((one) => (one.chain ? set(one) : fail(one.reason ?? t("why.none"))), (error) => fail(error.message)); }, []);
+  return html`<${Dialog} title=${t("why.of", { text })} onClose=${onClose}>
+    ${failed && html`<p class="bad" role="alert">${failed}</p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
+    ${found && html`<ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${found.chain.map((link, n) => html`<${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
+}
+
+/** What `lumen why` is asked about for an entry: the command it made, else the state it entered. */
+export function question(entry) {
+  return entry.what ?? entry.commands?.[0]?.id ?? entry.entered?.at(-1) ?? "";
+}
+
+export function Entry({ entry, onOpen }) {
+  return html`<li class="entry" data-kind=${entry.kind}><button type="button" onClick=${() => onOpen(entry)}>
+    <time datetime=${entry.at_time}>${clock(entry.at_time)}</time><span class="entry-kind">${t(`kind.${entry.kind}`)}</span><span class="entry-text">${entry.text}</span></button></li>`;
+}
+
+export function Entries({ robot }) {
+  const [opened, open] = useState(null);
+  const mine = live.entries.filter((entry) => entry.robot === robot.robot && entry.text).slice(-SHOWN).reverse();
+  return html`<${Part} title=${t("entries")} kind="entries">
+    ${mine.length ? html`<ol class="entry-list bounded" reversed tabindex="0" aria-label=${t("entries")}>${mine.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`
+      : html`<p class="quiet">${t("entries.none")}</p>`}
+    ${opened && html`<${Why} robot=${robot.robot} what=${question(opened)} at=${opened.at_time} text=${opened.text} onClose=${() => open(null)} />`}</${Part}>`;
+}

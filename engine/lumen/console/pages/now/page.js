@@ -1,0 +1,24 @@
+// Now: where the behaviour is, what it says, what may come, and how the robot is.
+import { robotOf } from "../live.js";
+import { may } from "../session.js";
+import { html, t, useRedraw } from "../ui.js";
+import { Approvals } from "./approvals.js";
+import { Body } from "./body.js";
+import { Buttons } from "./buttons.js";
+import { Cues } from "./cues.js";
+import { Entries } from "./entries.js";
+import { States } from "./states.js";
+import { Talk } from "./talk.js";
+import { Ways } from "./ways.js";
+
+export function NowPage({ name }) {
+  useRedraw();
+  const robot = robotOf(name);
+  return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
+    ${robot.connected === false && html`<p class="notice bad" role="alert">${t("robot.away", { name })}</p>`}
+    <${Approvals} robot=${robot} />
+    <div class="now"><div class="column"><${Talk} robot=${robot} /><${Buttons} robot=${robot} />
+        ${may("author") && html`<${Cues} robot=${robot} />`}</div>
+      <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
+      <div class="column"><${Body} robot=${robot} /><${Entries} robot=${robot} /></div></div>`;
+}

@@ -1,0 +1,24 @@
+// The active states as boxes in boxes, each with how long it has been active, and the timers that run.
+import { Part, Place, Since, Until, html, t } from "../ui.js";
+
+/** The innermost active states of a tree, one for each region. */
+export function innermost(states) {
+  return states.flatMap((one) => (one.children?.length ? innermost(one.children) : [one]));
+}
+
+function Box({ state, skew }) {
+  const leaf = !state.children?.length;
+  return html`<li class="state ${leaf ? "leaf" : ""}">
+    <p class="state-head"><span class="state-name">${state.name}</span><span class="since" title=${t("since")}><${Since} at=${state.since} skew=${skew} /></span></p>
+    ${leaf ? html`<${Place} file=${state.file} line=${state.line} />`
+      : html`<ul>${state.children.map((child) => html`<${Box} key=${child.path} state=${child} skew=${skew} />`)}</ul>`}</li>`;
+}
+
+export function States({ robot }) {
+  const states = robot.states ?? [];
+  return html`<${Part} title=${t("where")} kind="states">
+    <ul class="boxes">${states.map((state) => html`<${Box} key=${state.path} state=${state} skew=${robot.skew} />`)}</ul>
+    ${robot.timers?.length > 0 && html`<h3>${t("timers")}</h3><ul class="timers">${robot.timers.map((timer) => html`
+      <li key=${timer.event + timer.due}><span>${timer.event}</span><strong><${Until} at=${timer.due} skew=${robot.skew} /></strong></li>`)}</ul>`}
+  </${Part}>`;
+}

@@ -1,0 +1,126 @@
+// Rest. The first thing that loads, and it needs nothing else of the page: the button is made here, so that there is none
+// which does nothing. Each press is a message of its own and says what became of it, also when nobody answers.
+(() => {
+  const WORDS = {
+    en: {
+      rest: "Rest", all: "all robots", again: "Escape once more: rest", dismiss: "Close",
+      sending: "Sending …",
+      unsent: "NOT SENT. The robot did not get it. Press again, or stop it by hand.",
+      sent: "Sent; the robot has not answered yet.",
+      unknown: "Sent, but no answer came: look at the robot.",
+      failed: "The robot does not rest: {reason}",
+      finished: "Rests, after {seconds} s.",
+    },
+    id: {
+      rest: "Istirahat", all: "semua robot", again: "Escape sekali lagi: istirahat", dismiss: "Tutup",
+      sending: "Mengirim …",
+      unsent: "TIDAK TERKIRIM. Robot tidak menerimanya. Tekan lagi, atau hentikan dengan tangan.",
+      sent: "Terkirim; robot belum menjawab.",
+      unknown: "Terkirim, tetapi tidak ada jawaban: lihat robotnya.",
+      failed: "Robot tidak beristirahat: {reason}",
+      finished: "Beristirahat, setelah {seconds} dtk.",
+    },
+  };
+  const LIMIT = 1000, TWICE = 1500; // [ms]: an answer's first bytes; two presses of Escape
+  const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓" };
+  const root = document.documentElement;
+
+  const kept = (key) => { try { return localStorage.getItem(key); } catch { return null; } };
+  const language = kept("lumen.language") ?? (navigator.language.startsWith("id") ? "id" : "en");
+  root.lang = language in WORDS ? language : "en";
+  if (kept("lumen.theme")) root.dataset.theme = kept("lumen.theme");
+  const words = () => WORDS[root.lang] ?? WORDS.en;
+
+  const [, , name, page] = location.pathname.split("/");
+  const robot = location.pathname.startsWith("/robot/") ? decodeURIComponent(name) : "*";
+  const forVisitors = page === "subtitles";
+
+  const newId = () => Array.from(crypto.getRandomValues(new Uint8Array(16)), (b) => b.toString(16).padStart(2, "0")).join("");
+
+  /** Send a command, and tell how it stands: sending, unsent, sent, unknown, then finished or failed, with the answer. */
+  async function post(fields, tell) {
+    const began = performance.now(), passed = () => (performance.now() - began) / 1000;
+    tell("sending", {});
+    const late = setTimeout(() => tell("unsent", { seconds: passed() }), LIMIT);
+    let sent = false;
+    try {
+      const answer = await fetch("/api/commands", {
+        method: "POST", keepalive: true, cache: "no-store",
+        headers: { "Content-Type": "application/json" }, body: JSON.stringify({ id: newId(), ...fields }),
+      });
+      clearTimeout(late);
+      if (answer.ok) tell("sent", { seconds: passed() });
+      sent = answer.ok;
+      const said = await answer.json().catch((error) => { if (sent) throw error; return {}; });
+      tell(sent ? said.state : "unsent", { reason: "", ...said, seconds: passed(), status: answer.status });
+    } catch {
+      clearTimeout(late);
+      tell(sent ? "unknown" : "unsent", { seconds: passed() });
+    }
+  }
+
+  class RestButton extends HTMLElement {
+    connectedCallback() {
+      if (this.button || forVisitors) return;
+      const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
+      this.presses = 0;
+      this.button = make("button", { type: "button", className: "rest" });
+      this.label = make("span"), this.whom = make("span", { className: "whom" });
+      this.whom.setAttribute("aria-hidden", "true"); // a description says it: the button's name is Rest
+      this.button.append(this.label, this.whom);
+      this.button.addEventListener("click", () => this.press());
+      this.said = make("div", { className: "rest-said", hidden: true });
+      this.calm = make("p"), this.alarm = make("p"), this.sign = make("span", { className: "sign" });
+      this.calm.setAttribute("role", "status"), this.alarm.setAttribute("role", "alert"), this.sign.setAttribute("aria-hidden", "true");
+      this.close = make("button", { type: "button", className: "plain" });
+      this.close.addEventListener("click", () => { this.said.hidden = true; this.button.focus(); });
+      this.said.append(this.sign, this.calm, this.alarm, this.close);
+      this.replaceChildren(this.button, this.said);
+      this.speak();
+    }
+
+    speak() { // in the page's language
+      if (!this.button) return;
+      this.label.textContent = words().rest, this.close.textContent = words().dismiss;
+      const whom = this.getAttribute("robot") ?? robot;
+      this.whom.textContent = whom === "*" ? words().all : whom;
+      this.button.setAttribute("aria-description", this.whom.textContent);
+      if (this.told && !this.said.hidden) this.show(...this.told);
+    }
+
+    press() {
+      const press = ++this.presses;
+      post({ robot: this.getAttribute("robot") ?? robot, command: "rest" }, (state, answer) => {
+        if (press === this.presses || state === "finished") this.show(state, answer);
+      });
+    }
+
+    hint() { // after one Escape, for as long as the second counts; it hides nothing that was told
+      if (!this.said.hidden) return;
+      this.show("again");
+      setTimeout(() => { if (this.told[0] === "again") this.said.hidden = true; }, TWICE);
+    }
+
+    show(state, answer = {}) {
+      this.told = [state, answer];
+      const text = (words()[state] ?? state).replace("{seconds}", (answer.seconds ?? 0).toFixed(1)).replace("{reason}", answer.reason ?? "");
+      const alarming = ["unsent", "failed", "unknown"].includes(state);
+      this.said.hidden = false, this.said.dataset.state = state, this.sign.textContent = SIGNS[state] ?? "";
+      this.calm.textContent = alarming ? "" : text;
+      this.alarm.textContent = alarming ? text + (state === "unsent" && answer.reason ? ` (${answer.reason})` : "") : "";
+    }
+  }
+  customElements.define("rest-button", RestButton);
+
+  let escaped = -Infinity;
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.repeat || forVisitors) return;
+    const main = document.querySelector("rest-button[main]"), twice = performance.now() - escaped < TWICE;
+    escaped = twice ? -Infinity : performance.now();
+    if (twice && main) main.press();
+    else if (twice) post({ robot, command: "rest" }, () => {});
+    else main?.hint();
+  }, true);
+
+  globalThis.lumen = { post, robot: robot === "*" ? null : robot, page: robot === "*" ? "" : page ?? "" };
+})();

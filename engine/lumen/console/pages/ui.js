@@ -1,0 +1,99 @@
+// What all pages build with: elements from data (text is never markup), texts, and state that lives as long as the page.
+import { html, render, useEffect, useLayoutEffect, useRef, useState } from "./vendor/htm-preact.js";
+import en from "./texts/en.js";
+import id from "./texts/id.js";
+
+export { html, render, useEffect, useLayoutEffect, useRef, useState };
+
+const TEXTS = { en, id };
+const redraws = new Set();
+
+export const language = () => document.documentElement.lang;
+export const LANGUAGES = { en: "English", id: "Bahasa Indonesia" };
+
+/** The text of that name in the page's language; {name} is filled in. */
+export function t(name, values = {}) {
+  const text = TEXTS[language()]?.[name] ?? en[name] ?? name;
+  return text.replace(/\{(\w+)\}/g, (all, key) => values[key] ?? all);
+}
+
+/** A map of texts by language, as YAML writes them: the page's, else the first. */
+export const inLanguage = (texts) => (typeof texts === "object" && texts ? texts[language()] ?? Object.values(texts)[0] : texts) ?? "";
+
+export function keep(key, value) {
+  try { value === null ? localStorage.removeItem(key) : localStorage.setItem(key, value); } catch { /* a private window */ }
+}
+export function kept(key) {
+  try { return localStorage.getItem(key); } catch { return null; }
+}
+
+export function speak(code) {
+  document.documentElement.lang = code;
+  keep("lumen.language", code);
+  for (const button of document.querySelectorAll("rest-button")) button.speak();
+  redraw();
+}
+
+/** Draw everything anew, once in the next frame, whoever asks. A hidden page draws nothing and needs nothing drawn. */
+let asked = false;
+export function redraw() {
+  if (asked) return;
+  asked = true;
+  requestAnimationFrame(() => { asked = false; for (const one of redraws) one({}); });
+}
+export function useRedraw() {
+  const [, set] = useState({});
+  useEffect(() => { redraws.add(set); return () => redraws.delete(set); }, []);
+}
+
+const number = (digits) => ({ minimumFractionDigits: digits, maximumFractionDigits: digits });
+export const fixed = (value, digits = 0) => Number(value).toLocaleString(language(), number(digits));
+export const percent = (value) => `${fixed(value)} %`;
+
+/** 14:03:20 where the console is looked at. */
+export const clock = (iso, seconds = true) => iso ? new Date(iso).toLocaleTimeString(language() === "id" ? "id-ID" : "en-GB",
+  { hour: "2-digit", minute: "2-digit", ...(seconds ? { second: "2-digit" } : {}) }) : "";
+
+/** 0:07, 12:31 or 3:04:05 of seconds. */
+export function span(seconds) {
+  const whole = Math.max(0, Math.floor(seconds)), pad = (n) => String(n).padStart(2, "0");
+  const [h, m, s] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
+  return h ? `${h}:${pad(m)}:${pad(s)}` : `${m}:${pad(s)}`;
+}
+
+/** Redraws each half second; used by what counts. */
+export function useSeconds() {
+  const [, set] = useState(0);
+  useEffect(() => { const timer = setInterval(() => set((n) => n + 1), 500); return () => clearInterval(timer); }, []);
+}
+export function Since({ at, skew }) {
+  useSeconds();
+  return at ? html`<time datetime=${at}>${span((Date.now() + skew - Date.parse(at)) / 1000)}</time>` : null;
+}
+export function Until({ at, skew }) {
+  useSeconds();
+  return html`<time datetime=${at}>${span((Date.parse(at) - Date.now() - skew) / 1000 + 0.5)}</time>`;
+}
+
+let ids = 0;
+export const useId = () => useRef(`e${++ids}`).current;
+
+/** A part of the page with a heading of its own. */
+export function Part({ title, kind = "", aside = null, children }) {
+  const heading = useId();
+  return html`<section class="part ${kind}" aria-labelledby=${heading}>
+    <div class="part-head"><h2 id=${heading}>${title}</h2>${aside}</div>${children}</section>`;
+}
+
+/** A dialog that is open as long as it is drawn; Escape and the button close it. */
+export function Dialog({ title, onClose, children, actions }) {
+  const box = useRef(null), heading = useId();
+  useEffect(() => { const before = document.activeElement; box.current.showModal(); return () => before?.focus?.(); }, []);
+  return html`<dialog ref=${box} aria-labelledby=${heading} onClose=${onClose} onCancel=${onClose}>
+    <h2 id=${heading}>${title}</h2>${children}
+    <div class="actions">${actions}<button type="button" onClick=${onClose}>${t("cancel")}</button></div></dialog>`;
+}
+
+/** `behaviors/tour.yaml:205`, short enough to stand beside something. */
+export const place = (file, line) => file ? `${file}${line ? `:${line}` : ""}` : "";
+export const Place = ({ file, line }) => file ? html`<span class="place">${place(file, line)}</span>` : null;
