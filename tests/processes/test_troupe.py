@@ -1,9 +1,11 @@
 """Robot, brain, motion and visitor apart, on a real broker: what they do is what one process does."""
 
 import time
+from typing import Any
 
 import pytest
 
+from lumen.app.asking import OPERATOR_ANSWERS, operator_key
 from lumen.app.parts.hosted_robot import HostedRobotPart
 from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest, Say
@@ -41,6 +43,36 @@ def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     assert any(deed.get("text") == "Cheese" for deed in expected if isinstance(deed, dict)), expected
     assert [m.tracks for m in played] == [project.motions[m.name].tracks for m in played]
     assert [cues_of(m) for m in played] == [cues_of(project.motions[m.name]) for m in played]
+
+
+def test_now_is_told_by_a_brain_whose_robot_is_elsewhere(troupe: Troupe) -> None:
+    _, brain = troupe.play()
+    answers = Collector()
+    troupe.ear.subscribe(OPERATOR_ANSWERS, answers)
+
+    def now() -> dict[str, Any]:
+        answers.messages.clear()
+        troupe.ear.publish(operator_key("NAO"), {"ask": "now"}, reply_to=OPERATOR_ANSWERS)
+        troupe.until(lambda: answers.messages)
+        return dict(answers.bodies[0])
+
+    troupe.ear.publish("lumen.NAO.visual.face.detection", {"x": 160, "y": 120}, ttl=5.0)
+    troupe.until(lambda: "greet" in brain.states)
+    told = now()
+    assert brain.brain
+    assert told["configuration"] == sorted(brain.states)
+    assert told["saying"]["text"]
+    assert told["stopped"] is False
+    assert {"greet", "talking"} <= {way["source"] for way in told["ways"]}
+    say = {"type": "texttospeech", "method": "say", "parameter": {"text": "We close soon."}, "id": "theirs"}
+    troupe.until(lambda: now()["saying"] is None)
+    troupe.ear.publish("avatar.NAO.command", say, ttl=2.0)
+    troupe.until(lambda: (now()["saying"] or {}).get("text") == "We close soon.")
+    event = {"ask": "event", "event": "safety.alarm", "by": "Aisyah"}
+    answers.messages.clear()
+    troupe.ear.publish(operator_key("NAO"), event, reply_to=OPERATOR_ANSWERS)
+    troupe.until(lambda: answers.messages)
+    assert answers.bodies[0] == {"verdict": "done", "taken": True}
 
 
 def cues_of(motion: MotionDefinition) -> list[tuple[float, str, object]]:

@@ -5,6 +5,7 @@ import queue
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
+from functools import partial
 from typing import Any
 
 from lumen.app.journal_pages import journal_page
@@ -21,6 +22,9 @@ MAX_QUESTION = 500
 """Characters of what somebody asks about."""
 WHY, WHY_NOT, JOURNAL = "why", "why-not", "journal"
 """What may be asked of the past."""
+
+AnswerMaker = Callable[[], dict[str, Any]]
+"""Makes an answer."""
 
 _log = logging.getLogger(__name__)
 
@@ -70,16 +74,20 @@ class AnsweringThread:
 
     def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]], journal: JournalWriter) -> None:
         self._bus, self._steps, self._journal = bus, steps, journal
-        self._waiting: queue.Queue[tuple[Message, Sequence[RecordedStep]] | None] = queue.Queue(MAX_WAITING_QUESTIONS)
+        self._waiting: queue.Queue[tuple[Message, AnswerMaker] | None] = queue.Queue(MAX_WAITING_QUESTIONS)
         self._drops = DropLog(_log, "questions")
         self._thread = WatchedThread("lumen-answering", self._run)
 
     def ask(self, message: Message) -> None:
-        """Have a question answered, as soon as those before it are; one too many gets no answer."""
+        """Have a question about what has happened answered, as soon as those before it are."""
+        self.answer(message, partial(reply, self._steps(), message.body, self._journal))
+
+    def answer(self, message: Message, make: AnswerMaker) -> None:
+        """Have a message answered by what `make` returns on the other thread; one too many gets no answer."""
         if not self._thread.started:
             self._thread.start()
         try:
-            self._waiting.put_nowait((message, self._steps()))
+            self._waiting.put_nowait((message, make))
         except queue.Full:
             self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} others wait for their answers")
 
@@ -93,10 +101,10 @@ class AnsweringThread:
 
     def _run(self) -> None:
         while (asked := self._waiting.get()) is not None:
-            message, steps = asked
+            message, make = asked
             try:
                 self._drops.tell()
-                self._bus.reply(message, reply(steps, message.body, self._journal))
+                self._bus.reply(message, make())
             except BusError:
                 continue  # who asked is gone
 

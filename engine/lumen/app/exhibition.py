@@ -198,6 +198,10 @@ class Exhibition:
         """How it is, as `lumen status --format json` prints it."""
         return self._operator.status()
 
+    def view(self) -> dict[str, Any]:
+        """How it is and what can happen next, as `{"ask": "now"}` gets it over the bus: docs/processes.md."""
+        return self._operator.now()
+
     def why(self, what: str = "", at: str | None = None) -> dict[str, Any]:
         """Why something happened, as `lumen why --format json` prints it; the last thing that did without `what`.
 

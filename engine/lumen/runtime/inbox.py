@@ -38,6 +38,9 @@ class Inbox:
         """Whether nothing has arrived since it was drained."""
         return not self._waiting
 
+    def __len__(self) -> int:
+        return len(self._waiting)
+
     def drain(self, now: float) -> list[Event]:
         """Everything that has arrived, as events at `now` [s]; each is caused by its message."""
         events = []

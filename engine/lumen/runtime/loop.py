@@ -122,6 +122,11 @@ class BehaviorLoop:
             self._perform(emission.commands, now, step=emission.step)
         return now
 
+    @property
+    def waiting(self) -> int:
+        """How many events wait for the next tick."""
+        return len(self._events) + len(self.performer.events) + len(self.inbox)
+
     def take(self, step: Step) -> None:
         """Go on with a step from where the behaviour stands, which nobody else made, and perform its commands."""
         self._perform(self.runtime.take(step), self._last)

@@ -2,13 +2,18 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
-from lumen.app.answering import JOURNAL, WHY, WHY_NOT, AnsweringThread
+from lumen.app.answering import AnsweringThread
 from lumen.app.asking import operator_key
+from lumen.app.doings import Doings
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
+from lumen.app.now import NowView, PresentMoment, moment
 from lumen.app.parts.part import Part
+from lumen.app.raised_events import RaisedEvents, person_in, refusal
 from lumen.app.status import LastReload, status_of
 from lumen.app.step_memory import StepMemory
 from lumen.errors import BusError, LumenError
@@ -18,15 +23,18 @@ from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
+from lumen.robots.robot_routes import TEXT_ROUTE, key_of
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
 
 GOTO = "operator.goto"
 """The event of a step that an operator wanted."""
-SOMEBODY = "somebody"
 MAX_PENDING_REQUESTS = 100
 NOTHING_RECORDED = "nothing is being recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
-REQUESTS = '`{"ask": "status"}`, `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
+REQUESTS = (
+    '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "goto", "state": …}`,'
+    ' `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
+)
 
 
 class OperatorPart(Part, Observer):
@@ -61,10 +69,18 @@ class OperatorPart(Part, Observer):
         runtime = behavior.loop.runtime
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
         behavior.forgetting.append(self.steps.forget)
+        self._journal = journal
         self._answering = AnsweringThread(self._bus, self.steps.steps, journal)
-        self._pages = AnsweringThread(self._bus, list, journal)  # who watches the journal waits for no `why`
+        self._pages = AnsweringThread(self._bus, list, journal)  # who watches waits for no `why`
         self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._came.append)
-        behavior.loop.observers += [self.steps, self]
+        self._view = NowView()
+        self._doings = Doings(
+            lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None, behavior.loop.clock.now
+        )
+        behavior.forgetting.append(lambda _: self._doings.forget())
+        self._unsay = self._bus.subscribe(key_of(behavior.project, TEXT_ROUTE), self._doings.told.append)
+        self._raising = RaisedEvents(behavior.loop, self._reply)
+        behavior.loop.observers += [self.steps, self._doings, self._raising, self]
 
     def begin(self, now: float) -> None:
         self._since = now
@@ -75,30 +91,41 @@ class OperatorPart(Part, Observer):
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self.steps.look()
+        self._doings.look()
+        self._raising.look()
         while self._came:
             message = self._came.popleft()
-            asked = message.body.get("ask") if isinstance(message.body, dict) else None
-            if asked == JOURNAL:
-                self._pages.ask(message)
-                continue
-            if asked in (WHY, WHY_NOT):
-                self._answering.ask(message)
-                continue
-            answer = self._answer(message.body, now)
-            try:
-                self._bus.reply(message, answer)
-            except BusError:
-                continue  # who asked is gone
+            match message.body:
+                case {"ask": "journal"}:
+                    self._pages.ask(message)
+                case {"ask": "why" | "why-not"}:
+                    self._answering.ask(message)
+                case {"ask": "now"}:
+                    self._pages.answer(message, partial(self._view.tell, self._moment()))
+                case {"ask": "event"}:
+                    self._raising.happen(message, now)
+                case body:
+                    self._reply(message, self._answer(body, now))
 
     def close(self) -> None:
         self._undo()
+        self._unsay()
         self._answering.close()
         self._pages.close()
 
     def status(self) -> dict[str, Any]:
         """How the exhibition is, as JSON data."""
+        return self._status()()
+
+    def now(self) -> dict[str, Any]:
+        """How the exhibition is, and what it can do next, as JSON data."""
+        return self._view.tell(self._moment())
+
+    def _status(self) -> Callable[[], dict[str, Any]]:
+        """Makes the status as it is now, whenever and wherever it is called."""
         loop = self._behavior.loop
-        return status_of(
+        return partial(
+            status_of,
             loop.project,
             loop.runtime.snapshot,
             self._since,
@@ -108,18 +135,33 @@ class OperatorPart(Part, Observer):
             reloaded=self._reloaded(),
         )
 
+    def _moment(self) -> PresentMoment:
+        loop, runtime = self._behavior.loop, self._behavior.loop.runtime
+        return moment(
+            runtime.project,
+            runtime.snapshot,
+            loop.clock.now(),
+            self._doings,
+            position=self._journal.tail.next - 1,
+            events=loop.waiting,
+            status=self._status(),
+        )
+
+    def _reply(self, message: Message, answer: Mapping[str, Any]) -> None:
+        with suppress(BusError):  # who asked is gone
+            self._bus.reply(message, answer)
+
     def _answer(self, body: Any, now: float) -> dict[str, Any]:
         match body:
             case {"ask": "status"}:
                 return self.status()
             case {"ask": "mark"}:
                 kept = self.marking()
-                return {"verdict": "done", "text": kept} if kept else _refusal(NOTHING_RECORDED)
+                return {"verdict": "done", "text": kept} if kept else refusal(NOTHING_RECORDED)
             case {"ask": "goto", "state": str(state)}:
-                by = body.get("by")
-                return self._goto(state[:200], str(by)[:100] if by else SOMEBODY, now, only=body.get("only") == "check")
+                return self._goto(state[:200], person_in(body), now, only=body.get("only") == "check")
             case _:
-                return _refusal(f"{REQUESTS} is expected")
+                return refusal(f"{REQUESTS} is expected")
 
     def _goto(self, state: str, by: str, now: float, *, only: bool) -> dict[str, Any]:
         """Enter a state; with `only` say what that would leave and enter."""
@@ -128,7 +170,7 @@ class OperatorPart(Part, Observer):
         try:
             step = entered_directly(loop.project.machine, loop.runtime.snapshot, state, event)
         except LumenError as error:
-            return _refusal(str(error))
+            return refusal(str(error))
         stopped = self._stopped()
         said = {"exited": list(step.exited), "entered": list(step.entered), "stopped_by": stopped and stopped.by}
         if only:
@@ -137,7 +179,3 @@ class OperatorPart(Part, Observer):
         self._record({"goto": state, "by": by})
         loop.take(step)
         return {"verdict": "done", **said}
-
-
-def _refusal(reason: str) -> dict[str, Any]:
-    return {"verdict": "refused", "reason": reason}

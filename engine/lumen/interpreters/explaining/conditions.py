@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard, parse_expression, unparse
 from lumen.interpreters.expressions.readings import readings
-from lumen.interpreters.expressions.tree import ExpressionNode, Logic
+from lumen.interpreters.expressions.tree import ExpressionNode, Logic, path_of, walk
 from lumen.language.actions import Expression
 
 
@@ -47,6 +47,14 @@ def holds(guard: Expression | None, scope: Scope) -> bool:
 def values(guard: Expression | None, scope: Scope) -> dict[str, Any]:
     """Everything that a guard looked at."""
     return readings(guard.source, scope, guard.shown) if guard else {}
+
+
+def awaits_event(source: str) -> tuple[bool, ...]:
+    """Of each part of a guard: whether it looks at the event, and so has no truth before one has come."""
+    return tuple(
+        any((path_of(node) or ("",))[0] == "event" for node, _ in walk(part))
+        for part in _joined(parse_expression(source))
+    )
 
 
 def _joined(tree: ExpressionNode) -> Iterator[ExpressionNode]:

@@ -1,0 +1,84 @@
+"""What one `{"ask": "now"}` costs: CPU time, medians. A console asks about 4 times a second.
+
+    python benchmarks/now.py
+
+`taken` is what the tick itself does for it, `told` what another thread does after that. The tour is the shipped one
+while it talks to somebody; the large chart has 1,500 states, of which each leads on under a guard, and the wide one as
+many regions of which all are active at once.
+"""
+
+import json
+from statistics import median
+from time import process_time
+from typing import Any
+
+import lumen
+from lumen.app.doings import Doings
+from lumen.app.exhibition import Exhibition
+from lumen.app.now import NowView, moment
+from lumen.interpreters.statechart import initial
+from lumen.language.projects import Project
+from lumen.statechart import Machine
+
+RUNS, SIZE = 31, 1500
+ROW = "{:<34}{:>12}{:>12}{:>10}"
+
+
+def chart(kind: str) -> dict[str, Any]:
+    states = {f"s{i}": {"on": {"go": _row(f"s{(i + 1) % SIZE}")}} for i in range(SIZE)}
+    regions = {f"s{i}": {"on": {"go": {"guard": "context.n < 5"}}} for i in range(SIZE)}
+    wide = {"all": {"type": "parallel", "states": regions}}
+    return {"context": {"n": 0}, "states": states if kind == "large" else wide}
+
+
+def _row(target: str) -> dict[str, Any]:
+    return {"target": target, "guard": "context.n < 1000000000", "actions": {"assign": {"n": "context.n + 1"}}}
+
+
+def tour() -> Exhibition:
+    exhibition = lumen.open(".")
+    exhibition.send("face", {"x": 160, "y": 120})
+    exhibition.run(1.0)
+    return exhibition
+
+
+def milliseconds(work: Any) -> float:
+    """The median over some runs, after one to warm up."""
+    work()
+    spent = []
+    for _ in range(RUNS):
+        start = process_time()
+        work()
+        spent.append(process_time() - start)
+    return 1000 * median(spent)
+
+
+def line(name: str, project: Project, snapshot: Any, doings: Doings, status: Any) -> None:
+    view = NowView()
+
+    def take() -> Any:
+        return moment(project, snapshot, 1.0, doings, position=1, events=0, status=status)
+
+    taken, told = milliseconds(take), milliseconds(lambda: view.tell(take()))
+    size = len(json.dumps(view.tell(take()))) / 1000
+    print(ROW.format(name, f"{taken:.3f} ms", f"{told - taken:.2f} ms", f"{size:.0f} kB"))
+
+
+def main() -> None:
+    print(ROW.format("", "taken", "told", "size"))
+    with tour() as exhibition:
+        project, runtime = exhibition.project, exhibition.node.loop.runtime
+        doings = Doings(lambda: project, lambda: runtime.snapshot, lambda: 1.0)
+        doings.look()
+        line("the shipped tour, in `greet`", project, runtime.snapshot, doings, exhibition.status)
+    for kind in ("large", "wide"):
+        machine = Machine.from_dict(chart(kind))
+        snapshot = initial(machine).snapshot
+        whole = Project("", "", "NAO", project.body, "", "b", {"b": machine})
+        doings = Doings(lambda whole=whole: whole, lambda snapshot=snapshot: snapshot, lambda: 1.0)  # type: ignore[misc]
+        doings.look()
+        line(f"a {kind} chart of {SIZE:,} states", whole, snapshot, doings, dict)
+
+
+if __name__ == "__main__":
+    main()

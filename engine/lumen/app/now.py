@@ -1,0 +1,196 @@
+"""How a running exhibition is at this moment, in one object: for whoever shows it to the people who run it."""
+
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from lumen.app.doings import Doings, Spoken, UnderWay
+from lumen.app.status import iso
+from lumen.interpreters.explaining.names import machines_in
+from lumen.interpreters.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
+from lumen.interpreters.statechart import Snapshot
+from lumen.language.diagnostics import NodePath
+from lumen.language.events import ROBOT_EVENTS
+from lumen.language.machines import MachineDefinition, Transition
+from lumen.language.projects import Project
+
+Status = dict[str, Any]
+
+
+class PresentMoment(NamedTuple):
+    """What is taken from an exhibition between two ticks; `status` makes the rest of it, on any thread.
+
+    `at` is the exhibition's time [s], `position` that of the last entry of the journal.
+    """
+
+    project: Project
+    snapshot: Snapshot
+    at: float
+    position: int
+    since: dict[str, float]
+    saying: UnderWay | None
+    motion: UnderWay | None
+    heard: Spoken | None
+    events: int
+    commands: int
+    status: Callable[[], Status]
+
+
+def moment(
+    project: Project,
+    snapshot: Snapshot,
+    at: float,
+    doings: Doings,
+    *,
+    position: int,
+    events: int,
+    status: Callable[[], Status],
+) -> PresentMoment:
+    """What is so now; nothing is computed from it yet."""
+    said, moved = doings.saying, doings.motion
+    return PresentMoment(
+        project, snapshot, at, position, doings.since, said, moved, doings.heard, events, doings.commands, status
+    )
+
+
+class NowView:
+    """Tells moments as JSON data; what a bundle makes of it is kept as long as that is the same bundle."""
+
+    def __init__(self) -> None:
+        self._bundle: _Bundle | None = None
+
+    def tell(self, now: PresentMoment) -> dict[str, Any]:
+        """The object, with all keys of the status."""
+        bundle = self._bundle
+        if bundle is None or bundle.project is not now.project:
+            bundle = self._bundle = _Bundle(now.project)
+
+        def time(at: float) -> str:
+            return iso(datetime.fromtimestamp(now.snapshot.epoch + at, UTC))
+
+        return {
+            **now.status(),
+            "position": now.position,
+            "states": _tree(now, bundle, time),
+            "saying": _saying(now.saying, time),
+            "motion": _motion(now.motion, now.at, time),
+            "visitor_said": {"text": now.heard.text, "at": time(now.heard.at)} if now.heard else None,
+            "ways": [_way(way, bundle, time) for way in ways_out(now.project.machine, now.snapshot, now.at)],
+            "buttons": [],
+            "waiting": [],
+            "autonomy": "ask",
+            "queues": {"events": now.events, "commands": now.commands},
+            **bundle.constant,
+        }
+
+
+class _Bundle:
+    """What of a project never changes: the places of its states, and what there is to choose from."""
+
+    def __init__(self, project: Project) -> None:
+        self.project = project
+        self._files = {id(machine): f"behaviors/{name}.yaml" for name, machine in project.behaviors.items()}
+        self._by_id = {machine.id: f"behaviors/{name}.yaml" for name, machine in project.behaviors.items()}
+        self._places: dict[tuple[int, NodePath], tuple[str | None, int | None]] = {}
+        self.constant: dict[str, Any] = {
+            "languages": list(project.languages),
+            "motions": sorted(project.motions),
+            "postures": sorted(project.body.postures),
+            "events": sorted(handled_events(project.machine)),
+        }
+
+    def place(self, machine: MachineDefinition, where: NodePath) -> dict[str, Any]:
+        """The file and line where it stands in the document of that machine."""
+        found = self._places.get((id(machine), where))
+        if found is None:
+            file = self._files.get(id(machine)) or self._by_id.get(machine.id)
+            place = self.project.place(file, where) if file else None
+            found = (place.file, place.line) if place else (None, None)
+            self._places[id(machine), where] = found
+        return {"file": found[0], "line": found[1]}
+
+
+def handled_events(machine: MachineDefinition) -> set[str]:
+    """The names of events from outside that a behaviour, or one that it invokes, has a transition for."""
+    found = set[str]()
+    for _, inner in machines_in(machine):
+        declared = set(inner.events)
+        for state in inner.states.values():
+            for transition in state.transitions:
+                found.update(_names(transition, declared))
+    return found
+
+
+def _names(transition: Transition, declared: set[str]) -> Iterator[str]:
+    event = transition.event
+    if transition.timed or transition.exact or not event or event.startswith(("done.", "error.")):
+        return
+    if event == "*":
+        yield from declared
+        return
+    prefix = event.removesuffix(".*")
+    below = [name for name in (*declared, *ROBOT_EVENTS) if name.startswith(f"{prefix}.")]
+    yield from below
+    if prefix == event or not below:
+        yield prefix
+
+
+def _tree(now: PresentMoment, bundle: _Bundle, time: Callable[[float], str]) -> list[dict[str, Any]]:
+    """The active states, each with those within it, and what it has invoked."""
+    found: dict[str, dict[str, Any]] = {}
+    outermost: list[dict[str, Any]] = []
+    for one in running(now.project.machine, now.snapshot):
+        for state in _active(one):
+            path, name = one.prefix + state.path, one.prefix + state.name
+            since = time(now.since.get(name, now.snapshot.at))
+            node = {
+                "path": path,
+                "name": name,
+                "since": since,
+                **bundle.place(one.machine, state.where),
+                "children": [],
+            }
+            found[path] = node
+            around = found.get(one.prefix + state.parent if state.parent else one.host)
+            (around["children"] if around else outermost).append(node)
+    return outermost
+
+
+def _active(one: Running) -> Iterator[Any]:
+    names = one.snapshot.configuration
+    left = [one.machine.states[path] for path in reversed(one.machine.root.children)]
+    while left:
+        state = left.pop()
+        if state.name in names:
+            yield state
+            left += [one.machine.states[path] for path in reversed(state.children)]
+
+
+def _saying(said: UnderWay | None, time: Callable[[float], str]) -> dict[str, Any] | None:
+    return {"text": said.name, "language": said.language, "since": time(said.since)} if said else None
+
+
+def _motion(moved: UnderWay | None, at: float, time: Callable[[float], str]) -> dict[str, Any] | None:
+    if moved is None:
+        return None
+    progress = min(1.0, max(0.0, (at - moved.since) / moved.seconds)) if moved.seconds else None
+    return {"verb": moved.what, "name": moved.name, "since": time(moved.since), "progress": progress}
+
+
+def _way(way: WayOut, bundle: _Bundle, time: Callable[[float], str]) -> dict[str, Any]:
+    states, wanted = way.machine.states, way.transition
+    prefix = "".join(f"{id}/" for id in reversed(way.owner.split("@"))) if way.owner else ""
+    return {
+        "source": prefix + (states[wanted.source].name or way.machine.id),
+        "event": wanted.awaited_time or wanted.event,
+        "targets": [prefix + (states[path].name or way.machine.id) for path in wanted.targets],
+        **bundle.place(way.machine, wanted.where),
+        "due": None if way.due is None else time(way.due),
+        "open": way.open,
+        "guard": _guard(way.guard) if way.guard else None,
+        "why": way.why,
+    }
+
+
+def _guard(guard: GuardTruth) -> dict[str, Any]:
+    return {"text": guard.text, "true": guard.holds, "values": dict(guard.values)}

@@ -1,0 +1,181 @@
+"""Where a behaviour can go from where it stands: each way out of its active states, whether it is open now, and why."""
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from lumen.interpreters.explaining.conditions import awaits_event, parts, values
+from lumen.interpreters.explaining.words import of_transition, prefix_of, shown
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.expressions.scope import no_draw
+from lumen.interpreters.statechart.chart import CompiledTransition
+from lumen.interpreters.statechart.command_ids import outer_id
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.plans import Configuration
+from lumen.interpreters.statechart.values import Snapshot, Timer
+from lumen.language.machines import MachineDefinition, Transition
+
+
+class GuardTruth(NamedTuple):
+    """A guard at this moment: what it looks at, and whether it holds; None where that is for the event to say."""
+
+    text: str
+    holds: bool | None
+    values: Mapping[str, Any]
+
+
+class WayOut(NamedTuple):
+    """A transition of an active state of the behaviour that runs under `owner`.
+
+    It is `open` unless something is known to stand against it. `due` is when its timer ends [s]; None without one.
+    """
+
+    owner: str
+    machine: MachineDefinition
+    transition: Transition
+    open: bool
+    guard: GuardTruth | None
+    why: str
+    due: float | None = None
+
+
+class Running(NamedTuple):
+    """A behaviour that runs: under which ids (none for the outermost), which, where it stands, and by which path.
+
+    `prefix` stands before the names of its states (`quiz/`), `host` is the path of the state that has invoked it.
+    """
+
+    owner: str
+    machine: MachineDefinition
+    snapshot: Snapshot
+    prefix: str = ""
+    host: str = ""
+
+
+def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", host: str = "") -> Iterator[Running]:
+    """A behaviour and those that run within it, each after its host."""
+    yield Running(owner, machine, snapshot, prefix_of(owner), host)
+    for id, child in snapshot.invoked.items():
+        inner = machine.invoked[machine.invoked_behavior(child.state, id)]
+        around = prefix_of(owner) + child.state
+        yield from running(inner, child.snapshot, outer_id(id, owner) if owner else id, around)
+
+
+def ways_out(machine: MachineDefinition, snapshot: Snapshot, at: float) -> Iterator[WayOut]:
+    """Every way out of the states that are active at `at` [s], innermost first; invoked behaviours' last."""
+    for one in running(machine, snapshot):
+        yield from _out_of(one, snapshot, at)
+
+
+def _out_of(one: Running, outermost: Snapshot, at: float) -> Iterator[WayOut]:
+    program = compiled(one.machine)
+    configuration = program.planner.configuration(one.snapshot.configuration)
+    if configuration.finished:
+        return
+    asked = _Asked(one, configuration, outermost, at)
+    for transition, rival in _ranked(configuration, asked):
+        yield asked.way(transition, rival)
+
+
+def _ranked(
+    configuration: Configuration, asked: "_Asked"
+) -> Iterator[tuple[CompiledTransition, CompiledTransition | None]]:
+    """Each transition of the active states once, and the one that is always taken in its place, if there is one.
+
+    It is only where that is so for each of the active atomic states below it.
+    """
+    rivals: dict[CompiledTransition, CompiledTransition | None] = {}
+    for leaf in configuration.leaves:
+        sure: list[CompiledTransition] = []
+        for node in (leaf, *leaf.ancestors):
+            for transition in node.transitions:
+                rival = next((one for one in sure if _covers(one.definition, transition.definition)), None)
+                if rivals.get(transition, rival) is not None or transition not in rivals:
+                    rivals[transition] = rival
+                if asked.truth(transition) is True:
+                    sure.append(transition)
+    yield from rivals.items()
+
+
+def _covers(one: Transition, other: Transition) -> bool:
+    """Whether whatever selects the other selects this one, too."""
+    if one.timed or other.timed or not one.event or not other.event:
+        return one.timed == other.timed and one.event == other.event and one.source == other.source
+    prefix = one.event.removesuffix(".*")
+    return one.event in ("*", other.event) or (not one.exact and other.event.startswith(f"{prefix}."))
+
+
+class _Asked:
+    """What is asked of the transitions of one running behaviour; each guard is looked at once."""
+
+    def __init__(self, one: Running, configuration: Configuration, outermost: Snapshot, at: float) -> None:
+        self._one, self._at = one, at
+        chart = compiled(one.machine).chart
+        self._timers = {(t.state, t.event): t for t in one.snapshot.timers if t.kind in ("after", "at")}
+        self._view = (outermost.language, outermost.place)
+        self._scope = Scope(
+            one.snapshot.context, None, chart.root.view(*self._view), configuration.known.__contains__, at,
+            outermost.language, one.machine.phrases, one.machine.answers, outermost.epoch, outermost.timezone,
+            one.machine.lists, no_draw,
+        )  # fmt: skip
+        self._known: dict[CompiledTransition, tuple[GuardTruth | None, str]] = {}
+
+    def truth(self, transition: CompiledTransition) -> bool | None:
+        """Whether its guard holds; None where that is for the event to say."""
+        guard, _ = self._guard(transition)
+        return guard.holds if guard else True
+
+    def way(self, transition: CompiledTransition, rival: CompiledTransition | None) -> WayOut:
+        wanted, (guard, why) = transition.definition, self._guard(transition)
+        one, timer = self._one, self._timers.get((transition.source.path, transition.definition.event))
+        stopped = wanted.timed and timer is None
+        if rival and not why:
+            why = f"{of_transition(one.machine, rival.definition, one.owner)} goes first"
+        elif stopped and not why:
+            why = "its time does not come any more"
+        closed = bool(why) or (not wanted.event and not wanted.timed)
+        due = timer.due if timer else None
+        return WayOut(
+            one.owner, one.machine, wanted, not closed, guard, why or _waits(wanted, timer, guard, self._at), due
+        )
+
+    def _guard(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
+        """The truth of its guard, and what of it is false whatever comes; empty where nothing is."""
+        found = self._known.get(transition)
+        if found is None:
+            found = self._known[transition] = self._looked_at(transition)
+        return found
+
+    def _looked_at(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
+        guard = transition.definition.guard
+        if guard is None:
+            return None, ""
+        scope = self._scope._replace(state=transition.source.view(*self._view))
+        named = bool(transition.definition.event) and not transition.definition.timed
+        later = _awaiting(guard.source) if named else ()
+        looked = parts(guard, scope)
+        open_parts = later if len(later) == len(looked) else (any(later),) * len(looked)
+        false = [part for part, waits in zip(looked, open_parts, strict=True) if not waits and not part.holds]
+        truth = False if false else None if any(open_parts) else True
+        why = ""
+        if false:
+            seen = ", ".join(f"{name} is {shown(value)}" for name, value in false[0].values.items())
+            why = f"{false[0].text} is false" + (f": {false[0].error or seen}" if false[0].error or seen else "")
+        return GuardTruth(guard.shown, truth, values(guard, scope)), why
+
+
+@lru_cache(maxsize=8192)
+def _awaiting(source: str) -> tuple[bool, ...]:
+    return awaits_event(source)
+
+
+def _waits(wanted: Transition, timer: Timer | None, guard: GuardTruth | None, at: float) -> str:
+    if timer:
+        return f"in {max(0.0, timer.due - at):.0f} s"
+    if wanted.exact:
+        return "when that is done" if wanted.event.startswith("done.") else "when that fails"
+    if not wanted.event:
+        return "taken as soon as something happens"
+    if guard and guard.holds is None:
+        return f"when {wanted.event} comes and {guard.text}"
+    return f"when {wanted.event} comes" if wanted.event != "*" else "when anything comes"

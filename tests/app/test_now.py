@@ -1,0 +1,164 @@
+"""What the brain says of this moment, and an event that a person lets happen."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.app.asking import operator_key
+from lumen.app.exhibition import Exhibition
+from lumen.bus import Bus, connect
+from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.events import Event
+from tests.waiting import until
+
+ANSWERS = "test.answers"
+Asker = Callable[..., dict[str, Any]]
+
+
+def asker(exhibition: Exhibition, bus: Bus) -> Asker:
+    """Asks, and lives until the answer is there."""
+    came: list[Any] = []
+    bus.subscribe(ANSWERS, lambda message: came.append(message.body))
+
+    def answered() -> bool:
+        exhibition.tick()
+        return bool(came)
+
+    def ask(what: str, **more: Any) -> dict[str, Any]:
+        came.clear()
+        bus.publish(operator_key("NAO"), {"ask": what, **more}, reply_to=ANSWERS)
+        until(answered)
+        return dict(came[0])
+
+    return ask
+
+
+@pytest.mark.slow
+def test_now_holds_the_status_and_what_can_happen_next(copy: Path) -> None:
+    with lumen.open(copy) as exhibition:
+        exhibition.send("face", {"x": 160, "y": 120})
+        exhibition.run(0.5)
+        now = exhibition.view()
+        status = exhibition.status()
+        assert {key: now[key] for key in status} == status
+        json.dumps(now)
+        [guide, *_] = now["states"]
+        assert (guide["path"], guide["file"]) == ("guide", "behaviors/tour.yaml")
+        [talking] = guide["children"]
+        [greet] = talking["children"]
+        assert (talking["name"], greet["name"], greet["children"]) == ("talking", "greet", [])
+        line = Path(copy / greet["file"]).read_text().splitlines()[greet["line"] - 1]
+        assert "greet" in line
+        assert greet["since"] == status["since"]
+        assert now["saying"]["text"]
+        assert now["saying"]["language"] == "en"
+        assert "heard" in now["events"]
+        assert "dance" in now["motions"]
+        assert "Stand" in now["postures"]
+        timer = next(way for way in now["ways"] if way["event"] == "after 30 s")
+        assert timer["due"] == status["timers"][0]["due"]
+        assert timer["targets"] == ["goodbye"]
+        assert timer["open"]
+        named = next(way for way in now["ways"] if way["guard"] and way["guard"]["text"] == "context.visitor != ''")
+        assert (named["open"], named["guard"]["true"], named["guard"]["values"]) == (
+            False,
+            False,
+            {"context.visitor": ""},
+        )
+        assert named["why"] == "context.visitor != '' is false: context.visitor is \"\""
+        exhibition.send("heard", {"name": "visitor", "result": "my name is Budi", "date": "", "language": "en"})
+        exhibition.run(0.1)
+        assert exhibition.view()["visitor_said"]["text"] == "my name is Budi"
+
+
+@pytest.mark.slow
+def test_a_motion_says_how_far_it_is(copy: Path) -> None:
+    with lumen.open(copy) as exhibition:
+        exhibition.run(5.0)
+        runtime = exhibition.node.loop.runtime
+        wanted = Event("operator.goto", {"state": "dance"}, exhibition.now)
+        exhibition.node.loop.take(entered_directly(runtime.project.machine, runtime.snapshot, "dance", wanted))
+        far = []
+        for _ in range(600):
+            exhibition.run(0.1)
+            moved = exhibition.view()["motion"]
+            if moved and moved["name"] == "dance":
+                far.append(moved["progress"])
+        assert far
+        assert far == sorted(far)
+        assert far[0] < 0.1
+        assert 0.9 < far[-1] <= 1.0
+
+
+MINE = """
+context: {n: 0, who: ""}
+events: {next: {}, named: {}, back: {}}
+states:
+  waiting:
+    on:
+      next: {guard: "context.n < 1", target: shown, actions: {assign: {n: context.n + 1}}}
+      named: {target: shown, actions: {assign: {who: event.data.name}}}
+  shown:
+    on: {back: waiting}
+    states: {here: {}}
+"""
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Path:
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / "behaviors" / "mine.yaml").write_text(MINE)
+    (tmp_path / "lumen.yaml").write_text(
+        "name: Mine\nbehavior: mine\nlanguages: [en]\nrobot: {name: NAO, model: nao}\nhall: hall.xml\n"
+    )
+    return tmp_path
+
+
+def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path) -> None:
+    bus = connect("memory://")
+    with lumen.open(mine, bus=bus) as exhibition:
+        ask = asker(exhibition, bus)
+        before = ask("now")
+        assert (before["events"], before["saying"], before["motion"]) == (["back", "named", "next"], None, None)
+        assert [s["name"] for s in before["states"]] == ["waiting"]
+        assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": True}
+        now = ask("now")
+        assert [s["name"] for s in now["states"]] == ["shown"]
+        assert [s["name"] for s in now["states"][0]["children"]] == ["shown.here"]
+        assert now["position"] > before["position"]
+        assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": False}
+        assert ask("event", event="back") == {"verdict": "done", "taken": True}
+        assert exhibition.why("waiting")["chain"][-1]["text"] == "somebody"
+        closed = next(way for way in ask("now")["ways"] if way["event"] == "next")
+        assert (closed["open"], closed["why"]) == (False, "context.n < 1 is false: context.n is 1")
+        assert ask("event", event="named", data={"name": "Budi"}, by="Aisyah")["taken"]
+        assert exhibition.context["who"] == "Budi"
+        last = exhibition.why("shown")["chain"][-1]
+        assert (last["kind"], last["text"]) == ("person", "Aisyah")
+
+
+def test_what_can_be_no_event_is_refused(mine: Path) -> None:
+    bus = connect("memory://")
+    with lumen.open(mine, bus=bus) as exhibition:
+        ask = asker(exhibition, bus)
+        for event in ("", 3, None, "x" * 101):
+            assert ask("event", event=event) == {"verdict": "refused", "reason": "`event` is the name of an event"}
+        refused = ask("event", event="done.command.d1")
+        assert refused["verdict"] == "refused"
+        assert "only the robot says what is done" in refused["reason"]
+        assert '`{"ask": "now"}`' in ask("nothing")["reason"]
+
+
+def test_a_text_of_somebody_else_is_told_as_long_as_it_takes(copy: Path) -> None:
+    with lumen.open(copy) as exhibition:
+        exhibition.run(0.1)
+        exhibition.say("The museum closes soon.", "en")
+        exhibition.run(0.1)
+        assert exhibition.view()["saying"]["text"] == "The museum closes soon."
+        exhibition.run(20.0)
+        said = exhibition.view()["saying"]
+        assert said is None or said["text"] != "The museum closes soon."
