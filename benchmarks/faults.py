@@ -218,7 +218,7 @@ class Exhibition:
         deadline, said = time.monotonic() + MOMENT_TIMEOUT, ""
         there = moment != "idle" or self.state != "idle"
         self.publish("avatar.NAO.hall", {"visitor": {"x": 1.2, "y": 0.0, "height": 1.65} if there else None})
-        if self.state == moment in ("offer", "any_question"):  # anew, or who has said nothing for 30 s is sent away
+        if self.state == moment in SPOKEN:  # anew, for who has said nothing for 30 s is sent away
             self.say(SPOKEN[moment])
             self.until(lambda: self.state != moment, MOMENT_TIMEOUT, f"{moment} is left")
         while self.state != moment:
