@@ -103,6 +103,8 @@ def test_list_hz_and_bw_measure(run: Run) -> None:
     assert listed[SONAR]["messages"] >= 2
     assert (listed[SONAR]["route"], listed["avatar.NAO.command"]["messages"]) == ("sonar", 0)
     assert listed["lumen.note"]["route"] == ""
+    assert listed["lumen.visual.face.detection"]["alias"]
+    assert not listed["lumen.NAO.visual.face.detection"]["alias"]
     (sonar,) = _topics(run, "hz", "sonar")
     assert 5 < sonar["hz"] < 60
     assert sonar["longest_gap"] > 0.0

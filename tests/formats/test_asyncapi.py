@@ -42,8 +42,10 @@ def test_asyncapis_own_parser_finds_the_shipped_routes_and_nothing_wrong() -> No
     shipped, pointed, wrong = parsed(project(), with_face(points), with_face({"type": "numbr"}))
     routes = project().routes
     assert shipped["errors"] == []
-    assert shipped["channels"] == {name: route.key for name, route in routes.items()}
-    assert shipped["actions"] == {n: "receive" if r.direction == "in" else "send" for n, r in routes.items()}
+    old = {f"{name}.alias": route for name, route in routes.items() if route.alias}
+    assert shipped["channels"] == {n: r.key for n, r in routes.items()} | {n: r.alias for n, r in old.items()}
+    actions = {n: "receive" if r.direction == "in" else "send" for n, r in (routes | old).items()}
+    assert shipped["actions"] == actions
     assert pointed["errors"] == []
     assert pointed["payloads"]["face"][0]["items"]["type"] == "number"
     assert wrong["errors"]
@@ -61,6 +63,11 @@ def test_a_body_is_judged_by_the_document_as_by_the_project() -> None:
             assert Draft202012Validator(schema).is_valid(body) == Draft202012Validator(
                 project().messages[route.schema]
             ).is_valid(body)
+
+
+def test_robots_that_share_a_broker_have_no_aliases() -> None:
+    shared = yaml.safe_load(write_asyncapi(replace(project(), aliases=False)))
+    assert set(shared["channels"]) == set(shared["operations"]) == set(project().routes)
 
 
 def test_no_password_gets_into_the_document() -> None:

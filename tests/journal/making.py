@@ -25,6 +25,8 @@ from lumen.runtime.runtime import Runtime
 
 ROOT = Path(__file__).parents[2]
 MAX_TIMERS = 12
+WRITTEN = 120.0
+"""How long a crowded machine may take to write what a wild behaviour has done [s]."""
 
 
 @cache
@@ -78,7 +80,7 @@ class Recorded:
     def crash(self) -> None:
         """End without notice, and go on from where it stood when that was written."""
         project, frozen = self.runtime.project, serialize(self.runtime.project.machine, self.runtime.snapshot)
-        self.writer.flush()
+        assert self.writer.flush(WRITTEN)
         self._run(project)
         found = resume(project, project, deserialize(project.machine, frozen), 3.0, (), 0.5)
         assert isinstance(found, Resumption)
@@ -86,6 +88,7 @@ class Recorded:
         self.runtime.apply(project, found.snapshot, "resume", found.commands)
 
     def end(self) -> None:
+        assert self.writer.flush(WRITTEN)
         self.writer.close()
 
     def entries(self) -> list[RecordedEntry]:

@@ -14,6 +14,7 @@ from lumen.loading import settings
 from lumen.loading.document import Document
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from lumen.rules.robot_keys import with_robot_keys
 from lumen.rules.upgrading import MIGRATIONS, Migration, Rewriting, renamed_key, upgraded
 
 BASE = Path(__file__).parents[1] / "lint/base"
@@ -159,3 +160,79 @@ def test_the_command_says_what_it_changed(tmp_path: Path, capsys: pytest.Capture
     assert main(["upgrade", str(tmp_path), "--check"]) == 0
     assert main(["lint", "--strict", str(tmp_path)]) == 0
     assert main(["upgrade", str(tmp_path), "--check", "--diff"]) == 2
+
+
+OLD_KEYS = b"""\
+lumen: 1
+routes:
+  # who is heard
+  heard: {key: lumen.audio.speech.recognition, direction: in}  # who
+  face:
+    key: 'lumen.visual.face.detection'   # one of them
+    direction: in
+  lamp: {key: museum.lamp, direction: out}
+  gender: {key: lumen.audio.gender.identification, alias: my.gender, direction: in}
+"""
+NEW = b"""\
+lumen: 1
+routes:
+  # who is heard
+  heard: {key: "lumen.{robot}.audio.speech.recognition", alias: lumen.audio.speech.recognition, direction: in}  # who
+  face:
+    key: "lumen.{robot}.visual.face.detection"
+    alias: lumen.visual.face.detection   # one of them
+    direction: in
+  lamp: {key: museum.lamp, direction: out}
+  gender: {key: lumen.audio.gender.identification, alias: my.gender, direction: in}
+"""
+
+
+@pytest.mark.parametrize("line_break", [b"\n", b"\r\n"])
+def test_keys_of_2015_get_the_robot_and_stay_as_aliases(line_break: bytes) -> None:
+    files = {"lumen.yaml": OLD_KEYS.replace(b"\n", line_break), "motions/a.yaml": b"a: 1\n"}
+    after, done = with_robot_keys(files)
+    assert after == files | {"lumen.yaml": NEW.replace(b"\n", line_break)}
+    assert [f"{each.place.line} {each.why}" for each in done] == [
+        "4 `heard` holds the robot, and `lumen.audio.speech.recognition` is its alias",
+        "6 `face` holds the robot, and `lumen.visual.face.detection` is its alias",
+    ]
+    assert with_robot_keys(after) == (after, [])
+
+
+@pytest.mark.parametrize(
+    "routes",
+    [
+        b"  a: &a {key: lumen.presence}\n  b: {<<: *a}\n",
+        b"  a: {key: &k lumen.presence}\n  b: {key: *k}\n",
+        b"  a: {? key : lumen.presence}\n",
+        b"  a: {key: >-\n      lumen.presence\n    }\n",
+    ],
+)
+def test_what_is_laid_out_otherwise_is_right_or_left(routes: bytes) -> None:
+    """Nothing is written that says something else."""
+    files = {"lumen.yaml": b"routes:\n" + routes}
+    try:
+        after, _ = with_robot_keys(files)
+    except UsageError:
+        return
+    was, now = (yaml.safe_load(each["lumen.yaml"])["routes"] for each in (files, after))
+    renewed = {"key": "lumen.{robot}.presence", "alias": "lumen.presence"}
+    assert now == {name: {**row, **renewed} for name, row in was.items()}
+
+
+def test_the_command_offers_it_and_does_it_when_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, content in read_files(ROOT / "examples" / "minimal").items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    main_file = tmp_path / "lumen.yaml"
+    new = '"lumen.{robot}.audio.speech.recognition", alias: lumen.audio.speech.recognition'
+    text = main_file.read_text("utf-8").replace(new, "lumen.audio.speech.recognition")
+    main_file.write_text(f"lumen: 1\n{text}", "utf-8")
+    before = main_file.read_bytes()
+    assert main(["upgrade", str(tmp_path), "--check"]) == 0
+    assert "1 key of 2015 would be heard by several robots: `lumen upgrade --keys`\n" in capsys.readouterr().out
+    assert main_file.read_bytes() == before
+    assert main(["upgrade", str(tmp_path), "--check", "--keys"]) == 1
+    assert main(["upgrade", str(tmp_path), "--keys"]) == 0
+    assert new in main_file.read_text("utf-8")
+    assert main(["upgrade", str(tmp_path), "--check", "--keys"]) == 0

@@ -5,7 +5,7 @@ import json
 import queue
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -99,14 +99,18 @@ def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int
     for key in sorted({*routes, *counts}):
         route = routes.get(key)
         name, direction, carried = (route.name, route.direction, route.carried) if route else ("", "", "")
-        rows.append(
-            {"key": key, "route": name, "direction": direction, "carried": carried, "messages": counts.get(key, 0)}
-        )
+        row = {"key": key, "route": name, "direction": direction, "carried": carried, "messages": counts.get(key, 0)}
+        rows.append({**row, "alias": bool(route and key == route.alias)})
     if options.format == "json":
         print(json.dumps({"seconds": span, "topics": rows}))
         return 0
-    print(table(["key", "route", "direction", "carried", f"in {span:g} s"], [[*map(str, r.values())] for r in rows]))
+    print(table(["key", "route", "direction", "carried", f"in {span:g} s"], [_cells(row) for row in rows]))
     return 0
+
+
+def _cells(row: Mapping[str, Any]) -> list[str]:
+    name = f"{row['route']} (alias)" if row["alias"] else row["route"]
+    return [row["key"], name, str(row["direction"]), str(row["carried"]), str(row["messages"])]
 
 
 def _echo(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:

@@ -14,6 +14,7 @@ from lumen.language.diagnostics import has_errors
 from lumen.language.vocabulary import VOCABULARY
 from lumen.loading.files import read_files
 from lumen.loading.own_project import own_project
+from lumen.rules.robot_keys import old_keys, with_robot_keys
 from lumen.rules.upgrading import Rewriting, upgraded
 
 
@@ -21,6 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above")
     parser.add_argument("--diff", action="store_true", help="print what would be written, and write nothing")
     parser.add_argument("--check", action="store_true", help="write nothing; 1 where something is to be rewritten")
+    parser.add_argument("--keys", action="store_true", help="also write {robot} into keys of 2015")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -31,6 +33,9 @@ def run(options: argparse.Namespace) -> int:
     root = own_project(Path(options.project) if options.project else None)
     before = read_files(root)
     after, done = upgraded(before)
+    if options.keys:
+        after, renamed = with_robot_keys(after)
+        done += renamed
     if options.diff:
         print("\n".join(diff(root, before, after, coloured())))
         return 0
@@ -42,6 +47,8 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps({"vocabulary": VOCABULARY, "rewritten": rows, "errors": left}, ensure_ascii=False))
     else:
         print("\n".join(_text(done, left)))
+        if old := old_keys(after):
+            print(f"{counted(len(old), 'key')} of 2015 would be heard by several robots: `lumen upgrade --keys`")
     return int(bool(done) if left is None else left)
 
 

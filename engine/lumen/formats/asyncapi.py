@@ -1,6 +1,7 @@
 """A project's routes as an AsyncAPI 3 document: what a module may send, what it may hear, and how each is carried."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -30,6 +31,7 @@ def write_asyncapi(project: Project) -> str:
 def document(project: Project) -> dict[str, Any]:
     """The document as plain data."""
     routes = project.routes.values()
+    old = [route for route in routes if route.alias and project.aliases is not False]
     return {
         "asyncapi": ASYNCAPI_VERSION,
         "info": {
@@ -39,8 +41,10 @@ def document(project: Project) -> dict[str, Any]:
         },
         "defaultContentType": "application/json",
         "servers": {"broker": _server(project.bus)},
-        "channels": {route.name: _channel(route, project.robot) for route in routes},
-        "operations": {route.name: _operation(route) for route in routes},
+        "channels": {route.name: _channel(route, project.robot) for route in routes}
+        | {_old(route): _alias_channel(route) for route in old},
+        "operations": {route.name: _operation(route, route.name) for route in routes}
+        | {_old(route): _operation(route, _old(route)) for route in old},
         "components": {
             "messages": {route.name: _message(route, project) for route in routes},
             "schemas": {
@@ -76,13 +80,23 @@ def _channel(route: Route, robot: str) -> dict[str, Any]:
     return channel
 
 
-def _operation(route: Route) -> dict[str, Any]:
+def _old(route: Route) -> str:
+    """The name of the channel that is a route's alias."""
+    return f"{route.name}.alias"
+
+
+def _alias_channel(route: Route) -> dict[str, Any]:
+    channel = _channel(replace(route, key=route.alias), "")
+    return {**channel, "description": f"What `{route.name}` is called besides, while one robot is on the broker."}
+
+
+def _operation(route: Route, channel: str) -> dict[str, Any]:
     amqp: dict[str, Any] = {"deliveryMode": 2 if route.must_arrive else 1, "mandatory": route.must_arrive}
     if route.lifetime is not None:
         amqp["expiration"] = round(1000 * route.lifetime)
     return {
         "action": "receive" if route.direction is Direction.IN else "send",
-        "channel": {"$ref": f"#/channels/{route.name}"},
+        "channel": {"$ref": f"#/channels/{channel}"},
         "description": " ".join(_carrying(route)),
         "bindings": {"amqp": {**amqp, "bindingVersion": BINDING_VERSION}},
     }

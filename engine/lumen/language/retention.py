@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+SHORTEST_RING, LONGEST_RING = 10.0, 7200.0
+"""How much of the past the ring of recordings may hold [s]: two hours with the camera are some 600 MB."""
+
 
 @dataclass(frozen=True, slots=True)
 class JournalRetention:

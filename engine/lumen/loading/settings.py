@@ -13,7 +13,7 @@ from lumen.language.diagnostics import ERROR, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
-from lumen.language.retention import JournalRetention, RecordingSettings
+from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
 from lumen.language.routes import Route
 from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
@@ -22,7 +22,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.show import build_show
-from lumen.loading.units import ANGLES, LENGTHS
+from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
@@ -146,7 +146,11 @@ def _journal(data: Mapping[str, Any], report: DocumentReport) -> JournalRetentio
 def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSettings:
     said = data.get("record", {})
     numbers = {key: said[key] for key in ("keep", "size") if key in said and finite(said[key], report, ("record", key))}
-    ring = duration(said, "ring", report, ("record",), positive=True)
+    ring = duration(said, "ring", report, ("record",))
+    if ring is not None and not SHORTEST_RING <= ring <= LONGEST_RING:
+        message = f"the ring can't be {said['ring']} long: from {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
+        report(BAD_DURATION, ("record", "ring"), message, hint="10min is usual; delete `ring` to keep nothing")
+        ring = None
     return RecordingSettings(ring=ring or 0.0, camera=said.get("camera", True), **numbers)
 
 

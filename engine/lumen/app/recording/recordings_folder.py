@@ -71,14 +71,14 @@ class RecordingsFolder:
                 _remove(folder)
 
     def prune(self, now: float, keep: float, size: float) -> None:
-        """Delete what is older than `keep` days, and the oldest of what is more than `size` MB."""
+        """Delete what is older than `keep` days, and the oldest of what is more than `size` MB, but for the newest."""
         left = 0
         begun = {each.path.absolute() for each in self.begun() if each.written}
-        for file in reversed(self.files()):
+        for number, file in enumerate(reversed(self.files())):
             with suppress(OSError):
                 said = file.stat()
                 left += said.st_size
-                old = now - said.st_mtime > keep * DAY or left > size * MEGABYTE
+                old = now - said.st_mtime > keep * DAY or (number and left > size * MEGABYTE)
                 if old and file.absolute() not in begun:
                     file.unlink()
 

@@ -1,0 +1,77 @@
+"""Routes that are called as in 2015, rewritten so that their keys hold the robot; the old key becomes their alias.
+
+No vocabulary asks for that: for one robot the old keys are right. Who has two on one broker wants it.
+"""
+
+from collections.abc import Mapping
+
+from lumen.errors import UsageError
+from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
+from lumen.loading.document import Document
+from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.yaml_reader import parse
+from lumen.rules.fixes import Edit, edited
+from lumen.rules.upgrading import Rewriting
+
+NEW_KEYS: Mapping[str, str] = {alias: DEFAULT_KEYS[name] for name, alias in DEFAULT_ALIASES.items()}
+"""The key of today by that of 2015."""
+
+
+def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Rewriting]]:
+    """The files with `{robot}` in the keys of their routes, and what is rewritten, where it stands.
+
+    Raises UsageError where lumen.yaml can't be read, or is laid out so that it has to be done by hand.
+    """
+    document, old = _main(files), old_keys(files)
+    done = {name: _rewriting(document, name, key) for name, key in old.items()}
+    edits = [Edit(each.place, each.text) for each in dict.fromkeys(done.values())]
+    after = {**files, MAIN_FILE: edited(files[MAIN_FILE], edits)}
+    _check(after[MAIN_FILE], document, old)
+    return after, list(done.values())
+
+
+def old_keys(files: Mapping[str, bytes]) -> dict[str, str]:
+    """The keys of 2015 that have no robot and are no alias, by the names of their routes.
+
+    Raises UsageError where lumen.yaml can't be read.
+    """
+    document = _main(files)
+    routes = document.data.get("routes") if isinstance(document.data, Mapping) else None
+    rows = routes.items() if isinstance(routes, Mapping) else ()
+    return {
+        name: row["key"]
+        for name, row in rows
+        if isinstance(row, Mapping) and "alias" not in row and row.get("key") in NEW_KEYS
+    }
+
+
+def _main(files: Mapping[str, bytes]) -> Document:
+    document = parse(MAIN_FILE, files[MAIN_FILE])[0] if MAIN_FILE in files else None
+    if document is None:
+        raise UsageError(f"{MAIN_FILE} can't be read, so nothing is rewritten: `lumen lint` says what is wrong")
+    return document
+
+
+def _rewriting(document: Document, name: str, key: str) -> Rewriting:
+    route, value = document.spans[("routes", name)].value, document.spans[("routes", name, "key")].value
+    lines = document.text.split("\n")
+    within_braces = lines[route.line - 1][route.column - 1 :].startswith("{")
+    column = document.place(("routes", name, "key"), key=True).column
+    line_break = "\r\n" if lines[value.line - 1].endswith("\r") else "\n"
+    between = ", " if within_braces else line_break + " " * (column - 1)
+    why = f"`{name}` holds the robot, and `{key}` is its alias"
+    return Rewriting(value, why, f'"{NEW_KEYS[key]}"{between}alias: {key}')
+
+
+def _check(content: bytes, before: Document, old: Mapping[str, str]) -> None:
+    """Raises UsageError where the text says something else now than it should, as one with anchors may."""
+    now = parse(MAIN_FILE, content)[0]
+    wanted = dict(before.data)
+    if old:
+        wanted["routes"] = {
+            name: {**row, "key": NEW_KEYS[old[name]], "alias": old[name]} if name in old else row
+            for name, row in wanted["routes"].items()
+        }
+    if now is None or now.data != wanted:
+        name, key = next(iter(old.items()))
+        raise UsageError(f'{MAIN_FILE}: write `key: "{NEW_KEYS[key]}", alias: {key}` by hand, as for `{name}`')
