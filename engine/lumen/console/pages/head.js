@@ -17,7 +17,7 @@ function Resume({ robot }) {
   if (!robot?.stopped) return null;
   const go = () => { ask(false); command(robot.robot, "resume"); };
   return html`<div class="stopped"><p role="status"><strong>${t("stopped")}</strong> ${t("stopped.by", { by: robot.stopped_by ?? "?" })}</p>
-    ${may("show") && html`<button type="button" class="resume" onClick=${() => ask(true)}>${t("resume")}</button>`}
+    ${may("operator") && html`<button type="button" class="resume" onClick=${() => ask(true)}>${t("resume")}</button>`}
     ${asking && html`<${Dialog} title=${t("resume.ask", { name: robot.robot })} onClose=${() => ask(false)}
       actions=${html`<button type="button" class="strong" onClick=${go}>${t("resume")}</button>`}>
       <p>${t("resume.by", { by: robot.stopped_by ?? "?" })}</p><p>${t("resume.room")}</p></${Dialog}>`}</div>`;

@@ -7,7 +7,7 @@ const SILENCE = 3000, AGAIN = 500, ANSWER = 2500, BEFORE = 60, MOST = 300; // [m
 export const live = {
   state: "connecting", since: Date.now(), role: null, robots: new Map(), entries: [], commands: [], skew: 0,
 };
-const positions = new Map(), heard = new Set();
+const seen = new Map(), heard = new Set();
 let stream = null, timer = 0;
 
 /** Have `handler(kind, data)` told of each `entry`, `now` and `command`; what it returns ends that. */
@@ -65,7 +65,7 @@ function again(mine, after) {
 
 /** Where to go on: what was seen last of each robot, else a few entries before now. */
 function after(robots) {
-  const at = ({ robot, position }) => positions.get(robot) ?? Math.max(0, (position ?? 0) - BEFORE);
+  const at = ({ robot, position }) => seen.get(robot)?.[0] ?? Math.max(0, (position ?? 0) - BEFORE);
   if (lumen.robot) return String(at(robots.find((one) => one.robot === lumen.robot) ?? { robot: lumen.robot }));
   return robots.length === 1 ? String(at(robots[0])) : robots.map((one) => `${one.robot}:${at(one)}`).join(",");
 }
@@ -101,8 +101,9 @@ function take(block) {
   if (!data) return;
   const body = JSON.parse(data);
   if (kind === "entry") {
-    if (body.position <= (positions.get(body.robot) ?? -1)) return;
-    positions.set(body.robot, body.position);
+    const [last, when] = seen.get(body.robot) ?? [-1, ""]; // a journal that begins anew counts anew, later
+    if (body.position <= last && body.at_time <= when) return;
+    seen.set(body.robot, [body.position, body.at_time]);
     live.entries.push(body);
     if (live.entries.length > MOST) live.entries.splice(0, live.entries.length - MOST);
   } else if (kind === "now") took(body);

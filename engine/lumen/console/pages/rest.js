@@ -49,8 +49,8 @@
         headers: { "Content-Type": "application/json" }, body: JSON.stringify({ id: newId(), ...fields }),
       });
       clearTimeout(late);
-      if (answer.ok) tell("sent", { seconds: passed() });
-      sent = answer.ok;
+      sent = answer.ok && answer.headers.get("Lumen-State") !== "unsent";
+      if (sent) tell("sent", { seconds: passed() });
       const said = await answer.json().catch((error) => { if (sent) throw error; return {}; });
       tell(sent ? said.state : "unsent", { reason: "", ...said, seconds: passed(), status: answer.status });
     } catch {

@@ -85,13 +85,22 @@ export function Part({ title, kind = "", aside = null, children }) {
     <div class="part-head"><h2 id=${heading}>${title}</h2>${aside}</div>${children}</section>`;
 }
 
-/** A dialog that is open as long as it is drawn; Escape and the button close it. */
-export function Dialog({ title, onClose, children, actions }) {
+/** A dialog that is open as long as it is drawn; Escape and the button close it. Not modal: Rest stays in reach above it. */
+export function Dialog({ title, onClose, children, actions = null }) {
   const box = useRef(null), heading = useId();
-  useEffect(() => { const before = document.activeElement; box.current.showModal(); return () => before?.focus?.(); }, []);
-  return html`<dialog ref=${box} aria-labelledby=${heading} onClose=${onClose} onCancel=${onClose}>
-    <h2 id=${heading}>${title}</h2>${children}
-    <div class="actions">${actions}<button type="button" onClick=${onClose}>${t("cancel")}</button></div></dialog>`;
+  useEffect(() => {
+    const before = document.activeElement;
+    (box.current.querySelector("[autofocus]") ?? box.current).focus();
+    return () => before?.focus?.();
+  }, []);
+  useEffect(() => {
+    const typed = (event) => { if (event.key === "Escape" && !event.repeat) onClose(); };
+    addEventListener("keydown", typed);
+    return () => removeEventListener("keydown", typed);
+  });
+  return html`<div class="scrim" onClick=${onClose}></div>
+    <dialog open ref=${box} tabindex="-1" aria-labelledby=${heading}><h2 id=${heading}>${title}</h2>${children}
+      <div class="actions">${actions}<button type="button" onClick=${onClose}>${t(actions ? "cancel" : "close")}</button></div></dialog>`;
 }
 
 /** `behaviors/tour.yaml:205`, short enough to stand beside something. */

@@ -46,6 +46,6 @@ function Processes({ robot }) {
 export function Body({ robot }) {
   const reload = robot.last_reload;
   return html`<${Part} title=${t("body")} kind="body"><${Autonomy} robot=${robot} /><${Senses} robot=${robot} /><${Processes} robot=${robot} />
-    ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>
+    ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
       <span class="quiet">${clock(reload.at)}</span> ${reload.text} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}</${Part}>`;
 }

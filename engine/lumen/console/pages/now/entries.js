@@ -25,8 +25,8 @@ export function question(entry) {
   return entry.what ?? entry.commands?.[0]?.id ?? entry.entered?.at(-1) ?? "";
 }
 
-export function Entry({ entry, onOpen }) {
-  return html`<li class="entry" data-kind=${entry.kind}><button type="button" onClick=${() => onOpen(entry)}>
+export function Entry({ entry, onOpen, current = false }) {
+  return html`<li class="entry" data-kind=${entry.kind}><button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
     <time datetime=${entry.at_time}>${clock(entry.at_time)}</time><span class="entry-kind">${t(`kind.${entry.kind}`)}</span><span class="entry-text">${entry.text}</span></button></li>`;
 }
 

@@ -1,0 +1,40 @@
+// Fork from here: what would have been, with another event or with the saved files; beside what was.
+import { robotOf } from "../live.js";
+import { Part, clock, html, t, useState } from "../ui.js";
+
+async function ask(body) {
+  const answer = await fetch("/api/fork", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal: AbortSignal.timeout(60000) });
+  const said = await answer.json().catch(() => ({}));
+  if (!answer.ok || said.reason) throw new Error(said.reason ?? `${answer.status}`);
+  return said;
+}
+
+function Column({ title, entries, other }) {
+  const there = new Set(other.map((entry) => entry.text));
+  return html`<div><h3>${title}</h3><ol>${entries.filter((entry) => entry.text).map((entry) => html`<li class=${there.has(entry.text) ? "" : "differs"}>
+    <time>${clock(entry.at_time)}</time> ${there.has(entry.text) ? "" : html`<span class="badge" data-state="warn">≠</span> `}${entry.text}</li>`)}</ol></div>`;
+}
+
+export function Fork({ name, entry }) {
+  const [event, setEvent] = useState(""), [data, setData] = useState(""), [saved, setSaved] = useState(false);
+  const [found, show] = useState(null), [wrong, tell] = useState(""), [busy, wait] = useState(false);
+  const go = async (submitted) => {
+    submitted.preventDefault();
+    let body = null;
+    try { body = event ? { name: event, data: JSON.parse(data || "{}") } : null; } catch { return tell(t("cue.data.wrong")); }
+    tell(""), wait(true), show(null);
+    try { show(await ask({ robot: name, position: entry.position, event: body, bundle: saved ? "saved" : null })); } catch (error) { tell(error.message); }
+    wait(false);
+  };
+  const same = found && found.was.length === found.would.length && found.was.every((one, n) => one.text === found.would[n].text);
+  return html`<${Part} title=${t("fork")} kind="fork"><p class="quiet">${entry ? t("fork.more") : t("fork.choose")}</p>
+    ${entry && html`<form class="cue" onSubmit=${go}><p class="grow"><b>${clock(entry.at_time)}</b> ${entry.text}</p>
+      <label class="grow"><span>${t("fork.event")}</span><input list="fork-events" value=${event} onInput=${(e) => setEvent(e.target.value)} autocomplete="off" /></label>
+      <datalist id="fork-events">${(robotOf(name)?.events ?? []).map((one) => html`<option value=${one} />`)}</datalist>
+      <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data} placeholder='{"result": "dance"}' onInput=${(e) => setData(e.target.value)} autocomplete="off" spellcheck=${false} /></label>
+      <label class="check"><input type="checkbox" checked=${saved} onChange=${(e) => setSaved(e.target.checked)} /> ${t("fork.files")}</label>
+      <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`}
+    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""}</div><p class="bad" role="alert">${wrong}</p>
+    ${found && html`<div class="beside" tabindex="0" role="group" aria-label=${t("fork")}><${Column} title=${t("fork.was")} entries=${found.was} other=${found.would} />
+      <${Column} title=${t("fork.would")} entries=${found.would} other=${found.was} /></div>`}</${Part}>`;
+}

@@ -1,0 +1,34 @@
+// The day from left to right: hours, visits, marks, and the moment that is looked at.
+import { clock, html, span, t } from "../ui.js";
+
+const HOUR = 3600e3, STEP = 1000, WIDE = 1000, HIGH = 84; // [ms], [ms], of the picture
+
+/** From the full hour before the first visit to the one after the last [ms since 1970]. */
+export function bounds(day) {
+  const times = day.visits.flatMap((one) => [one.began, one.ended]).concat(day.marks?.map((one) => one.at) ?? []).filter(Boolean).map(Date.parse);
+  if (!times.length) return [Date.now() - HOUR, Date.now()];
+  return [Math.floor(Math.min(...times) / HOUR) * HOUR, Math.ceil((Math.max(...times) + 1) / HOUR) * HOUR];
+}
+
+export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) {
+  const x = (at) => ((at - begin) / (end - begin)) * WIDE, hours = [];
+  const each = Math.max(1, Math.ceil((end - begin) / HOUR / 12)) * HOUR;
+  for (let at = begin; at <= end; at += each) hours.push(at);
+  const iso = (at) => new Date(at).toISOString();
+  return html`<section class="part line" aria-label=${t("day.scrub")}>
+    <svg viewBox="0 0 ${WIDE} ${HIGH}" preserveAspectRatio="none" aria-hidden="true" onClick=${(e) => {
+      const box = e.currentTarget.getBoundingClientRect();
+      scrub(begin + ((e.clientX - box.left) / box.width) * (end - begin));
+    }}>
+      <rect class="road" x="0" y="22" width=${WIDE} height="40" rx="6" />
+      ${hours.map((at) => html`<line class="hour" x1=${x(at)} x2=${x(at)} y1="14" y2="70" />`)}
+      ${day.visits.map((one) => html`<rect class="bar ${one === visit ? "now" : ""}" x=${x(Date.parse(one.began))} y="26" rx="3" height="32"
+        width=${Math.max(3, x(Date.parse(one.ended ?? iso(end))) - x(Date.parse(one.began)))} onClick=${(e) => { e.stopPropagation(); look(one); }} />`)}
+      ${day.marks?.map((one) => html`<path class="flag" d="M${x(Date.parse(one.at))} 12 v52 m0 -52 l14 7 l-14 7 z" />`)}
+      <line class="moment" x1=${x(moment)} x2=${x(moment)} y1="6" y2="78" /></svg>
+    <ol class="hours" aria-hidden="true">${hours.map((at) => html`<li>${clock(iso(at), false)}</li>`)}</ol>
+    <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP} value=${moment}
+      aria-valuetext="${clock(iso(moment))}${visit ? `, ${t("day.visit", { n: visit.n })}, ${span(visit.seconds ?? 0)}` : ""}" onInput=${(e) => scrub(Number(e.target.value))} /></label>
+    ${day.marks?.length > 0 && html`<ul class="marks">${day.marks.map((one) => html`<li><button type="button" class="plain" onClick=${() => scrub(Date.parse(one.at))}>⚑ ${clock(one.at)} ${one.text ?? ""}</button></li>`)}</ul>`}
+  </section>`;
+}

@@ -1,0 +1,23 @@
+// The day's numbers: each chart is a table whose rows have a bar, so that everybody reads the same.
+import { Part, fixed, html, span, t } from "../ui.js";
+
+const MOST = 8;
+
+function Chart({ title, rows, all = false }) {
+  const shown = all ? rows : rows.slice(0, MOST), most = Math.max(1, ...rows.map(([, count]) => count));
+  return html`<div class="chart"><table><caption>${title}</caption><thead class="hidden"><tr><th scope="col">${t("day.what")}</th><th scope="col">${t("day.times")}</th></tr></thead>
+    <tbody>${shown.map(([name, count]) => html`<tr><th scope="row">${name}</th><td><svg aria-hidden="true" viewBox="0 0 100 10" preserveAspectRatio="none"><rect width=${(count / most) * 100} height="10" rx="1" /></svg><span>${fixed(count)}</span></td></tr>`)}</tbody></table>
+    ${rows.length === 0 && html`<p class="quiet">${t("day.none.numbers")}</p>`}</div>`;
+}
+
+export function Numbers({ name, day }) {
+  const { numbers } = day;
+  const length = (seconds) => (seconds == null ? t("unknown") : span(seconds));
+  const facts = [["day.count", fixed(numbers.visits)], ["day.mean", length(numbers.mean_seconds)], ["day.longest", length(numbers.longest_seconds)], ["day.falls", fixed(numbers.falls)]];
+  const query = new URLSearchParams({ robot: name, date: day.date });
+  return html`<${Part} title=${t("day.numbers")} kind="numbers" aside=${html`<a class="button" href="/api/day.csv?${query}" download>${t("day.csv")}</a>`}>
+    <dl class="totals">${facts.map(([label, value]) => html`<div><dd>${value}</dd><dt>${t(label)}</dt></div>`)}</dl>
+    <div class="charts"><${Chart} title=${t("day.hours")} all rows=${(numbers.hours ?? []).map(([hour, count]) => [`${hour}:00`, count])} />
+      <${Chart} title=${t("day.asked")} rows=${numbers.asked ?? []} /><${Chart} title=${t("day.missed")} rows=${numbers.missed ?? []} />
+      <${Chart} title=${t("day.answers")} rows=${numbers.answers ?? []} /><${Chart} title=${t("day.languages")} rows=${numbers.languages ?? []} /></div></${Part}>`;
+}

@@ -1,0 +1,80 @@
+// The day: a time line to go along, visit by visit, with what happened, its why, its numbers, and what would have been.
+import { command } from "../commands.js";
+import { get } from "../live.js";
+import { Entry, Why, question } from "../now/entries.js";
+import { may } from "../session.js";
+import { Part, clock, html, span, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Fork } from "./fork.js";
+import { Line, bounds } from "./line.js";
+import { Numbers } from "./numbers.js";
+
+const AROUND = 40; // entries that are shown around a moment
+
+function Visits({ day, visit, choose }) {
+  return html`<${Part} title=${t("day.visits")} kind="visits">
+    ${day.visits.length ? html`<ol class="visit-list bounded" reversed tabindex="0" aria-label=${t("day.visits")}>${[...day.visits].reverse().map((one) => html`<li key=${one.from}>
+      <button type="button" aria-current=${one === visit ? "true" : null} onClick=${() => choose(one)}>
+        <b>${t("day.visit", { n: one.n })}</b> <time datetime=${one.began}>${clock(one.began, false)}</time>
+        <span>${span(one.seconds ?? 0)}</span><span class="grow">${one.visitor ?? ""}</span><span class="quiet">${one.language ?? ""}</span></button></li>`)}</ol>`
+      : html`<p class="quiet">${t("day.none")}</p>`}</${Part}>`;
+}
+
+/** Those of a visit's entries that are nearest to a moment, in their order. */
+function nearest(entries, moment) {
+  const shown = entries.filter((entry) => entry.text);
+  const at = shown.findIndex((entry) => Date.parse(entry.at_time) > moment);
+  const middle = at < 0 ? shown.length : at;
+  return shown.slice(Math.max(0, middle - AROUND / 2), Math.max(0, middle - AROUND / 2) + AROUND);
+}
+
+function Around({ name, visit, moment, chosen, choose }) {
+  const [entries, set] = useState(null), [failed, fail] = useState(""), [why, ask] = useState(null);
+  useEffect(() => {
+    set(null), fail("");
+    let gone = false;
+    if (visit) get("/api/entries", { robot: name, from: visit.from, to: visit.to }).then((found) => gone || set(found.entries), (error) => gone || fail(error.message));
+    return () => { gone = true; };
+  }, [visit]);
+  const shown = entries ? nearest(entries, moment) : [];
+  const now = shown.filter((entry) => Date.parse(entry.at_time) <= moment).at(-1);
+  return html`<${Part} title=${t("day.entries")} kind="entries" aside=${html`<b>${t("day.at", { time: clock(new Date(moment).toISOString()) })}</b>`}>
+    ${failed && html`<p class="bad" role="alert">${failed}</p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
+    <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
+      current=${entry === (chosen ?? now)} onOpen=${choose} />`)}</ol>
+    ${chosen && html`<div class="chosen"><p><time datetime=${chosen.at_time}>${clock(chosen.at_time)}</time> ${chosen.text}</p>
+      <button type="button" onClick=${() => ask(chosen)}>${t("why")}</button></div>`}
+    ${why && html`<${Why} robot=${name} what=${question(why)} at=${why.at_time} text=${why.text} onClose=${() => ask(null)} />`}</${Part}>`;
+}
+
+export default function DayPage({ name }) {
+  useRedraw();
+  const [date, pick] = useState(""), [day, set] = useState(null), [failed, fail] = useState("");
+  const [visit, choose] = useState(null), [moment, move] = useState(Date.now()), [chosen, mark] = useState(null);
+  const look = (one) => { choose(one); move(Date.parse(one.began)); mark(null); };
+  useEffect(() => {
+    let gone = false;
+    fail("");
+    get("/api/day", { robot: name, date }).then((found) => {
+      if (gone) return;
+      set(found), mark(null);
+      const last = found.visits.at(-1);
+      if (last) look(last); else choose(null);
+    }, (error) => gone || fail(error.message));
+    return () => { gone = true; };
+  }, [date]);
+  const scrub = (at) => {
+    move(at), mark(null);
+    const inside = day.visits.filter((one) => Date.parse(one.began) <= at).at(-1) ?? day.visits[0];
+    if (inside && inside !== visit) choose(inside);
+  };
+  if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert">${failed}</p>`;
+  if (!day) return html`<p class="notice">${t("loading")}</p>`;
+  return html`<div class="page-head"><h1>${t("page.day")}</h1>
+      <label><span>${t("day.date")}</span><input type="date" value=${date || day.date} min=${day.dates?.at(0)} max=${day.dates?.at(-1)} onChange=${(e) => pick(e.target.value)} /></label>
+      ${may("show") && html`<button type="button" onClick=${() => command(name, "mark")}>${t("day.mark")}</button>`}</div>
+    <${Line} day=${day} bounds=${bounds(day)} visit=${visit} moment=${moment} scrub=${scrub} look=${look} />
+    <div class="day"><${Visits} day=${day} visit=${visit} choose=${look} />
+      <${Around} name=${name} visit=${visit} moment=${moment} chosen=${chosen} choose=${(entry) => { mark(entry); move(Date.parse(entry.at_time)); }} />
+      ${may("author") && html`<${Fork} name=${name} entry=${chosen} />`}</div>
+    <${Numbers} name=${name} day=${day} />`;
+}

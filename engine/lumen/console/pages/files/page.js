@@ -1,0 +1,59 @@
+// Files: what was saved, what is wrong in it, what it changes, and what it would have changed in the last visits.
+import { command } from "../commands.js";
+import { get, listen, robotOf } from "../live.js";
+import { may } from "../session.js";
+import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
+
+const LEVELS = { error: "bad", warning: "warn", info: "kind" };
+
+function Findings({ findings }) {
+  return html`<${Part} title=${t("files.findings")} kind="findings">${findings.length === 0 ? html`<p class="quiet">${t("files.findings.none")}</p>`
+    : html`<ul class="plain-list">${findings.map((one) => html`<li class="finding">
+      <p><span class="badge" data-state=${LEVELS[one.severity] ?? "kind"}>${one.severity}</span> <span class="place">${place(one.file, one.line)}${one.column ? `:${one.column}` : ""}</span></p>
+      <p><b>${one.message}</b></p>${one.hint && html`<p>${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
+}
+
+function Changes({ report }) {
+  const changes = report.changes ?? [];
+  return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: report.risk })}</span>`}>
+    ${changes.length ? html`<ul class="diff">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t("files.nothing")}</p>`}
+    ${report.restart?.length > 0 && html`<ul class="diff">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
+}
+
+function Replay({ replay }) {
+  if (!replay) return null;
+  return html`<${Part} title=${t("files.replay")} kind="replay"><p>${t("files.visits", { visits: fixed(replay.visits), steps: fixed(replay.steps), same: fixed(replay.same) })}</p>
+    <ul class="plain-list">${(replay.differ ?? []).map((one) => html`<li class="finding"><p><b>${t("day.visit", { n: one.visit })}</b> <span class="quiet">${clock(one.at)}</span></p>
+      <dl class="differ"><dt>${t("files.was")}</dt><dd>${one.was}</dd><dt>${t("files.here")}</dt><dd>${one.is}</dd></dl></li>`)}</ul></${Part}>`;
+}
+
+function Actions({ name, files }) {
+  const [asking, ask] = useState(null);
+  const waits = Boolean(files.staged?.length || files.waiting);
+  const go = () => { command(name, asking); ask(null); };
+  return html`<div class="actions"><button type="button" onClick=${() => command(name, "dry-run")}>${t("files.try")}</button>
+    <button type="button" onClick=${() => command(name, "reload")}>${t("files.read")}</button>
+    <button type="button" class="strong" aria-disabled=${waits ? null : "true"} onClick=${() => waits && ask("apply")}>${t("files.apply")}</button>
+    <button type="button" onClick=${() => ask("rollback")}>${t("files.back")}</button></div>
+    ${asking && html`<${Dialog} title=${t(asking === "apply" ? "files.apply.ask" : "files.back.ask")} onClose=${() => ask(null)}
+      actions=${html`<button type="button" class="strong" onClick=${go}>${t(asking === "apply" ? "files.apply" : "files.back")}</button>`}>
+      <p>${files.waiting || files.reason || ""}</p></${Dialog}>`}`;
+}
+
+export default function FilesPage({ name }) {
+  useRedraw();
+  const [files, set] = useState(null), [failed, fail] = useState("");
+  const known = JSON.stringify([robotOf(name)?.files, robotOf(name)?.last_reload]);
+  const look = () => get("/api/files", { robot: name }, 60000).then((found) => { set(found); fail(""); }, (error) => fail(error.message));
+  useEffect(() => { look(); }, [known]);
+  useEffect(() => listen((kind) => kind === "command" && look()), []);
+  if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;
+  if (!files) return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert">${failed}</p>`;
+  const report = files.last ?? files, verdict = report.verdict ?? files.verdict;
+  return html`<h1>${t("page.files")}</h1>
+    <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
+        ${" "}${report.reason ?? files.reason ?? ""} ${report.hint ?? ""}</p>
+      ${report.lines?.length > 0 && html`<ul class="lines">${report.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
+      <p class="quiet">${files.reason ?? ""}</p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
+    <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report.changes ? report : files} /><${Replay} replay=${files.replay} /></div>`;
+}

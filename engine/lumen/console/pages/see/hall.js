@@ -1,0 +1,24 @@
+// The robot in its hall, drawn from poses; where there is no WebGL, or nothing to draw, the camera stands in.
+import { Part, html, t, useEffect, useRef, useState } from "../ui.js";
+import { follow, shape } from "./poses.js";
+
+export function Hall({ name, instead }) {
+  const canvas = useRef(null), [failed, fail] = useState(""), [moved, move] = useState(0);
+  useEffect(() => {
+    if (!canvas.current) return undefined;
+    let end = () => {}, over = false;
+    (async () => {
+      if (!document.createElement("canvas").getContext("webgl2")) return fail("see.nogl");
+      const [{ Scene }, form] = await Promise.all([import("./scene.js"), shape(name)]);
+      if (over) return undefined;
+      const scene = new Scene(canvas.current, form);
+      const stop = follow(name, (links) => { scene.pose(links); move((n) => n + 1); });
+      end = () => { stop(); scene.close(); };
+      return undefined;
+    })().catch(() => fail("see.noshape"));
+    return () => { over = true; end(); };
+  }, [name, failed]);
+  if (failed) return instead(failed);
+  return html`<${Part} title=${t("see.hall")} kind="hall"><div class="picture"><canvas ref=${canvas} role="img" aria-label=${t("see.alt.hall", { name })} data-poses=${moved}></canvas></div>
+    ${moved === 0 && html`<p class="quiet" role="status">${t("see.waiting")}</p>`}</${Part}>`;
+}

@@ -1,0 +1,37 @@
+// See: what the robot's camera sees with what the eyes found in it, and the robot in its hall.
+import { robotOf } from "../live.js";
+import { Part, html, kept, keep, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Hall } from "./hall.js";
+
+const WIDTH = 320, HEIGHT = 240, BOX = 56; // [px]: what places in the image are given in, and about a face
+
+function Camera({ name }) {
+  const [state, set] = useState("waiting"), [tries, again] = useState(0), [hidden, hide] = useState(document.hidden);
+  useEffect(() => {
+    const look = () => hide(document.hidden);
+    document.addEventListener("visibilitychange", look);
+    return () => document.removeEventListener("visibilitychange", look);
+  }, []);
+  useEffect(() => {
+    if (state !== "gone") return undefined;
+    const timer = setTimeout(() => { set("waiting"); again((n) => n + 1); }, 2000);
+    return () => clearTimeout(timer);
+  }, [state]);
+  const faces = robotOf(name)?.seen?.faces ?? [];
+  return html`<${Part} title=${t("see.camera")} kind="camera"><div class="picture">
+      ${hidden ? null : html`<img key=${tries} src="/camera/${encodeURIComponent(name)}?${tries}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT}
+        onLoad=${() => set("seen")} onError=${() => set("gone")} />`}
+      <svg viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${faces.map((face) => html`<g><rect x=${face.x - BOX / 2} y=${face.y - BOX / 2} width=${BOX} height=${BOX} rx="4" />
+        <text x=${face.x - BOX / 2} y=${face.y - BOX / 2 - 5}>${face.name || t("see.face")}</text></g>`)}</svg></div>
+    ${state === "gone" && html`<p class="quiet" role="status">${t("see.none")}</p>`}
+    <h3>${t("see.found")}</h3><p>${faces.length ? faces.map((face) => `${face.name || t("see.face")} (${face.x}, ${face.y})`).join(" · ") : html`<span class="quiet">${t("see.found.none")}</span>`}</p></${Part}>`;
+}
+
+export default function SeePage({ name }) {
+  useRedraw();
+  const [view, set] = useState(kept("lumen.see") ?? "camera");
+  const choose = (one) => { keep("lumen.see", one); set(one); };
+  return html`<div class="page-head"><h1>${t("page.see")}</h1><fieldset class="choice"><legend class="hidden">${t("page.see")}</legend>${["camera", "hall"].map((one) => html`<label>
+      <input type="radio" name="view" value=${one} checked=${view === one} onChange=${() => choose(one)} /><span>${t(`see.${one}`)}</span></label>`)}</fieldset></div>
+    ${view === "camera" ? html`<${Camera} name=${name} />` : html`<${Hall} name=${name} instead=${(why) => html`<p class="notice">${t(why)}</p><${Camera} name=${name} />`} />`}`;
+}
