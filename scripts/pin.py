@@ -28,7 +28,9 @@ def main() -> int:
     pinned = CORE.read_text() + WHOLE.read_text()
     both = ("pyproject.toml", "--group", "build")
     core = _resolve(pinned, *both)
-    whole = _resolve(pinned, *both, "--extra", "simulation", "--extra", "plot", "--extra", "recording")
+    whole = _resolve(
+        pinned, *both, "--extra", "simulation", "--extra", "plot", "--extra", "recording", "--extra", "console"
+    )
     if more := [name for name in core if _version(core[name]) != _version(whole[name])]:
         print(
             f"the extras want other versions of {', '.join(more)}: give them bounds in pyproject.toml", file=sys.stderr

@@ -17,6 +17,7 @@ PICTURE = Path(__file__).with_suffix(".svg")
 PURPOSES: Mapping[str, str] = {
     "cli": "arguments in, a call, text out",
     "lsp": "an editor's questions in, answers out",
+    "console": "clicks in a browser in, pages out",
     "app": "an exhibition: its parts hosted, reloaded, recovered after a crash; physics runs",
     "statechart": "machines, in Python",
     "fuzzy": "controllers, in Python",
@@ -43,6 +44,7 @@ PURPOSES: Mapping[str, str] = {
 ZONES: Mapping[str, str] = {
     "cli": "people",
     "lsp": "people",
+    "console": "people",
     "app": "an exhibition",
     "statechart": "an exhibition",
     "runtime": "the world",

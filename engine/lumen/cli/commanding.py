@@ -5,6 +5,7 @@ import sys
 from typing import Any
 
 from lumen.app.asking import OPERATOR_ANSWERS, ask
+from lumen.app.resting import TAKEN
 from lumen.cli.formats import print_object
 from lumen.cli.reach import reach
 from lumen.ports import Bus
@@ -29,7 +30,7 @@ def answered(bus: Bus, key: str, body: Any, timeout: float) -> Any:
 
 def told(options: argparse.Namespace, answer: Any, done: str) -> int:
     """Print that it is `done`, or the answer that says why not; the exit code."""
-    well = answer == "command finished"
+    well = answer == TAKEN
     if options.format == "json":
         print_object({"ok": well, "answer": done if well else answer})
     elif well:

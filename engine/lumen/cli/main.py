@@ -40,6 +40,7 @@ VERBS = {
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",
     "record": "record the messages of a running exhibition, for Foxglove and Lichtblick",
+    "console": "show a running exhibition in a browser, and steer it from there",
     "doctor": "check an exhibition's bus, and say what is missing on it",
     "alerts": "send a test alert to everybody who is told of trouble",
     "lint": "say what is wrong in a project, and where",

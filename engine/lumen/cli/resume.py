@@ -4,6 +4,7 @@ import argparse
 from datetime import datetime
 from typing import Any
 
+from lumen.app.resting import resume_body
 from lumen.cli.agreeing import agrees
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
@@ -31,8 +32,7 @@ def run(options: argparse.Namespace) -> int:
         if not options.yes and not _sure(stopped):
             print("it stays as it is")
             return 1
-        resume = {"type": "motion", "method": "resume", "parameter": {"by": person()}}
-        answer = answered(reached.bus, reached.stop, resume, RESUME_TIMEOUT)
+        answer = answered(reached.bus, reached.stop, resume_body(person()), RESUME_TIMEOUT)
     finally:
         reached.bus.close()
     return told(options, answer, "the robot may move again")

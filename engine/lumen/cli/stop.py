@@ -2,15 +2,12 @@
 
 import argparse
 
-from lumen.app.reload.requests import COMMAND, command_key
+from lumen.app.resting import STOP_TIMEOUT, no_robot, rest_body, stop_behavior
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusError, BusUnreachableError
-
-STOP_TIMEOUT = 10.0
-"""How long the robot may take to rest, foot in the air and all [s]."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -21,15 +18,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 once it rests, 1 where it could not. It has a way of its own, and the robot tells the behaviour."""
     reached = reach(options)
-    rest = {"type": "motion", "method": "rest", "parameter": {"by": person()}}
     try:
-        answer = answered(reached.bus, reached.stop, rest, STOP_TIMEOUT)
+        answer = answered(reached.bus, reached.stop, rest_body(person()), STOP_TIMEOUT)
     except BusError:
-        for key in (command_key(reached.robot), COMMAND):  # the behaviour, where only the robot is gone
-            reached.bus.publish(key, {"command": "stop"})
-        raise BusUnreachableError(
-            f"no robot answers on `{reached.stop}`: it may still move. Press the button on its chest"
-        ) from None
+        stop_behavior(reached.bus, reached.robot)
+        raise BusUnreachableError(no_robot(reached.stop)) from None
     finally:
         reached.bus.close()
     return told(options, answer, "the robot rests; hold its head, or `lumen resume`, to let it go on")

@@ -1,0 +1,107 @@
+"""The console's way to a bus: reached anew whenever it was lost, in a thread that nobody waits for."""
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+from lumen.app.asking import OPERATOR_ANSWERS
+from lumen.app.reaching import Reached
+from lumen.errors import BusError
+from lumen.ports import Bus, MessageHandler, ReturningBus
+from lumen.upkeep.threads import WatchedThread
+
+LOOK_PERIOD = 0.2
+"""How often it is looked whether the bus is still there [s]."""
+RETRY_PERIOD = 0.5
+"""How long after a bus could not be reached it is tried again [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class BusLink:
+    """Holds a bus open, from `start` to `close`: `reached` is it, None while there is none, and `trouble` says why.
+
+    `patterns` are subscribed to on each bus; `heard` gets what comes, `answered` what comes as an answer to us,
+    `returned` the keys of messages that nobody takes; all of that on threads of the bus. `changed` is called when the
+    bus has come or gone.
+    """
+
+    def __init__(
+        self,
+        reach: Callable[[], Reached],
+        patterns: Callable[[Reached], Sequence[str]],
+        *,
+        heard: MessageHandler,
+        answered: MessageHandler,
+        returned: Callable[[str], None],
+        changed: Callable[[], None],
+    ) -> None:
+        self.reached: Reached | None = None
+        self.trouble = "the bus has not been reached yet"
+        self._reach, self._patterns = reach, patterns
+        self._heard, self._answered, self._returned, self._changed = heard, answered, returned, changed
+        self._ending = threading.Event()
+        self._thread = WatchedThread("lumen-console-bus", self._run)
+
+    @property
+    def up(self) -> bool:
+        """Whether the bus takes messages now."""
+        return self.reached is not None and not getattr(self.reached.bus, "away", False)
+
+    @property
+    def bus(self) -> Bus | None:
+        return self.reached.bus if self.reached else None
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def close(self) -> None:
+        self._ending.set()
+        if self._thread.started:
+            self._thread.join(5.0)
+
+    def _run(self) -> None:
+        while not self._ending.is_set():
+            try:
+                reached = self._reach()
+            except BusError as error:
+                self._say(str(error))
+                self._ending.wait(RETRY_PERIOD)
+                continue
+            try:
+                self._subscribe(reached)
+                self.reached, self.trouble = reached, ""
+                self._changed()
+                self._watch(reached.bus)
+            except BusError as error:
+                self._say(str(error))
+                self._ending.wait(RETRY_PERIOD)
+            finally:
+                self.reached = None
+                self._changed()
+                reached.bus.close()
+
+    def _subscribe(self, reached: Reached) -> None:
+        bus = reached.bus
+        bus.subscribe(OPERATOR_ANSWERS, self._answered)
+        for pattern in self._patterns(reached):
+            with suppress(BusError):  # what a broker does not let us read is not shown
+                bus.subscribe(pattern, self._heard)
+        if isinstance(bus, ReturningBus):
+            bus.returns(self._returned)
+
+    def _watch(self, bus: Bus) -> None:
+        """Return once it is gone for good; a broker that is away comes back by itself."""
+        gone, was = getattr(bus, "gone", None), self.up
+        while not self._ending.wait(LOOK_PERIOD) and not (gone and gone.is_set()):
+            if self.up is not was:
+                was = self.up
+                self._changed()
+        if not self._ending.is_set():
+            self._say("the exhibition has ended")
+
+    def _say(self, trouble: str) -> None:
+        if trouble != self.trouble:
+            self.trouble = trouble
+            _log.info("%s", trouble)

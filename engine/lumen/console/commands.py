@@ -1,0 +1,143 @@
+"""Commands from pages: sent once, however often they come, and followed until they are over."""
+
+import asyncio
+import time
+from collections import OrderedDict
+from typing import Any
+
+import orjson
+
+from lumen.app.resting import STOP_TIMEOUT, no_robot, stop_behavior
+from lumen.console.exchanges import Exchange
+from lumen.console.orders import REST, Fields, Order, order_of
+from lumen.console.people import Person
+from lumen.console.streams import Streams
+from lumen.console.watch import Watch
+from lumen.errors import BusError
+from lumen.runtime.presence import ROBOT_PART
+
+SENT_TIMEOUT = 0.8
+"""How long a bus may take to have a message [s]; then it counts as not sent."""
+REST_TTL = 5.0
+"""How long a wish to rest may be on its way [s], that of the route `stop`."""
+MAX_REMEMBERED = 1_000
+ALL = "*"
+"""Instead of a robot's name: all of them."""
+FINISHED, FAILED, UNSENT, SENT = "finished", "failed", "unsent", "sent"
+
+
+class PageCommand:
+    """One command: `sent` when it is known whether the bus has it, `over` when it is known what became of it."""
+
+    def __init__(self, id: str, robot: str, command: str, by: str) -> None:
+        self.id, self.robot, self.command, self.by = id, robot, command, by
+        self.state, self.reason, self.seconds = "", "", 0.0
+        self.sent, self.over = asyncio.Event(), asyncio.Event()
+        self.more: dict[str, Any] = {}
+        self._began = time.monotonic()
+
+    def become(self, state: str, reason: str = "") -> None:
+        self.state, self.reason, self.seconds = state, reason, round(time.monotonic() - self._began, 3)
+        self.sent.set()
+        if state != SENT:
+            self.over.set()
+
+    def to_json(self) -> dict[str, Any]:
+        """The answer to who sent it."""
+        return {"id": self.id, "state": self.state, "seconds": self.seconds, "reason": self.reason, **self.more}
+
+    def block(self) -> bytes:
+        """As a server-sent event for all pages."""
+        told = {"robot": self.robot, "command": self.command, "by": self.by, **self.to_json()}
+        return b"event: command\ndata: " + orjson.dumps(told) + b"\n\n"
+
+
+class Commands:
+    """Sends the commands of all pages over one watch; `streams` tell everybody."""
+
+    def __init__(self, watch: Watch, streams: Streams) -> None:
+        self._watch, self._streams = watch, streams
+        self._known: OrderedDict[str, PageCommand] = OrderedDict()
+        self._tasks = set[asyncio.Task[None]]()
+
+    def send(self, id: str, robot: str, command: str, fields: Fields, person: Person) -> PageCommand:
+        """Send a command, unless one of that id was; raises UsageError for one that can't be understood."""
+        if known := self._known.get(id):
+            return known
+        one = PageCommand(id, robot, command, person.by)
+        robots = sorted(self._watch.robots) if robot == ALL else [robot]
+        orders = [(name, order_of(command, fields, self._watch.keys.of(name), person.by)) for name in robots]
+        self._known[id] = one
+        while len(self._known) > MAX_REMEMBERED:
+            self._known.popitem(last=False)
+        self._begin(self._follow(one, orders))
+        return one
+
+    def _begin(self, work: Any) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _follow(self, one: PageCommand, orders: list[tuple[str, Order]]) -> None:
+        if not orders:
+            one.become(UNSENT, self._watch.link.trouble or "no robot is known")
+        elif len(orders) == 1:
+            await self._one(one, *orders[0])
+        else:
+            await self._all(one, orders)
+        self._streams.tell(one.block())
+
+    async def _all(self, one: PageCommand, orders: list[tuple[str, Order]]) -> None:
+        """The same for several robots: sent where all are, finished where all have; `robots` says how each stands."""
+        each = [PageCommand(one.id, name, one.command, one.by) for name, _ in orders]
+        for part, (name, order) in zip(each, orders, strict=True):
+            self._begin(self._one(part, name, order))
+        for part in each:
+            await part.sent.wait()
+        if not any(part.state == UNSENT for part in each):
+            one.become(SENT)
+        for part in each:
+            await part.over.wait()
+        one.more["robots"] = {part.robot: part.to_json() for part in each}
+        worst = next((p for state in (UNSENT, FAILED) for p in each if p.state == state), None)
+        one.become(worst.state if worst else FINISHED, f"{worst.robot}: {worst.reason}" if worst else "")
+
+    async def _one(self, one: PageCommand, robot: str, order: Order) -> None:
+        rests = one.command == REST
+        ttl = REST_TTL if rests else SENT_TIMEOUT
+        view = self._watch.robots.get(robot)
+        try:
+            with self._watch.exchanges.send(order.key, order.body, ttl=ttl, by=one.by, echo=True) as exchange:
+                if rests and view and view.lacks(ROBOT_PART):
+                    self._stop_behavior(robot)
+                if not await exchange.taken(SENT_TIMEOUT):
+                    one.become(UNSENT, self._unsent(exchange, order.key))
+                    if rests:
+                        self._stop_behavior(robot)
+                    return
+                one.become(SENT)
+                self._streams.tell(one.block())
+                timeout = STOP_TIMEOUT if rests else order.timeout
+                async with asyncio.timeout(timeout):
+                    while (reason := order.outcome(answer := await exchange.answer(timeout))) is None:
+                        pass
+                one.become(FAILED if reason else FINISHED, reason)
+                if isinstance(answer, dict):
+                    one.more["answer"] = answer
+        except (BusError, TimeoutError) as error:
+            if one.state != SENT:
+                one.become(UNSENT, str(error))
+            else:
+                one.become(FAILED, no_robot(order.key) if rests else f"nobody answered on `{order.key}`")
+            if rests:
+                self._stop_behavior(robot)
+
+    def _unsent(self, exchange: Exchange, key: str) -> str:
+        if exchange.nobody.is_set():
+            return f"nobody is there who takes it (`{key}`)"
+        return self._watch.link.trouble or "the bus does not take it: the broker is away, or the exhibition hangs"
+
+    def _stop_behavior(self, robot: str) -> None:
+        """The behaviour hears of it where the robot can't say so."""
+        if bus := self._watch.link.bus:
+            stop_behavior(bus, robot)

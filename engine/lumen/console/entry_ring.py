@@ -1,0 +1,75 @@
+"""The latest entries of a robot's journal, each encoded once for all who listen."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import orjson
+
+from lumen.console.entry_clock import EntryClock
+from lumen.console.entry_words import kind_of, text_of
+
+KEPT = 2_000
+"""Entries."""
+PAGE = 200
+"""How many somebody gets at a time."""
+
+
+class EncodedEntry(NamedTuple):
+    """An entry at its position, as the data of a server-sent event."""
+
+    position: int
+    data: bytes
+
+
+class EntryRing:
+    """Entries of one robot without a gap after `first`, the position before the oldest that is kept.
+
+    `last` is the newest's, `run` counts how often the journal has begun anew.
+    """
+
+    def __init__(self, robot: str) -> None:
+        self.robot, self.run = robot, 0
+        self.first = self.last = -1
+        self.known = False
+        self._kept: deque[EncodedEntry] = deque()
+        self._clock = EntryClock()
+
+    def begin(self, after: int) -> None:
+        """From now on the entries after that position are kept; those before are forgotten."""
+        self.run += self.known
+        self.known, self.first, self.last = True, after, after
+        self._kept.clear()
+
+    def add(self, entries: Sequence[Mapping[str, Any]]) -> int:
+        """Keep what is new of a page of the journal; how many that is."""
+        new = [entry for entry in entries if entry["position"] > self.last]
+        for entry in self.encoded(new, self._clock):
+            self._kept.append(entry)
+            self.last = entry.position
+        while len(self._kept) > KEPT:
+            self.first = self._kept.popleft().position
+        return len(new)
+
+    def after(self, position: int) -> Sequence[EncodedEntry] | None:
+        """Some of those after a position, the oldest first; None where not all of them are kept any more."""
+        if position < self.first:
+            return None
+        skip = 0
+        if self._kept and position >= self._kept[0].position:
+            low, high = 0, len(self._kept)
+            while low < high:
+                middle = (low + high) // 2
+                low, high = (middle + 1, high) if self._kept[middle].position <= position else (low, middle)
+            skip = low
+        return [self._kept[at] for at in range(skip, min(skip + PAGE, len(self._kept)))]
+
+    def encoded(self, entries: Sequence[Mapping[str, Any]], clock: EntryClock) -> list[EncodedEntry]:
+        """Entries that follow each other, each with its robot, its time (ISO 8601), a line for people and its kind."""
+        found = []
+        clock.look_ahead(entries)
+        for entry in entries:
+            more = {"robot": self.robot, "at_time": clock.of(entry), "text": text_of(entry), "kind": kind_of(entry)}
+            shown = {key: value for key, value in entry.items() if key != "snapshot"}
+            found.append(EncodedEntry(entry["position"], orjson.dumps({**shown, **more})))
+        return found

@@ -1,0 +1,146 @@
+"""What stands before every request: from this address, from our own pages, JSON, not too large."""
+
+import ipaddress
+import json
+from collections.abc import Awaitable, Callable, Iterable, Mapping
+from typing import Any
+from urllib.parse import urlsplit
+
+from starlette.responses import JSONResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+MAX_BODY = 65_536
+"""Of what is posted [bytes]."""
+POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self'; script-src 'self'; connect-src 'self'; "
+    "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+)
+HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
+    "Cache-Control": "no-cache",
+}
+_HEADERS = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
+LOOPBACK = ("localhost", "127.0.0.1", "::1")
+WRITING = ("POST", "PUT", "PATCH", "DELETE")
+
+
+class Gate:
+    """Refuses what a foreign page, a rebound name or a careless program may send; adds headers to every answer.
+
+    `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
+    """
+
+    def __init__(self, app: ASGIApp, hosts: Iterable[str]) -> None:
+        self._app, self._hosts = app, frozenset(map(str.lower, hosts))
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+        refusal = self._refusal(scope, headers)
+        if refusal is None and scope["method"] in WRITING:
+            body, refusal = await _read(receive, headers)
+            receive = _given(body, receive)
+        if refusal is None:
+            await self._app(scope, receive, _with_headers(send))
+        else:
+            status, reason = refusal
+            await refused(status, reason)(scope, receive, _with_headers(send))
+
+    def _refusal(self, scope: Scope, headers: Mapping[str, str]) -> tuple[int, str] | None:
+        host = headers.get("host", "")
+        if not self._known(host, scope):
+            return 421, "this console is not called that: open it under the address that `lumen console` printed"
+        origin = headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+            return 403, "a page of somebody else may not ask this console anything"
+        foreign = headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none")
+        if foreign and (scope["path"].startswith(("/api/", "/camera/")) or scope["method"] in WRITING):
+            return 403, "a page of somebody else may not ask this console anything"
+        kind = headers.get("content-type", "").partition(";")[0].strip().lower()
+        if scope["method"] == "POST" and kind != "application/json":
+            return 415, "what is posted has to be JSON: `Content-Type: application/json`"
+        return None
+
+    def _known(self, host: str, scope: Scope) -> bool:
+        name = (urlsplit(f"//{host}").hostname or "") if _readable(host) else ""
+        here = (scope.get("server") or ("",))[0]
+        return name in self._hosts or (bool(name) and _same_address(name, here))
+
+
+def refused(status: int, reason: str, **headers: str) -> JSONResponse:
+    """An answer that says in a sentence why not."""
+    return JSONResponse({"reason": reason}, status, headers)
+
+
+def _readable(host: str) -> bool:
+    try:
+        urlsplit(f"//{host}").port  # noqa: B018  it raises where it is none
+    except ValueError:
+        return False
+    return not any(sign in host for sign in "/@?#\\ ")
+
+
+def _same_address(name: str, here: str) -> bool:
+    """Whether a host is written as the very address at which the connection came in; loopback has several."""
+    try:
+        one, other = ipaddress.ip_address(name), ipaddress.ip_address(here)
+    except ValueError:
+        return False
+    return one == other
+
+
+async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tuple[int, str] | None]:
+    """The body, or why it is refused."""
+    too_large = 413, f"what is posted may have {MAX_BODY} bytes"
+    length = headers.get("content-length", "0")
+    if length.isdigit() and int(length) > MAX_BODY:
+        return b"", too_large
+    body = bytearray()
+    while True:
+        message = await receive()
+        if message["type"] != "http.request":
+            return b"", (400, "the request was not sent to its end")
+        body += message.get("body", b"")
+        if len(body) > MAX_BODY:
+            return b"", too_large
+        if not message.get("more_body"):
+            return bytes(body), None
+
+
+def _given(body: bytes, receive: Receive) -> Receive:
+    """Receives a body that was read already, then whatever comes."""
+    read: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
+
+    async def again() -> Message:
+        return read.pop() if read else await receive()
+
+    return again
+
+
+def _with_headers(send: Send) -> Callable[[Message], Awaitable[None]]:
+    async def told(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            given = {name.lower() for name, _ in message["headers"]}
+            message["headers"] = [*message["headers"], *(one for one in _HEADERS if one[0] not in given)]
+        await send(message)
+
+    return told
+
+
+def json_object(body: bytes) -> dict[str, Any]:
+    """The object that was posted. Raises ValueError that says what would be right."""
+    try:
+        data = json.loads(body or b"null")
+    except (ValueError, RecursionError):
+        raise ValueError("what is posted is no JSON") from None
+    if not isinstance(data, dict):
+        raise ValueError("a JSON object is expected")
+    return data

@@ -1,0 +1,121 @@
+"""What is known of one robot: what its exhibition says, its senses, its processes, its files."""
+
+import time
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+import orjson
+
+from lumen.console.entry_ring import EntryRing
+from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
+
+SILENT_AFTER = 2.5
+"""How long an exhibition may say nothing until it counts as away [s]."""
+MAX_PROCESSES = 30
+FOR_NOBODY = ("robot", "connected", "heard", "stopped", "saying", "language", "languages")
+"""What is shown to who has no role: enough for subtitles and Rest, no name and nothing that a visitor said."""
+
+
+class KnownRobot:
+    """One robot as the console knows it; `version` counts what a page would show differently.
+
+    `entries` are the latest of its journal.
+    """
+
+    def __init__(self, robot: str) -> None:
+        self.robot, self.entries = robot, EntryRing(robot)
+        self.version = 0
+        self.said: dict[str, Any] = {}
+        self.files: dict[str, Any] = {}
+        self.senses: dict[str, Any] = {}
+        self.connected, self._answered = False, 0.0
+        self._heard = ""
+        self._processes: dict[str, dict[str, Any]] = {}
+        self._sensed: dict[str, Any] = {}
+        self._blocks: dict[bool, tuple[int, bytes]] = {}
+
+    @property
+    def position(self) -> int | None:
+        """That of the last entry of its journal; None where its exhibition does not say, or has written none yet."""
+        found = self.said.get("position")
+        return found if type(found) is int and found >= 0 else None
+
+    def answered(self, said: Mapping[str, Any]) -> None:
+        """Its exhibition has said how it is."""
+        self._answered, self._heard = time.monotonic(), iso_now()
+        if not self.connected or said != self.said:
+            self.said, self.connected = dict(said), True
+            self.version += 1
+
+    def look(self, up: bool) -> None:
+        """Some time has passed: is it still there, has it felt anything? `up` is whether the bus is."""
+        silent = time.monotonic() - self._answered > SILENT_AFTER
+        if self.connected and (silent or not up):
+            self.connected = False
+            self.version += 1
+        gone = [s for s, said in self._processes.items() if said["state"] != LEAVES and self._away(said)]
+        for session in gone:
+            self._processes[session]["state"] = LEAVES
+            self.version += 1
+        if self.senses != self._sensed:
+            self.senses = dict(self._sensed)
+            self.version += 1
+
+    def feel(self, sense: str, body: Mapping[str, Any]) -> None:
+        """It has felt something; any thread may say so."""
+        match sense:
+            case "battery" | "sonar":
+                self._sensed[sense] = {key: value for key, value in body.items() if key != "time"}
+            case "joint" if isinstance(names := body.get("name"), list):
+                hot = body.get("temperature")
+                if isinstance(hot, list) and len(hot) == len(names):
+                    self._sensed["temperatures"] = dict(zip(names, hot, strict=True))
+
+    def present(self, body: Mapping[str, Any]) -> None:
+        """One of its processes says that it is there, or that it leaves."""
+        session, state = str(body.get("session"))[:40], str(body.get("state"))[:20]
+        parts = [str(part)[:40] for part in body.get("parts", ())][:20]
+        known = self._processes.get(session)
+        if known is None:
+            if len(self._processes) >= MAX_PROCESSES:
+                self._processes.pop(min(self._processes, key=lambda one: self._processes[one]["at"]))
+            known = self._processes[session] = {"parts": parts, "since": iso_now(), "state": ""}
+            known |= {"host": str(body.get("host", ""))[:60], "process": body.get("process")}
+        if known["state"] != state or known["parts"] != parts:
+            known |= {"state": state, "parts": parts}
+            self.version += 1
+        known |= {"heard": iso_now(), "at": time.monotonic()}
+
+    def lacks(self, part: str) -> bool:
+        """Whether a process that was this part has gone, and no other has come."""
+        parts = [said for said in self._processes.values() if part in said["parts"]]
+        return bool(parts) and not any(said["state"] == HERE and not self._away(said) for said in parts)
+
+    def told(self, files: Mapping[str, Any]) -> None:
+        """What its exhibition says of saved files."""
+        if files != self.files:
+            self.files = dict(files)
+            self.version += 1
+
+    def to_json(self, *, full: bool) -> dict[str, Any]:
+        """The object for a page; `full` for who has a role."""
+        processes = [{k: v for k, v in said.items() if k != "at"} for said in self._processes.values()]
+        said = {"robot": self.robot, **self.said, "connected": self.connected, "heard": self._heard or None}
+        said |= {"senses": self.senses, "processes": processes, "files": self.files}
+        return said if full else {key: said[key] for key in FOR_NOBODY if key in said}
+
+    def block(self, *, full: bool) -> bytes:
+        """The same as a server-sent event, encoded once."""
+        version, block = self._blocks.get(full, (-1, b""))
+        if version != self.version:
+            block = b"event: now\ndata: " + orjson.dumps(self.to_json(full=full)) + b"\n\n"
+            self._blocks[full] = self.version, block
+        return block
+
+    def _away(self, said: Mapping[str, Any]) -> bool:
+        return time.monotonic() - float(said["at"]) > LOST_AFTER
+
+
+def iso_now() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -1,0 +1,169 @@
+"""What may be commanded, by whom, and which message of the bus that is."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from lumen.app.resting import rest_body, resume_body
+from lumen.console.people import Role
+from lumen.console.robot_keys import RobotKeys
+from lumen.errors import UsageError
+
+MAX_TEXT = 1_000
+MAX_NAME = 200
+REST = "rest"
+LONG, SHORT = 300.0, 15.0
+"""How long the answer to a command may take [s]: to one that is over when the robot is done, to others."""
+
+
+class Order(NamedTuple):
+    """A command as a message: its key and body, how long its last answer may take [s], and what that says."""
+
+    key: str
+    body: dict[str, Any]
+    timeout: float
+    outcome: Callable[[Any], str | None]
+
+
+Fields = Mapping[str, Any]
+
+
+def robot_outcome(answer: Any) -> str | None:
+    """Why a robot did not do it, empty where it did; None where it is still at it."""
+    match answer:
+        case "command finished":
+            return ""
+        case str():
+            return answer.removeprefix("command failed: ") or "it failed"
+        case {"state": "finished"}:
+            return ""
+        case {"state": "failed" | "cancelled" as state}:
+            return str(answer.get("reason") or state)
+        case _:
+            return None
+
+
+def verdict_outcome(answer: Any) -> str | None:
+    """The same of an exhibition that answers questions."""
+    match answer:
+        case {"verdict": "refused"}:
+            return str(answer.get("reason") or "it was refused")
+        case {"verdict": "done", "taken": False}:
+            return str(answer.get("reason") or "nothing takes that event now")
+        case {"verdict": str()}:
+            return ""
+        case _:
+            return "this exhibition's Lumen does not know that: it is an older one"
+
+
+def reload_outcome(answer: Any) -> str | None:
+    """The same of orders about files, which may be answered several times."""
+    match answer:
+        case {"final": False}:
+            return None
+        case {"verdict": "refused"}:
+            return "; ".join(map(str, answer.get("lines", ()))) or str(answer.get("reason") or "it was refused")
+        case {"verdict": str()}:
+            return ""
+        case _:
+            return "it was not understood"
+
+
+def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
+    """The message that a command is. Raises UsageError that says what would be right."""
+    make = _MAKERS.get(command)
+    if make is None:
+        raise UsageError(f"there is no command `{command[:40]}`: there are {', '.join(NEEDS)}")
+    return make(fields, keys, by)
+
+
+def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = True) -> str:
+    """The text of a field. Raises UsageError."""
+    value = fields.get(name, "")
+    if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
+        raise UsageError(f"`{name}` is a text of {'1' if needed else '0'} to {most} characters")
+    return value
+
+
+def _motion(body: dict[str, Any], key: str, timeout: float = LONG) -> Order:
+    return Order(key, body, timeout, robot_outcome)
+
+
+def _say(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    parameter = {"text": text_in(fields, "text", MAX_TEXT), "language": text_in(fields, "language", 40, needed=False)}
+    return _motion({"type": "texttospeech", "method": "say", "parameter": parameter}, keys.command)
+
+
+def _play(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    return _motion({"type": "motion", "method": text_in(fields, "name"), "parameter": {}}, keys.command)
+
+
+def _posture(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    parameter = {"postureName": text_in(fields, "name"), "speed": 0.8}
+    return _motion({"type": "posture", "method": "goToPosture", "parameter": parameter}, keys.command)
+
+
+def _question(**body: Any) -> Callable[[RobotKeys], Order]:
+    return lambda keys: Order(keys.operator, body, SHORT, verdict_outcome)
+
+
+def _event(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    data = fields.get("data")
+    if not (data is None or isinstance(data, dict)):
+        raise UsageError("`data` is an object, or left out")
+    return _question(ask="event", event=text_in(fields, "event"), data=data or {}, by=by)(keys)
+
+
+def _approve(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    if not isinstance(go := fields.get("go"), bool):
+        raise UsageError("`go` is true or false")
+    return _question(ask="approve", id=text_in(fields, "approval"), go=go, by=by)(keys)
+
+
+def _autonomy(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    if (level := fields.get("level")) not in ("ask", "alone"):
+        raise UsageError("`level` is `ask` or `alone`")
+    return _question(ask="autonomy", level=level, by=by)(keys)
+
+
+def _files(verb: str) -> Callable[[Fields, RobotKeys, str], Order]:
+    def make(fields: Fields, keys: RobotKeys, by: str) -> Order:
+        if not isinstance(now := fields.get("now", False), bool):
+            raise UsageError("`now` is true or false")
+        return Order(keys.config, {"command": verb, "now": now, "by": by}, LONG, reload_outcome)
+
+    return make
+
+
+NEEDS = {
+    REST: Role.NOBODY,
+    "event": Role.SHOW,
+    "mark": Role.SHOW,
+    "approve": Role.SHOW,
+    "resume": Role.OPERATOR,
+    "say": Role.OPERATOR,
+    "motion": Role.OPERATOR,
+    "posture": Role.OPERATOR,
+    "goto": Role.OPERATOR,
+    "autonomy": Role.OPERATOR,
+    "apply": Role.AUTHOR,
+    "rollback": Role.AUTHOR,
+    "reload": Role.AUTHOR,
+    "dry-run": Role.AUTHOR,
+}
+"""The commands, and the role that each needs."""
+
+_MAKERS: dict[str, Callable[[Fields, RobotKeys, str], Order]] = {
+    REST: lambda fields, keys, by: _motion(rest_body(by), keys.stop),
+    "resume": lambda fields, keys, by: _motion(resume_body(by), keys.stop, SHORT),
+    "say": _say,
+    "motion": _play,
+    "posture": _posture,
+    "event": _event,
+    "goto": lambda fields, keys, by: _question(ask="goto", state=text_in(fields, "state"), by=by)(keys),
+    "mark": lambda fields, keys, by: _question(ask="mark", text=text_in(fields, "text", MAX_NAME, needed=False), by=by)(
+        keys
+    ),
+    "approve": _approve,
+    "autonomy": _autonomy,
+    **{verb: _files(verb) for verb in ("apply", "rollback", "reload", "dry-run")},
+}

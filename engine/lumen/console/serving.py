@@ -1,0 +1,86 @@
+"""The console as a server: a port of this machine, until a signal ends it."""
+
+import asyncio
+import signal
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import uvicorn
+
+from lumen.app.reaching import Reached
+from lumen.console.gate import LOOPBACK, Gate
+from lumen.console.site import Site
+from lumen.console.watch import Watch
+from lumen.errors import UsageError
+
+END_TIMEOUT = 1
+"""How long what is under way may take when it is to end [s]."""
+
+
+class Console:
+    """Listens at `address` from the beginning, and serves while it is `run`, until a signal or `end`.
+
+    `reach` opens the bus of the project in `root`. Port 0 is any that is free. Raises UsageError.
+    """
+
+    def __init__(self, reach: Callable[[], Reached], root: Path, host: str, port: int) -> None:
+        self._listener = _listen(host, port)
+        shown = f"[{host}]" if ":" in host else host
+        self.address = f"http://{shown}:{self._listener.getsockname()[1]}/"
+        self.site = Site(Watch(reach, root))
+        gate = Gate(self.site.app, {host, *(LOOPBACK if host in LOOPBACK else ())})
+        config = uvicorn.Config(
+            gate, log_level="warning", access_log=False, lifespan="on", server_header=False, date_header=False,
+            proxy_headers=False, ws="none", http="h11", loop="asyncio", timeout_graceful_shutdown=END_TIMEOUT,
+        )  # fmt: skip
+        self._server = _Server(config, self.site)
+
+    def run(self) -> None:
+        """Serve until SIGINT, SIGTERM or `end`."""
+        try:
+            asyncio.run(self._server.serve([self._listener]))
+        finally:
+            self._listener.close()
+
+    def end(self) -> None:
+        """Have it end, from any thread."""
+        self._server.should_exit = True
+
+
+class _Server(uvicorn.Server):
+    """Ends the streams first, which would never end by themselves."""
+
+    def __init__(self, config: uvicorn.Config, site: Site) -> None:
+        super().__init__(config)
+        self._site = site
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """uvicorn raises what it captured again; here the end is in order."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before = {number: signal.signal(number, self.handle_exit) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._site.streams.close()
+        await super().shutdown(sockets)
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        return socket.create_server((host, port), family=family, backlog=256)
+    except (OSError, OverflowError) as error:
+        why = (getattr(error, "strerror", "") or str(error)).lower()
+        raise UsageError(
+            f"port {port} of {host} can't be had: {why}; `ss -ltnp` says who has it, --port takes another one"
+        ) from None

@@ -1,0 +1,145 @@
+"""Server-sent events: what happens, to each page that listens, once and in order."""
+
+import time
+from collections.abc import AsyncIterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from lumen.console.entry_clock import EntryClock
+from lumen.console.entry_ring import EncodedEntry
+from lumen.console.known_robot import KnownRobot
+from lumen.console.watch import Watch
+from lumen.errors import BusError
+
+HEARTBEAT = 1.0
+"""How often a page hears something in any case [s]."""
+NOW_PERIOD = 0.25
+"""How long after a robot was shown it is shown again at the earliest [s]."""
+RECENT = 100
+"""Entries that who names no position gets first."""
+AGAIN = 500
+"""How long after it lost us a browser comes again [ms]."""
+
+
+@dataclass
+class ReadPosition:
+    """How far a page has read of a robot's journal, in which `run` of it; it saw `version` of the robot `at` [s]."""
+
+    position: int
+    run: int
+    version: int = -1
+    at: float = 0.0
+
+
+class Listener(NamedTuple):
+    """Who listens: to which robot (empty: to all), after which positions, `full` where it has a role."""
+
+    robot: str
+    after: Mapping[str, int]
+    full: bool
+
+
+def positions_in(text: str, robot: str) -> dict[str, int]:
+    """The positions in `Last-Event-ID` or `?after=`: `12` of that robot (empty: of any), or `NAO:12,NAO2:5`."""
+    found = {}
+    for part in text.split(","):
+        name, _, number = part.strip().rpartition(":")
+        if number.removeprefix("-").isdigit() and len(number) < 19:
+            found[name or robot] = int(number)
+    return found
+
+
+class Streams:
+    """Makes the streams of all pages from one watch; `close` ends them."""
+
+    def __init__(self, watch: Watch) -> None:
+        self._watch, self.closing = watch, False
+        self.commands: list[tuple[int, bytes]] = []
+
+    def close(self) -> None:
+        self.closing = True
+        self._watch.changes.tell()
+
+    async def events(self, who: Listener) -> AsyncIterator[bytes]:
+        """The stream of one page, from now until it is closed."""
+        cursors: dict[str, ReadPosition] = {}
+        command = self.commands[-1][0] if self.commands else 0
+        self._watch.lookers += 1
+        beaten = time.monotonic()
+        yield b"retry: %d\n: the console of Lumen\n\n" % AGAIN
+        try:
+            while not self.closing:
+                seen = self._watch.changes.count
+                for view in self._views(who):
+                    cursor = self._cursor(cursors, view, who)
+                    if who.full:
+                        async for entry in self._entries(view, cursor):
+                            yield self._block(who, view, entry, cursors)
+                    now = time.monotonic()
+                    if cursor.version != view.version and now - cursor.at >= NOW_PERIOD:
+                        cursor.version, cursor.at = view.version, now
+                        yield view.block(full=who.full)
+                for number, block in self.commands:
+                    if number > command and who.full:
+                        command = number
+                        yield block
+                pending = any(cursors[v.robot].version != v.version for v in self._views(who) if v.robot in cursors)
+                wait = NOW_PERIOD if pending else max(0.01, beaten + HEARTBEAT - time.monotonic())
+                await self._watch.changes.wait(seen, wait)
+                if time.monotonic() - beaten >= HEARTBEAT:
+                    beaten = time.monotonic()
+                    yield b":\n\n"
+        finally:
+            self._watch.lookers -= 1
+
+    def tell(self, block: bytes) -> None:
+        """Tell all pages of a command."""
+        number = self.commands[-1][0] + 1 if self.commands else 1
+        self.commands = [*self.commands[-49:], (number, block)]
+        self._watch.changes.tell()
+
+    def _views(self, who: Listener) -> list[KnownRobot]:
+        return [view for name, view in self._watch.robots.items() if not who.robot or name == who.robot]
+
+    def _cursor(self, cursors: dict[str, ReadPosition], view: KnownRobot, who: Listener) -> ReadPosition:
+        entries = view.entries
+        if (cursor := cursors.get(view.robot)) is None:
+            cursor = cursors[view.robot] = ReadPosition(who.after.get(view.robot, who.after.get("", -2)), -1)
+        if cursor.run < 0 and entries.known:
+            cursor.run = entries.run
+            if cursor.position == -2:
+                cursor.position = max(entries.first, entries.last - RECENT)
+            elif cursor.position > max(entries.last, view.position or cursor.position):  # of a journal that is gone
+                cursor.position = entries.first
+        elif cursor.run >= 0 and cursor.run != entries.run:
+            cursor.run, cursor.position = entries.run, entries.first
+        return cursor
+
+    async def _entries(self, view: KnownRobot, cursor: ReadPosition) -> AsyncIterator[EncodedEntry]:
+        """What is new of a robot's journal: from the ring, and what is not there any more from its exhibition."""
+        clock = EntryClock()
+        while cursor.run >= 0 and not self.closing:
+            found = view.entries.after(cursor.position)
+            if found is None:
+                try:
+                    page = await self._watch.page(view.robot, cursor.position + 1)
+                except BusError:
+                    return
+                found = view.entries.encoded([one for one in page if one["position"] > cursor.position], clock)
+                if not found:
+                    cursor.position = view.entries.first
+                    continue
+            for entry in found:
+                cursor.position = entry.position
+                yield entry
+            if not found or cursor.position >= view.entries.last:
+                return
+
+    def _block(
+        self, who: Listener, view: KnownRobot, entry: EncodedEntry, cursors: Mapping[str, ReadPosition]
+    ) -> bytes:
+        if who.robot or len(self._watch.robots) == 1:
+            id = str(entry.position)
+        else:
+            id = ",".join(f"{name}:{one.position}" for name, one in cursors.items() if one.run >= 0)
+        return b"event: entry\nid: " + id.encode() + b"\ndata: " + entry.data + b"\n\n"

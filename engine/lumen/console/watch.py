@@ -1,0 +1,168 @@
+"""Watches all robots of a bus: asks their exhibitions how they are and what happened, again and again."""
+
+import asyncio
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from lumen.app.reaching import Reached
+from lumen.console.bus_link import BusLink
+from lumen.console.changes import Changes
+from lumen.console.exchanges import Exchanges
+from lumen.console.known_robot import KnownRobot
+from lumen.console.robot_keys import PRESENCE, KeyBook
+from lumen.errors import BusError
+from lumen.language.routing_keys import DEFAULT_ALIASES
+from lumen.ports import Message
+
+PERIOD = 0.25
+"""How often an exhibition is asked while somebody looks [s]."""
+IDLE_PERIOD = 1.0
+"""How often while nobody does [s]."""
+SENSES_PERIOD = 1.0
+"""How often what a robot feels is shown anew [s]."""
+FILES_PERIOD = 3.0
+"""How often an exhibition is asked about its files [s]."""
+QUESTION_TIMEOUT = 2.0
+BEFORE = 500
+"""Entries before the newest that are fetched at the beginning."""
+MAX_ROBOTS = 50
+FULL_PAGE = 100
+"""Entries on a page after which the next is asked for at once."""
+
+
+class Watch:
+    """The robots of a bus, by name; `changes` tells the loop that any of them is another one than before.
+
+    `start` and everything else here is for the console's loop. `reach` opens the bus of the project in `root`.
+    """
+
+    def __init__(self, reach: Callable[[], Reached], root: Path) -> None:
+        self.changes, self.keys = Changes(), KeyBook(root)
+        self.robots: dict[str, KnownRobot] = {}
+        self.lookers = 0
+        """How many look at the moment."""
+        self.felt: Callable[[str, str, Mapping[str, Any]], None] = lambda _robot, _sense, _body: None
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._news = set[str]()
+        self.link = BusLink(
+            reach, self._patterns, heard=self._heard, answered=self._answered, returned=self._returned,
+            changed=lambda: self._later(self._link_changed),
+        )  # fmt: skip
+        self.exchanges = Exchanges(self.link)
+
+    def start(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self.link.start()
+
+    async def close(self) -> None:
+        for task in self._tasks.values():
+            task.cancel()
+        await asyncio.to_thread(self.link.close)
+
+    def _later(self, call: Callable[..., object], *arguments: Any) -> None:
+        """Call something in the loop; from a thread of the bus."""
+        with suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(call, *arguments)
+
+    def _patterns(self, reached: Reached) -> Any:
+        patterns = self.keys.use(reached)
+        self._later(self._know, reached.robot)
+        return patterns
+
+    def _answered(self, message: Message) -> None:
+        if self.exchanges.ours(message):
+            self._later(self.exchanges.take, message)
+
+    def _returned(self, key: str) -> None:
+        self._later(self.exchanges.nobody_takes, key)
+
+    def _heard(self, message: Message) -> None:
+        """On a thread of the bus."""
+        body = message.body
+        if not isinstance(body, Mapping):
+            return
+        robot, sense = self.keys.sense(message.key)
+        if sense == PRESENCE or message.key == DEFAULT_ALIASES[PRESENCE] or message.key.endswith(f".{PRESENCE}"):
+            if isinstance(body.get("robot"), str) and isinstance(body.get("parts"), list):
+                self._later(self._present, body)
+        elif sense and robot in self.robots:
+            with suppress(KeyError):  # its last robot is forgotten just now
+                self.robots[robot].feel(sense, body)
+                self.felt(robot, sense, body)
+        elif message.key.endswith("config.status"):
+            self._later(self._files_changed)
+
+    def _present(self, body: Mapping[str, Any]) -> None:
+        if view := self._know(str(body["robot"])[:60]):
+            before = view.version
+            view.present(body)
+            if view.version != before:
+                self.changes.tell()
+
+    def _files_changed(self) -> None:
+        self._news |= set(self.robots)
+
+    def _link_changed(self) -> None:
+        for view in self.robots.values():
+            view.look(self.link.up)
+        self.changes.tell()
+
+    def _know(self, robot: str) -> KnownRobot | None:
+        """The view of a robot, which is watched from now on; None where there are too many."""
+        if robot not in self.robots and len(self.robots) < MAX_ROBOTS:
+            self.robots[robot] = KnownRobot(robot)
+            self._tasks[robot] = self._loop.create_task(self._watch(self.robots[robot]))
+        return self.robots.get(robot)
+
+    async def _watch(self, view: KnownRobot) -> None:
+        sensed = asked = 0.0
+        while True:
+            before, more = (view.version, view.entries.last), False
+            now = time.monotonic()
+            if self.link.up:
+                with suppress(BusError):
+                    more = await self._ask(view)
+                    if now - asked > FILES_PERIOD or view.robot in self._news:
+                        self._news.discard(view.robot)
+                        asked = now
+                        await self._ask_files(view)
+            if now - sensed >= SENSES_PERIOD or not view.connected:
+                sensed = now
+                view.look(self.link.up)
+            if (view.version, view.entries.last) != before:
+                self.changes.tell()
+            if not more:
+                await asyncio.sleep(PERIOD if self.lookers else IDLE_PERIOD)
+
+    async def _ask(self, view: KnownRobot) -> bool:
+        """Ask how it is and what happened; whether there is more of that."""
+        keys = self.keys.of(view.robot)
+        said = await self.exchanges.ask(keys.operator, {"ask": "now"}, QUESTION_TIMEOUT)
+        if not isinstance(said, dict) or "robot" not in said:  # an older Lumen
+            said = await self.exchanges.ask(keys.operator, {"ask": "status"}, QUESTION_TIMEOUT)
+        if not isinstance(said, dict):
+            return False
+        view.answered(said)
+        entries, position = view.entries, view.position
+        if position is None and "position" in view.said:
+            return False
+        if not entries.known or (position is not None and position < entries.last):
+            entries.begin(max(-1, (position or 0) - BEFORE))
+        if position is not None and position <= entries.last:
+            return False
+        return entries.add(await self.page(view.robot, entries.last + 1)) >= FULL_PAGE
+
+    async def page(self, robot: str, begin: int) -> list[Mapping[str, Any]]:
+        """Entries of the journal from a position on, some. Raises BusError where nobody answers."""
+        question = {"ask": "journal", "from": begin}
+        said = await self.exchanges.ask(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
+        entries = said.get("entries") if isinstance(said, dict) else None
+        return [one for one in entries or () if isinstance(one, dict) and type(one.get("position")) is int]
+
+    async def _ask_files(self, view: KnownRobot) -> None:
+        said = await self.exchanges.ask(self.keys.of(view.robot).config, {"command": "status"}, QUESTION_TIMEOUT)
+        if isinstance(said, dict):
+            view.told(said)

@@ -1,0 +1,63 @@
+"""An exhibition that runs in a thread, with its bus, and a console of it."""
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.setup import set_up
+from tests.console.pages import Browser, Served
+from tests.tour.conftest import copy, project
+from tests.waiting import until
+
+__all__ = ["copy", "project"]
+
+
+class Hosted:
+    """An exhibition of a project on its own bus, with a recording robot, in real time, until closed."""
+
+    def __init__(self, root: Path) -> None:
+        self._ending = threading.Event()
+        loaded = lumen.load(root)
+        self.directory = RunDirectory(root)
+        self.exhibition = Exhibition(
+            loaded, set_up("recording", loaded, "1"), run_directory=self.directory, reload="manual"
+        )
+        self.directory.open(self.exhibition.node.bus, "memory://", loaded)
+        self.exhibition.start()
+        self._thread = threading.Thread(target=self._live)
+        self._thread.start()
+
+    def _live(self) -> None:
+        while not self._ending.is_set():
+            self.exhibition.tick()
+
+    def close(self) -> None:
+        self._ending.set()
+        self._thread.join()
+        self.exhibition.close()
+        self.directory.close(forget=True)
+
+
+@pytest.fixture
+def hosted(copy: Path) -> Iterator[Hosted]:
+    one = Hosted(copy)
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def served(copy: Path, hosted: Hosted) -> Iterator[Served]:
+    one = Served(copy)
+    until(lambda: any(robot["connected"] for robot in one.browser.robots))
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def browser(served: Served) -> Browser:
+    return served.browser
