@@ -8,6 +8,7 @@ import lumen
 from lumen.app.rehearsal import Rehearsal
 from lumen.app.reload.validation_worker import Loaded
 from lumen.app.reload.validator import BundleValidator
+from lumen.app.reload.visits_check import VisitsCheck
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.rules import check_files
@@ -39,6 +40,9 @@ class SlowJudge:
 
     def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
         return None
+
+    def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
+        return VisitsCheck()
 
 
 def test_two_threads_are_judged_one_after_the_other() -> None:

@@ -14,6 +14,7 @@ from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.app.reload.saved_files import ReloadPart
 from lumen.app.reload.validation_process import failure
 from lumen.app.reload.validation_worker import Loaded
+from lumen.app.reload.visits_check import VisitsCheck, check_visits
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
@@ -42,6 +43,9 @@ class Here:
 
     def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
         return failure(project, story, seconds)
+
+    def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
+        return check_visits(self._root, project, running, budget)
 
     def close(self) -> None:
         """Nothing to let go of."""

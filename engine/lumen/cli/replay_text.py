@@ -23,7 +23,7 @@ def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
         when = datetime.fromtimestamp(row.at).strftime("%Y-%m-%d %H:%M:%S")
         yield f"  {f'visit {row.visit}' if row.visit else 'between visits'}, {when}: {row.how}"
         yield f"    was  {row.was}"
-        yield f"    {'here' if other else 'now '} {row.now}"
+        yield f"    {'here' if other else 'now '} {row.now}" + (f" ({row.place})" if row.place else "")
     if len(report.differ) > SHOWN:
         yield f"  and {len(report.differ) - SHOWN} more"
     if report.lost:

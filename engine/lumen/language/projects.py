@@ -10,6 +10,7 @@ from lumen.language.hall_places import HallPlace
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EYES, ModuleSettings
 from lumen.language.motions import MotionDefinition
+from lumen.language.replay_check import ReplayCheck
 from lumen.language.retention import JournalRetention, RecordingSettings
 from lumen.language.robots import Body
 from lumen.language.routes import Route
@@ -33,13 +34,13 @@ class Stage:
 class Project:
     """Everything the YAML of a project says. `root` is its folder, `hash` of all its files' contents.
 
-    `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has the
-    default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
-    stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for what
-    is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name;
-    `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened, `record`
-    what is recorded of the bus. `aliases` is whether routes have their aliases: None for as long as no other robot is
-    seen on the bus.
+    `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
+    the default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
+    stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for
+    what is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by
+    name; `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened,
+    `record` what is recorded of the bus. `replay_check` is how saved files are tried on recorded visits. `aliases`
+    is whether routes have their aliases: None for as long as no other robot is seen on the bus.
     """
 
     root: str
@@ -67,6 +68,7 @@ class Project:
     journal: JournalRetention = field(default_factory=JournalRetention)
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)
+    replay_check: ReplayCheck = field(default_factory=ReplayCheck)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -112,6 +112,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         journal=settings.journal,
         aliases=settings.aliases,
         record=settings.record,
+        replay_check=settings.replay_check,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

@@ -9,10 +9,11 @@ from zoneinfo import available_timezones
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
 from lumen.language.alerts import Alerts
-from lumen.language.diagnostics import ERROR, Code, Diagnostic, nearest
+from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
+from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
 from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
 from lumen.language.routes import Route
 from lumen.language.show import Show
@@ -26,7 +27,10 @@ from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
+IDLE_CHECK = Code("idle-check", "reload", WARNING, "a check of saved files on recorded visits has nothing to do")
 UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not the name of a time zone")
+
+HOW = "write `replay: warn` or `replay: refuse` beside it, or take it out"
 
 
 @dataclass(frozen=True)
@@ -54,13 +58,14 @@ class Settings:
     stand: str = ""
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)
+    replay_check: ReplayCheck = field(default_factory=ReplayCheck)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
     """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key."""
     if not isinstance(data, Mapping):
         return Settings()
-    robot, modules = data.get("robot", {}), data.get("modules", {})
+    robot, modules, journal = data.get("robot", {}), data.get("modules", {}), _journal(data, report)
     return Settings(
         vocabulary=data.get(VOCABULARY_KEY, FIRST_VOCABULARY),
         name=data.get("name", ""),
@@ -79,10 +84,11 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         alerts=build_alerts(data.get("alerts", {}), report),
         places=_places(data, report),
         show=build_show(modules.get(SHOW, {})),
-        journal=_journal(data, report),
+        journal=journal,
         stand=robot.get("stand", ""),
         aliases=data.get("aliases"),
         record=_record(data, report),
+        replay_check=_replay_check(data, journal, report),
     )
 
 
@@ -107,6 +113,21 @@ def _module(name: str, row: Mapping[str, Any]) -> ModuleSettings:
 def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:
     length = duration(data.get("reload", {}), "patience", report, ("reload",))
     return DEFAULT_PATIENCE if length is None else length
+
+
+def _replay_check(data: Mapping[str, Any], journal: JournalRetention, report: DocumentReport) -> ReplayCheck:
+    said, mode = data.get("reload", {}), data.get("reload", {}).get("replay", "")
+    budget = duration(said, "budget", report, ("reload",), positive=True)
+    if budget is not None and budget > MAX_BUDGET:
+        hint = f"write at most {MAX_BUDGET:g}s: as long as it lasts a saved file waits"
+        report(BAD_DURATION, ("reload", "budget"), f"{budget:g} s are too long for a check", hint=hint)
+        budget = None
+    if "budget" in said and not mode:
+        report(IDLE_CHECK, ("reload", "budget"), "there is no `replay` that it could be the budget of", hint=HOW)
+    if mode and not journal.wanted:
+        where, what = ("reload", "replay"), "no visit is kept that could be played: `journal` keeps nothing"
+        report(IDLE_CHECK, where, what, hint="let `journal` keep visits, or take `replay` out")
+    return ReplayCheck(mode, budget or DEFAULT_BUDGET)
 
 
 def _timezone(data: Mapping[str, Any], report: DocumentReport) -> str:

@@ -34,6 +34,8 @@ def refusal(report: ReloadReport) -> str:
     if report.verdict != "refused":
         return ""
     errors = [found for found in report.diagnostics if found.severity is Severity.ERROR]
+    if report.validation and report.validation.objects:
+        return "the saved files were refused: recorded visits would be others; the exhibition goes on as it was"
     first = f": {errors[0].place} {errors[0].code}" if errors else ""
     more = f" and {len(errors) - 1} more" if len(errors) > 1 else ""
     what = "the last good files run" if report.who == START else "the exhibition goes on as it was"

@@ -17,6 +17,9 @@ from lumen.interpreters.changes import Change, changes
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
 from lumen.language.projects import Project
 
+OTHER_VISITS = "recorded visits would be others with these files"
+APPLY = "`lumen reload --apply` takes them all the same"
+
 _log = logging.getLogger(__name__)
 
 
@@ -24,7 +27,8 @@ _log = logging.getLogger(__name__)
 class StagedBundle:
     """A good bundle on its way: `going` is whether it is to be made active, `since` when that was asked [s].
 
-    `asked` is the snapshot from which it could not go on; `told` what it was said to wait for.
+    `asked` is the snapshot from which it could not go on; `told` what it was said to wait for; `objected` whether
+    it was refused for what it would change in recorded visits.
     """
 
     project: Project
@@ -37,6 +41,7 @@ class StagedBundle:
     since: float = field(default_factory=time.monotonic)
     asked: object = None
     told: str = ""
+    objected: bool = False
     orders: list[ReloadRequest] = field(default_factory=list)
 
 
@@ -74,6 +79,14 @@ class MigrationQueue:
         self.staged = staged
         self._notifier.tell(self._about(staged, "staged"))
 
+    def object(self, staged: StagedBundle, order: ReloadRequest | None) -> None:
+        """Keep a bundle under which recorded visits would be others: a person may have it made active all the same."""
+        if self.staged:
+            staged.orders += self.staged.orders
+        staged.orders += [order] if order else []
+        self._refuse(staged, OTHER_VISITS, APPLY, keep=True)
+        staged.objected = True
+
     def drop(self) -> None:
         """Newer files have come, and they are bad, or those that run."""
         self.staged = None
@@ -90,6 +103,8 @@ class MigrationQueue:
             case Refusal(hint=hint):
                 report.verdict, report.reason = "refused", reason_of(verdict, staged.project)
                 report.hint = hint
+        if report.verdict != "refused" and staged.validation and staged.validation.objects:
+            report.verdict, report.reason, report.hint = "refused", OTHER_VISITS, APPLY
         order.answer({**report.to_json(), "lines": list(report.lines())})
 
     def tick(self, now: float) -> None:
@@ -133,6 +148,7 @@ class MigrationQueue:
             self.revision += 1
             report = self._about(staged, "applied")
             report.before, report.notes, report.back = before.hash, plan.notes, staged.back
+            report.told_visits = bool(staged.told) or staged.objected
             report.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
             self._tell_all(report, staged.orders)
 

@@ -174,6 +174,8 @@ class Reloader:
         elif self._mode == "off":
             self._notifier.tell(self._answer("refused", "it was started with --reload off"), [order])
         elif order.verb in ("reload", "dry-run"):
+            if self._running.replay_check.mode:
+                order.answer(self._answer("judging", "playing the recorded visits with the saved files").to_json())
             self._watcher.ask(order)
         elif order.verb == "rollback" and (before := queue.rollback_guard.before):
             back = live(self._running, before)
@@ -200,6 +202,8 @@ class Reloader:
         elif validation.hash == self._running.hash:
             queue.drop()
             self._notifier.tell(self._verdict("unchanged", who, validation), orders)
+        elif validation.objects and (order or self._mode == "auto"):
+            queue.object(staged, order)
         elif order or self._mode == "auto":
             queue.stage(staged, order)
         else:

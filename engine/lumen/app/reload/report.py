@@ -23,7 +23,7 @@ class ReloadReport:
 
     `who` asked for it: `files`, `command`, `probation`, or the `start` of a run on other files than those before.
     `before` and `after` are hashes of bundles, `restart` sentences about what becomes active only then, `took` times
-    [s] by what took them. `back`: the files ran before.
+    [s] by what took them. `back`: the files ran before. `told_visits`: what came of recorded visits was told already.
     """
 
     verdict: str
@@ -40,6 +40,7 @@ class ReloadReport:
     back: bool = False
     took: dict[str, float] = field(default_factory=dict)
     more: dict[str, Any] = field(default_factory=dict)
+    told_visits: bool = False
 
     def kept(self) -> "ReloadReport":
         """The same without the files and the project that it is about."""
@@ -62,6 +63,8 @@ class ReloadReport:
             errors = (d for d in self.validation.diagnostics if d.severity is Severity.ERROR)
             yield from map(str, list(errors)[:MAX_LISTED])
             yield from (f"{told(rehearsal)}" for rehearsal in self.validation.failed)
+            if self.validation.visits and not self.told_visits:
+                yield from self.validation.visits.lines()
         yield from (said := list(self._verdict()))
         yield from self.notes
         if self.verdict in ("applied", "dry run"):
@@ -104,7 +107,11 @@ class ReloadReport:
         return f"{self.reason}{hint}; " if self.reason else ""
 
     def _took(self) -> dict[str, float]:
-        validation = {"loading": self.validation.loading, "stories": self.validation.playing} if self.validation else {}
+        if self.validation is None:
+            return self.took
+        validation = {"loading": self.validation.loading, "stories": self.validation.playing}
+        if self.validation.visits:
+            validation["visits"] = self.validation.replaying
         return {**validation, **self.took}
 
     def to_json(self) -> dict[str, Any]:
@@ -124,6 +131,8 @@ class ReloadReport:
         if self.validation:
             found["diagnostics"] = [d.to_json() for d in self.validation.diagnostics[:MAX_LISTED]]
             found["stories"] = [told(rehearsal) for rehearsal in self.validation.failed]
+            if self.validation.visits:
+                found["visits"] = self.validation.visits.to_json()
         if took := self._took():
             found["took"] = took
         named = {"waiting_for": self.waiting_for, "reason": self.reason, "hint": self.hint, "notes": list(self.notes)}

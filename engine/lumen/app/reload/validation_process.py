@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from lumen.app.reload.delta import DeltaEncoder
+from lumen.app.reload.visits_check import check_visits
 from lumen.language.projects import Project
 from lumen.rules import check_files
 from lumen.upkeep.heap import give_back
@@ -77,6 +78,8 @@ def _serve(question: Sequence[Any], project: Project | None, sender: DeltaEncode
             return (None if project is None else sender.pack(project), diagnostics), project
         case ["play", str(story), float(seconds)] if project:
             return failure(project, story, seconds), project
+        case ["visits", str(root), str(running), float(budget)] if project:
+            return check_visits(Path(root), project, running, budget), project
     return None, project
 
 

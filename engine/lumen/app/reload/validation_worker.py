@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from lumen.app.reload.delta import DeltaDecoder
 from lumen.app.reload.validation_process import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
+from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
@@ -44,6 +45,12 @@ class FileJudge(Protocol):
 
     def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
         """How a story fails with the project loaded last; None where it does not, or not within this time."""
+
+    def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
+        """What comes of playing recorded visits, for so long [s], with the project loaded last.
+
+        `running` is the hash of the bundle that runs. Raises FatalFilesError where that ends whoever plays them.
+        """
 
     def close(self) -> None:
         """Let go of what it needs."""
@@ -77,6 +84,10 @@ class ValidationWorker:
         except FatalFilesError:
             return None
         return found
+
+    def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
+        found: VisitsCheck | None = self._ask("visits", str(self._root), running, budget)
+        return found or VisitsCheck(trouble="the process that was to play them has begun anew")
 
     def close(self) -> None:
         """End the process."""

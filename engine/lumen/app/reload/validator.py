@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 
 from lumen.app.rehearsal import Rehearsal
 from lumen.app.reload.validation_worker import FileJudge
+from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.interpreters.changes import Change, Risk, changes
 from lumen.interpreters.statechart.compiled_machine import compiled
@@ -30,7 +31,8 @@ class Validation:
     """What came of saved files: a bundle, or what is wrong with them.
 
     `failed` are stories that were saved with them and do not hold; `fault` is a failure of ours. `changes` are against
-    `running`, the bundle that ran when they were judged; `loading` and `playing` are how long each took [s].
+    `running`, the bundle that ran when they were judged; `visits` is what came of recorded visits, None where none were
+    to be played; `loading`, `playing` and `replaying` are how long each took [s].
     """
 
     saved: SavedFiles
@@ -43,6 +45,13 @@ class Validation:
     fault: str = ""
     loading: float = 0.0
     playing: float = 0.0
+    visits: VisitsCheck | None = None
+    replaying: float = 0.0
+
+    @property
+    def objects(self) -> bool:
+        """Whether a person has to say that they are to be taken: a recorded visit would be another one."""
+        return self.visits is not None and self.visits.objects
 
     @property
     def good(self) -> bool:
@@ -51,7 +60,7 @@ class Validation:
     @property
     def took(self) -> float:
         """How long our own work took [s], without the quiet period."""
-        return self.loading + self.playing
+        return self.loading + self.playing + self.replaying
 
     def kept(self) -> "Validation":
         """The same without the files and the projects that it is about."""
@@ -87,12 +96,27 @@ class BundleValidator:
             found = changes(running, project)
             loaded = time.perf_counter()
             failed = tuple(self._play(project, _saved_stories(project, saved.changed)))
-            took = loaded - began, time.perf_counter() - loaded
+            played = time.perf_counter()
+            visits = None if failed else self._replayed(running, project, found)
+            took = loaded - began, played - loaded, visits, time.perf_counter() - played
             return Validation(saved, hash, project, diagnostics, running, found, failed, "", *took)
         except FatalFilesError as error:
             return Validation(saved, hash, fault=str(error))
         except Exception as error:  # a fault of ours costs the reload, and nothing else
             return Validation(saved, hash, fault=fault_of(error))
+
+    def _replayed(self, running: Project, project: Project, found: Iterable[Change]) -> VisitsCheck | None:
+        """What the files that run want to be known of visits; a fault of ours costs that, and not the reload."""
+        check = running.replay_check
+        if not check.mode or all(change.risk is Risk.COSMETIC and change.kind != "text" for change in found):
+            return None
+        try:
+            visits = self._worker.visits(project, running.hash, check.budget)
+        except FatalFilesError as error:
+            visits = VisitsCheck(trouble=str(error))
+        except Exception as error:
+            visits = VisitsCheck(trouble=fault_of(error))
+        return replace(visits, mode=check.mode, budget=check.budget)
 
     def advise(self, validation: Validation, urgent: Callable[[], bool]) -> list[Rehearsal]:
         """The stories of what was changed that would not hold any more, as far as there is leisure to play them."""

@@ -5,9 +5,9 @@ from dataclasses import replace
 from time import monotonic
 
 from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.replay_report import ReplayDifference, ReplayReport
+from lumen.app.replaying.replay_report import ReplayReport
 from lumen.interpreters.changes import live
-from lumen.interpreters.replay.against import SAME, played_against
+from lumen.interpreters.replay.against import SAME, VisitVerdict, played_against
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.visits import RecordedVisit, visits
 from lumen.language.commands import BodyCommand, Play
@@ -30,34 +30,59 @@ def against(
 
     Where a `deadline` (`time.monotonic`) passes the rest is left out, and said to be unknown.
     """
-    report = ReplayReport()
-    for visit in visits(_with_machines(entries, bundles)):
-        report.visits += 1
-        tell(report.visits)
+    report, player = ReplayReport(), VisitPlayer(bundles, new)
+    for visit in visits(with_machines(entries, bundles)):
+        tell(report.visits + 1)
         if deadline is not None and monotonic() > deadline:
-            _unknown(report, "there was no time for them")
-        elif visit.redacted:
-            report.redacted += 1
+            report.visits += 1
+            report.leave_out("there was no time for them")
         else:
-            _play(report, visit, bundles, new)
+            player.play(visit, report)
     return report
 
 
-def _play(report: ReplayReport, visit: RecordedVisit, bundles: KeptBundles, new: Project) -> None:
-    old = bundles.project(visit.home.bundle, visit.home.behavior) if visit.home else None
-    if old is None or old.behavior not in new.behaviors:
-        _unknown(report, NOT_WHOLE if old is None else f"there is no behaviour `{old.behavior}` any more")
-        return
-    verdict = played_against(old, _staged_like(old, live(old, new)), visit, takes)
-    if verdict is None:
-        _unknown(report, NOT_WHOLE)
-        return
-    report.steps += verdict.steps
-    if verdict.how == SAME:
-        report.same += 1
-    else:
-        at = visit.ended + verdict.at - visit.inputs[-1].event.at
-        report.differ.append(ReplayDifference(report.visits, at, verdict.was, verdict.now, verdict.how))
+class VisitPlayer:
+    """Plays visits with the files of `new`.
+
+    One that was recorded under other files than those of the bundle `running` and comes out otherwise now is compared
+    with what these would do: what they have changed already is not news. `hurry` may raise what ends a visit.
+    """
+
+    def __init__(
+        self,
+        bundles: KeptBundles,
+        new: Project,
+        *,
+        running: str = "",
+        hurry: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._bundles, self._new, self._running, self._hurry = bundles, new, running, hurry
+
+    def play(self, visit: RecordedVisit, report: ReplayReport) -> None:
+        """Play it, and let the report know what came of it; nothing is in it of a visit that was ended."""
+        old = self._bundles.project(visit.home.bundle, visit.home.behavior) if visit.home else None
+        known = old is not None and old.behavior in self._new.behaviors
+        verdict = self._verdict(visit, old) if old and known and not visit.redacted else None
+        report.visits += 1
+        if visit.redacted:
+            report.redacted += 1
+        elif verdict:
+            report.add(verdict, visit)
+        elif old is None or known:
+            report.leave_out(NOT_WHOLE)
+        else:
+            report.leave_out(f"there is no behaviour `{old.behavior}` any more")
+
+    def _verdict(self, visit: RecordedVisit, old: Project) -> VisitVerdict | None:
+        new = _staged_like(old, live(old, self._new))
+        verdict = played_against(old, new, visit, takes, hurry=self._hurry)
+        if verdict is None or verdict.how == SAME or not self._running or self._running == old.hash:
+            return verdict
+        running = self._bundles.project(self._running, old.behavior)
+        if running is None:
+            return verdict
+        beside = _staged_like(old, live(old, running))
+        return played_against(old, new, visit, takes, beside=beside, hurry=self._hurry)
 
 
 def _staged_like(old: Project, new: Project) -> Project:
@@ -78,13 +103,10 @@ def takes(project: Project, command: BodyCommand) -> float:
 _KNOWN = {row.command for row in COMMANDS}
 
 
-def _unknown(report: ReplayReport, why: str) -> None:
-    report.unknown[why] = report.unknown.get(why, 0) + 1
-
-
-def _with_machines(
+def with_machines(
     entries: Iterable[RecordedEntry], bundles: KeptBundles
 ) -> Iterator[tuple[RecordedEntry, MachineDefinition | None]]:
+    """Each entry with the machine that ran then, None where that was not kept."""
     machine: MachineDefinition | None = None
     for entry in entries:
         if isinstance(entry, JournalJump):

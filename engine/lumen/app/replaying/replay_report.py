@@ -5,15 +5,17 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
+from lumen.interpreters.replay.against import SAME, VisitVerdict
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, replay
-from lumen.interpreters.replay.visits import VisitWatch
+from lumen.interpreters.replay.visits import RecordedVisit, VisitWatch
 
 
 class ReplayDifference(NamedTuple):
     """Where a visit was another one than now: its number, 0 outside of visits; when [s since 1970]; what was, and is.
 
-    `how` is `differs`, or with other files `says something else` or `ends elsewhere`.
+    `how` is `differs`, or with other files `says something else` or `ends elsewhere`. `place` is the file and line of
+    what is said now, empty where nothing is.
     """
 
     visit: int
@@ -21,9 +23,11 @@ class ReplayDifference(NamedTuple):
     was: str
     now: str
     how: str = "differs"
+    place: str = ""
 
     def to_json(self) -> dict[str, Any]:
-        return {"visit": self.visit, "at": iso(self.at), "was": self.was, "is": self.now, "how": self.how}
+        place = {"place": self.place} if self.place else {}
+        return {"visit": self.visit, "at": iso(self.at), "was": self.was, "is": self.now, "how": self.how, **place}
 
 
 @dataclass
@@ -52,6 +56,20 @@ class ReplayReport:
             "lost": self.lost,
             "unknown": [{"why": why, "entries": count} for why, count in self.unknown.items()],
         }
+
+    def add(self, verdict: VisitVerdict, visit: RecordedVisit) -> None:
+        """One more was played with other files."""
+        self.steps += verdict.steps
+        if verdict.how == SAME:
+            self.same += 1
+            return
+        at = visit.ended + verdict.at - visit.inputs[-1].event.at
+        place = str(verdict.place or "")
+        self.differ.append(ReplayDifference(self.visits, at, verdict.was, verdict.now, verdict.how, place))
+
+    def leave_out(self, why: str) -> None:
+        """One more can't be compared."""
+        self.unknown[why] = self.unknown.get(why, 0) + 1
 
 
 class ReplayCount:

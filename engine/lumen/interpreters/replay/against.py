@@ -10,13 +10,16 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
+from lumen.interpreters.explaining.history import RecordedStep
+from lumen.interpreters.explaining.tracing import retaken
 from lumen.interpreters.migration import MigrationPlan, plan
 from lumen.interpreters.replay.command_data import command_data, started
-from lumen.interpreters.replay.entries import JournalInput
+from lumen.interpreters.replay.entries import JournalInput, JournalJump
 from lumen.interpreters.replay.visits import RecordedVisit, home_of
-from lumen.interpreters.statechart import Snapshot, deserialize, due, elapse, step
+from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, elapse, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.commands import BodyCommand, Command, Start
+from lumen.language.diagnostics import Place
 from lumen.language.events import Event
 from lumen.language.nanoseconds import HALF
 from lumen.language.projects import Project
@@ -31,7 +34,8 @@ GRACE = 120.0
 class VisitVerdict(NamedTuple):
     """What became of a visit: `same`, `says something else`, or `ends elsewhere`; what `was` said first, and is `now`.
 
-    `at` is when that was, by the exhibition's clock [s]. `steps` were taken.
+    `at` is when that was, by the exhibition's clock [s]. `steps` were taken. `place` is where in the other files stands
+    what is `now` said, None where nothing is, or nobody knows.
     """
 
     how: str
@@ -39,60 +43,68 @@ class VisitVerdict(NamedTuple):
     at: float = 0.0
     was: str = ""
     now: str = ""
+    place: Place | None = None
 
 
 SAME, SAYS, ENDS = "same", "says something else", "ends elsewhere"
 
 
-def played_against(old: Project, new: Project, visit: RecordedVisit, takes: Duration) -> VisitVerdict | None:
-    """What becomes of a visit with other files; None where too little of it is in the journal to say."""
-    home, entries = visit.home, visit.inputs
-    if home is None or not entries or visit.redacted:
+def played_against(
+    old: Project,
+    new: Project,
+    visit: RecordedVisit,
+    takes: Duration,
+    *,
+    beside: Project | None = None,
+    hurry: Callable[[], None] = lambda: None,
+) -> VisitVerdict | None:
+    """What becomes of a visit with other files; None where too little of it is in the journal to say.
+
+    It is compared with what was done then, or with what the files `beside` would do. `hurry` is called at each input,
+    and may raise what ends it.
+    """
+    home = visit.home
+    if home is None or not visit.inputs or visit.redacted:
         return None
-    try:
-        before = deserialize(old.machine, home.snapshot or {})
-        planned = plan(old, new, before, at=home.at, now=True)
-    except LumenError as error:
-        return VisitVerdict(ENDS, 0, home.at, "", str(error))
-    if not isinstance(planned, MigrationPlan):
-        return VisitVerdict(ENDS, 0, home.at, "", f"these files can't go on from there: {planned.reason}")
-    play = _Play(new, planned.snapshot, takes)
-    then = list[tuple[float, Any]]()
-    try:
-        for entry in entries:
-            then += ((entry.event.at, command) for command in entry.commands)
-            play.hear(entry)
-        if visit.whole:
-            play.come_home(home_of(new.machine), entries[-1].event.at)
-    except LumenError as error:
-        return VisitVerdict(ENDS, play.steps, play.snapshot.at, "", str(error))
-    if not visit.whole:  # nobody knows how it would have gone on
-        del play.done[len(then) :]
-    return _verdict(play, then, home_of(new.machine) if visit.whole else "")
+    play = _Play(new, takes)
+    play.attend(old, home, visit, hurry)
+    if beside is None:
+        then = [(entry.event.at, command) for entry in visit.inputs for command in entry.commands]
+        if not visit.whole:  # nobody knows how it would have gone on
+            del play.done[len(then) :]
+        return _verdict(play, then, "", home_of(old.machine) if visit.whole else "")
+    other = _Play(beside, takes)
+    other.attend(old, home, visit, hurry)
+    return _verdict(play, other.done, other.trouble, other.home if visit.whole and other.is_home else "")
 
 
-def _verdict(play: "_Play", then: list[tuple[float, Any]], home: str) -> VisitVerdict:
-    """`home` is where it should have ended, empty for anywhere."""
+def _verdict(play: "_Play", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
+    """`home` is where it ended, empty for anywhere; `trouble` what ended it."""
+    if play.trouble != trouble:
+        return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "nothing of the kind")
     was, now = list(_told(then)), list(_told(play.done))
-    elsewhere = bool(home) and home not in play.snapshot.configuration
+    elsewhere = bool(home) and not play.is_home
     for place in range(max(len(was), len(now))):
-        one, other = (row[place] if place < len(row) else (play.snapshot.at, "nothing") for row in (was, now))
+        one, other = (row[place] if place < len(row) else (play.at, "nothing", -1) for row in (was, now))
         if one[1] != other[1]:
-            return VisitVerdict(ENDS if elsewhere else SAYS, play.steps, min(one[0], other[0]), one[1], other[1])
+            how, at = ENDS if elsewhere else SAYS, min(one[0], other[0])
+            return VisitVerdict(how, play.steps, at, one[1], other[1], play.place(other[2]))
     if elsewhere:
-        return VisitVerdict(ENDS, play.steps, play.snapshot.at, home, ", ".join(sorted(play.snapshot.configuration)))
+        active = ", ".join(sorted(play.snapshot.configuration)) if play.snapshot else ""
+        return VisitVerdict(ENDS, play.steps, play.at, home, active)
     return VisitVerdict(SAME, play.steps)
 
 
-def _told(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str]]:
-    """What others notice of commands: without their ids, and without what is only logged."""
-    for at, command in commands:
+def _told(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str, int]]:
+    """What others notice of commands, and which it is: without their ids, and without what is only logged."""
+    for number, (at, command) in enumerate(commands):
         begun = started(command)
         if begun:
             _, kind, said = begun
-            yield at, f"“{said['text']}” ({said['language']})" if kind == "Say" else f"{kind} {_words(said)}".rstrip()
+            told = f"“{said['text']}” ({said['language']})" if kind == "Say" else f"{kind} {_words(said)}".rstrip()
+            yield at, told, number
         elif "Publish" in command:
-            yield at, f"Publish {_words(command['Publish'])}"
+            yield at, f"Publish {_words(command['Publish'])}", number
 
 
 def _words(said: Mapping[str, Any]) -> str:
@@ -100,17 +112,66 @@ def _words(said: Mapping[str, Any]) -> str:
 
 
 class _Play:
-    """The behaviour of the other files, and the robot that answers it; `done` is what it asked for, and when."""
+    """The behaviour of the other files, and the robot that answers it; `done` is what it asked for, and when.
 
-    def __init__(self, project: Project, snapshot: Snapshot, takes: Duration) -> None:
+    `trouble` is what ended it before the visit did.
+    """
+
+    def __init__(self, project: Project, takes: Duration) -> None:
         self._project, self._takes = project, takes
-        self.snapshot, self.steps = snapshot, 0
+        self.home, self.steps, self.trouble = home_of(project.machine), 0, ""
         self.done: list[tuple[float, Any]] = []
+        self._asked: list[tuple[Snapshot, Event | None, Command]] = []
         self._counterparts: dict[str, str] = {}
         self._begun: set[str] = set()
         self._then: list[tuple[str, str, Any]] = []
         self._now: list[tuple[str, str, Any]] = []
         self._answers: list[tuple[float, str]] = []
+        self._began = 0.0
+        self._stands: Snapshot | None = None
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """Where it stands, from where it went over to the other files on."""
+        assert self._stands is not None
+        return self._stands
+
+    @property
+    def at(self) -> float:
+        """How far it came, by the exhibition's clock [s]."""
+        return self._stands.at if self._stands else self._began
+
+    @property
+    def is_home(self) -> bool:
+        return self._stands is not None and self.home in self._stands.configuration
+
+    def attend(self, old: Project, home: JournalJump, visit: RecordedVisit, hurry: Callable[[], None]) -> None:
+        """Go over to these files where the behaviour was at home, and live through the visit."""
+        self._began = home.at
+        try:
+            planned = plan(old, self._project, deserialize(old.machine, home.snapshot or {}), at=home.at, now=True)
+            if not isinstance(planned, MigrationPlan):
+                self.trouble = f"these files can't go on from there: {planned.reason}"
+                return
+            self._stands = planned.snapshot
+            for entry in visit.inputs:
+                hurry()
+                self.hear(entry)
+            if visit.whole:
+                self.come_home(visit.inputs[-1].event.at)
+        except LumenError as error:
+            self.trouble = str(error)
+
+    def place(self, number: int) -> Place | None:
+        """Where in the files stands what asked for that one of what was `done`."""
+        if number < 0:
+            return None
+        before, event, command = self._asked[number]
+        taken = RecordedStep(self._project.machine, before, Step(event, (), (), (), before), self._project)
+        if event is None or not taken.is_decided:
+            return None
+        deeds = retaken(self._project.machine, before, event).deeds
+        return next((taken.place(deed.machine, deed.where) for deed in deeds if deed.what == command), None)
 
     def hear(self, entry: JournalInput) -> None:
         """What happened then, at its time. Raises LumenError."""
@@ -127,9 +188,9 @@ class _Play:
                 self._begun.add(begun[0])
         self._pair()
 
-    def come_home(self, home: str, since: float) -> None:
+    def come_home(self, since: float) -> None:
         """Let what is under way come to its end, where the visit has not ended by then."""
-        while home not in self.snapshot.configuration:
+        while not self.is_home:
             timer = due(self.snapshot)
             waiting = [self._answers[0][0]] if self._answers else []
             following = min([*waiting, *([timer.at] if timer else [])], default=since + GRACE + 1.0)
@@ -154,8 +215,9 @@ class _Play:
             self._take(taken)
 
     def _take(self, taken: Any) -> None:
-        self.snapshot, self.steps = taken.snapshot, self.steps + 1
+        before, self._stands, self.steps = self.snapshot, taken.snapshot, self.steps + 1
         for command in taken.commands:
+            self._asked.append((before, taken.event, command))
             self._begin(command)
 
     def _begin(self, command: Command) -> None:

@@ -1,0 +1,103 @@
+"""Saved files on trial on the visits that were recorded: what would visitors have noticed?"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from lumen.app.replaying.replay_report import ReplayReport
+from lumen.language.projects import Project
+from lumen.language.replay_check import CheckMode
+
+MAX_LISTED = 10
+"""Differences that are listed."""
+
+
+class BudgetSpentError(Exception):
+    """The budget is used up."""
+
+
+@dataclass(frozen=True)
+class VisitsCheck:
+    """What came of playing visits with saved files, the newest first.
+
+    `complete` is whether there was time for all within the `budget` [s]. `trouble` is why the check came to nothing.
+    """
+
+    report: ReplayReport = field(default_factory=ReplayReport)
+    mode: CheckMode = "warn"
+    budget: float = 0.0
+    complete: bool = True
+    trouble: str = ""
+
+    @property
+    def objects(self) -> bool:
+        """Whether the files are not to be taken for it."""
+        return self.mode == "refuse" and bool(self.report.differ)
+
+    def lines(self) -> Iterator[str]:
+        """What a person is told; nothing where no visit is kept."""
+        report = self.report
+        if self.trouble:
+            yield f"the recorded visits were not played with these files: {self.trouble}"
+        elif report.visits:
+            yield f"of {self._which()}: {self._counts()}"
+        elif not self.complete:
+            yield f"not one recorded visit could be played within {self.budget:g} s (`budget` in lumen.yaml)"
+        if report.differ:
+            first = report.differ[0]
+            when = datetime.fromtimestamp(first.at).strftime("%Y-%m-%d %H:%M:%S")
+            place = f" ({first.place})" if first.place else ""
+            was = f"was {first.was}, would be " if first.was else ""
+            yield f"the first, {when}: {was}{first.now}{place}"
+
+    def _which(self) -> str:
+        count = self.report.visits
+        visits = f"{count:,} visit{'s' * (count != 1)}"
+        return visits if self.complete else f"the last {visits} (there was no time for more in {self.budget:g} s)"
+
+    def _counts(self) -> str:
+        report = self.report
+        rows = [(report.same, "the same", "the same")]
+        for how, many in (("says something else", "say something else"), ("ends elsewhere", "end elsewhere")):
+            rows.append((sum(row.how == how for row in report.differ), how, many))
+        rows.append((report.redacted, "redacted", "redacted"))
+        rows.append((sum(report.unknown.values()), "not compared", "not compared"))
+        told = [f"{count:,} {one if count == 1 else many}" for count, one, many in rows if count]
+        return ", ".join(told)
+
+    def to_json(self) -> dict[str, Any]:
+        said = self.report.to_json() | {"differ": [row.to_json() for row in self.report.differ[:MAX_LISTED]]}
+        more = {"mode": self.mode, "complete": self.complete, "differing": len(self.report.differ)}
+        return said | more | ({"trouble": self.trouble} if self.trouble else {})
+
+
+def check_visits(root: Path, new: Project, running: str, budget: float) -> VisitsCheck:
+    """Play the visits that the project in `root` keeps with other files, for so long [s].
+
+    What the files of the bundle `running` have changed already counts as the same.
+    """
+    from lumen.app.replaying.kept_bundles import KeptBundles  # only where visits are played
+    from lumen.app.replaying.latest_visits import latest_first
+    from lumen.app.replaying.other_files import VisitPlayer
+    from lumen.runtime.home import home_of
+    from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, JournalFolder
+
+    until = time.monotonic() + budget
+
+    def hurry() -> None:
+        if time.monotonic() > until:
+            raise BudgetSpentError
+
+    report, bundles = ReplayReport(), KeptBundles(root)
+    player = VisitPlayer(bundles, new, running=running, hurry=hurry)
+    files = JournalFolder(home_of(root) / JOURNAL_FOLDER, 0.0, 0.0).files()
+    try:
+        for visit in latest_first(files, bundles):
+            hurry()
+            player.play(visit, report)
+    except BudgetSpentError:
+        return VisitsCheck(report, budget=budget, complete=False)
+    return VisitsCheck(report, budget=budget)

@@ -1,0 +1,41 @@
+"""The visits of a journal from the newest to the oldest, without reading more of it than is asked for."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from itertools import islice
+from pathlib import Path
+
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import with_machines
+from lumen.errors import JournalError
+from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
+from lumen.interpreters.replay.visits import RecordedVisit, visits
+from lumen.runtime.inputs.journal_file import read_journal
+
+
+def latest_first(files: Sequence[Path], bundles: KeptBundles) -> Iterator[RecordedVisit]:
+    """The visits in these files of one journal, which are in their order; a file that can't be read has none.
+
+    A visit that goes on in the next file is whole; it is one of the file in which it begins.
+    """
+    for number in reversed(range(len(files))):
+        entries = _entries(files[number])
+        found = list(visits(with_machines(entries, bundles)))
+        if found and not found[-1].whole and number + 1 < len(files):
+            both = visits(with_machines([*entries, *_entries(files[number + 1])], bundles))
+            found = list(islice(both, len(found)))
+        if number and found and _goes_on(entries, found[0]):
+            del found[0]
+        yield from reversed(found)
+
+
+def _entries(file: Path) -> tuple[RecordedEntry, ...]:
+    with suppress(JournalError):
+        return read_journal(file).entries
+    return ()
+
+
+def _goes_on(entries: Sequence[RecordedEntry], visit: RecordedVisit) -> bool:
+    """Whether that visit has begun in the file before: each file begins with where the behaviour stands."""
+    first = entries[0]
+    return isinstance(first, JournalJump) and first.kind == "keyframe" and visit.first == first.position
