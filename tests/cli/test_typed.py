@@ -28,7 +28,7 @@ class EndlessInput:
 def test_a_line_without_end_fills_no_memory_and_holds_up_no_tick(monkeypatch: pytest.MonkeyPatch) -> None:
     typed, visitor = EndlessInput(), Mock()
     monkeypatch.setattr("sys.stdin", typed)
-    who: Any = SimpleNamespace(needs=(), actor=visitor)
+    who: Any = SimpleNamespace(needs=(), actor=visitor, environment=Mock())
     part = TypedVisitorPart(who, Mock(), "")
     part.begin(0.0)
     until(lambda: typed.calls == MAX_WAITING_LINES + 1)
@@ -54,7 +54,7 @@ class Hall:
 
 def test_a_hand_stays_as_long_as_was_typed() -> None:
     visitor: Any = Hall()
-    commands = TypedCommands(visitor, Mock())
+    commands = TypedCommands(visitor, Mock(), lambda label, by: "")
     commands.do("/touch head", 0.0)
     commands.do("/touch left bumper 2s", 0.0)
     commands.do("/touch LEFTBUMPER 3s", 0.0)
@@ -72,7 +72,9 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
     ("line", "says"),
     [
         ("/tuch head", "`/tuch` is nothing that can be done: did you mean `touch`?"),
-        ("/", "there are `help`, `touch`"),
+        ("/", "there are `help`, `press`, `touch`"),
+        ("/press", "write what stands on the button, as in `/press Next exhibit`"),
+        ("/press Next exhibit", "no Next exhibit for the operator"),
         ("/touch", "write where, as in `/touch head`"),
         (
             "/touch heda 2s",
@@ -85,6 +87,6 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
 def test_what_can_be_typed_is_said(line: str, says: str) -> None:
     visitor: Any = Hall()
     narrator = Mock()
-    TypedCommands(visitor, narrator).do(line, 0.0)
+    TypedCommands(visitor, narrator, lambda label, by: f"no {label} for {by}").do(line, 0.0)
     assert says in narrator.note.call_args.args[0]
     assert visitor.felt == []

@@ -9,7 +9,7 @@ from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
-from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, VisitorAction
+from lumen.language.stories import Arrive, Happen, Leave, Press, SendMessage, Speak, TouchSensor, VisitorAction
 from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 
@@ -107,6 +107,8 @@ class Narrator(Observer):
                 self.line("visitor", f"{'presses' if pressed else 'lets go of'} {sensor}")
             case Happen(name):
                 self.line("story", f"lets `{name}` happen")
+            case Press(label):
+                self.line("operator", f"presses “{label}”")
             case SendMessage(route):
                 self.line("story", f"a module sends `{route}`")
 

@@ -8,6 +8,7 @@ from lumen.app.doings import Doings, Spoken, UnderWay
 from lumen.app.status import iso
 from lumen.interpreters.explaining.names import machines_in
 from lumen.interpreters.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
+from lumen.interpreters.explaining.pressing import ShownButton, shown_buttons
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
@@ -76,7 +77,7 @@ class NowView:
             "motion": _motion(now.motion, now.at, time),
             "visitor_said": {"text": now.heard.text, "at": time(now.heard.at)} if now.heard else None,
             "ways": [_way(way, bundle, time) for way in ways_out(now.project.machine, now.snapshot, now.at)],
-            "buttons": [],
+            "buttons": [_button(one, now.project) for one in shown_buttons(now.project.machine, now.snapshot, now.at)],
             "waiting": [],
             "autonomy": "ask",
             "queues": {"events": now.events, "commands": now.commands},
@@ -189,6 +190,21 @@ def _way(way: WayOut, bundle: _Bundle, time: Callable[[float], str]) -> dict[str
         "open": way.open,
         "guard": _guard(way.guard) if way.guard else None,
         "why": way.why,
+    }
+
+
+def _button(shown: ShownButton, project: Project) -> dict[str, Any]:
+    button = shown.button
+    labels = dict.fromkeys(project.languages, button.label[""]) if "" in button.label else dict(button.label)
+    return {
+        "label": labels,
+        "event": button.event,
+        "data": button.data,
+        "confirm": button.confirm or None,
+        "key": shown.key or None,
+        "state": shown.state,
+        "enabled": shown.enabled,
+        "reason": shown.reason,
     }
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from lumen.interpreters.explaining.pressing import pressed, takes
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause
 from lumen.language.events import Event
@@ -44,17 +45,31 @@ class RaisedEvents(Observer):
         self._open: list[_Raised] = []
 
     def happen(self, message: Message, now: float) -> None:
-        """Let the event in that message happen in this tick; it is refused where it can't be one."""
+        """Let the event in that message, or of the button that it names, happen in this tick, or refuse it."""
         match message.body:
-            case {"event": str(name), **more} if name and len(name) <= MAX_NAME:
+            case {"ask": "press", "button": str(label)}:
+                loop = self._loop
+                machine, snapshot = loop.project.machine, loop.runtime.snapshot
+                found = pressed(machine, snapshot, label[:MAX_NAME], now, person_in(message.body))
+                if isinstance(found, str):
+                    self._reply(message, refusal(found))
+                else:
+                    self._let(message, found)
+            case {"ask": "event", "event": str(name), **more} if name and len(name) <= MAX_NAME:
                 if name.startswith(_INTERNAL):
                     self._reply(message, refusal(f"`{name}` is not for people: only the robot says what is done"))
                     return
                 cause = Cause("person", message.id, sender=person_in(message.body))
-                self._open.append(_Raised(message, cause))
-                self._loop.happen(Event(name, more.get("data"), now, cause=cause))
+                self._let(message, Event(name, more.get("data"), now, cause=cause))
+            case {"ask": "press"}:
+                self._reply(message, refusal("`button` is what stands on it"))
             case _:
                 self._reply(message, refusal("`event` is the name of an event"))
+
+    def _let(self, message: Message, event: Event) -> None:
+        assert event.cause
+        self._open.append(_Raised(message, event.cause))
+        self._loop.happen(event)
 
     def look(self) -> None:
         """Say of those that were not stepped that they were not: nothing waits any more."""
@@ -69,8 +84,3 @@ class RaisedEvents(Observer):
                 self._open.remove(one)
                 self._reply(one.message, {"verdict": "done", "taken": takes(step)})
                 return
-
-
-def takes(step: Step) -> bool:
-    """Whether a transition was taken, here or in an invoked behaviour, for what happened."""
-    return bool(step.transitions) or any(takes(inner) for _, inner in step.invoked)

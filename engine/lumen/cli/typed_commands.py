@@ -1,12 +1,13 @@
-"""What a visitor who is typed does besides speaking: `/touch head 3s`."""
+"""What a visitor who is typed does besides speaking, and an operator: `/touch head 3s`, `/press Next`."""
 
 from collections.abc import Callable
 
 from lumen.app.narrator import Narrator
 from lumen.errors import UsageError
+from lumen.language.causes import OPERATOR
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.durations import seconds
-from lumen.language.stories import TouchSensor
+from lumen.language.stories import Press, TouchSensor
 from lumen.runtime.visitor import VisitorActor
 
 TAP = 0.5
@@ -24,16 +25,21 @@ HELP = """\
 What you type is what the visitor says. What begins with / is done:
   /touch head       a hand on its head; also {places}
   /touch head 3s    and it stays there for so long (else {tap})
+  /press Next       an operator presses the button of that label, in any of its languages
   /help             this"""
 
 
 class TypedCommands:
     """Does what was typed after a `/`; `tick` takes hands away again when their time is over."""
 
-    def __init__(self, visitor: VisitorActor, narrator: Narrator) -> None:
-        self._visitor, self._narrator = visitor, narrator
+    def __init__(self, visitor: VisitorActor, narrator: Narrator, press: Callable[[str, str], str]) -> None:
+        self._visitor, self._narrator, self._button = visitor, narrator, press
         self._hands: dict[str, float] = {}
-        self._verbs: dict[str, Callable[[list[str], float], None]] = {"touch": self._touch, "help": self._help}
+        self._verbs: dict[str, Callable[[list[str], float], None]] = {
+            "touch": self._touch,
+            "press": self._press,
+            "help": self._help,
+        }
 
     def do(self, line: str, now: float) -> None:
         """Do it at `now` [s], or say in a line why that can't be."""
@@ -63,6 +69,14 @@ class TypedCommands:
         if sensor not in self._hands:
             self._feel(sensor, pressed=True)
         self._hands[sensor] = now + (TAP if length is None else length)
+
+    def _press(self, words: list[str], _now: float) -> None:
+        label = " ".join(words)
+        if not label:
+            raise UsageError("write what stands on the button, as in `/press Next exhibit`")
+        if reason := self._button(label, OPERATOR):
+            raise UsageError(reason)
+        self._narrator.visitor_action(Press(label))
 
     def _help(self, _words: list[str], _now: float) -> None:
         others = [place for place in self._places() if place != "head"]

@@ -24,6 +24,7 @@ from lumen.language.actions import (
     Template,
     Wait,
 )
+from lumen.language.buttons import Button
 from lumen.language.machines import MachineDefinition
 from lumen.language.verbs import Quantity, verb_of
 
@@ -37,6 +38,14 @@ TransitionData = dict[str, Any]
 def plain_block(steps: Iterable[PlacedAction]) -> list[ActionData]:
     """A list of actions."""
     return [plain_action(step.action) for step in steps]
+
+
+def plain_button(button: Button) -> dict[str, Any]:
+    """An entry of `buttons`."""
+    label = button.label.get("", dict(button.label))
+    row: dict[str, Any] = {"label": label, "event": button.event}
+    more = {"data": button.data, "confirm": button.confirm or None, "key": button.key or None}
+    return row | {key: value for key, value in more.items() if value is not None}
 
 
 def plain_value(value: ComputedValue) -> Any:

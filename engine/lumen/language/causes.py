@@ -36,7 +36,9 @@ class MessageOrigin(NamedTuple):
 UNKNOWN_ORIGIN = MessageOrigin()
 """Nothing is said: the bus gives the message an id, its own sender and the time."""
 
-PROGRAM, TERMINAL, VISITOR = "the program", "a terminal", "the visitor"
-"""Senders that are no part of an exhibition: who opened it in Python, who types commands, who stands before it."""
-PEOPLE = frozenset((TERMINAL, VISITOR))
+PROGRAM, TERMINAL, VISITOR, OPERATOR = "the program", "a terminal", "the visitor", "the operator"
+"""Senders that are no part of an exhibition: who opened it in Python, who types commands, who stands before it, and
+who runs it.
+"""
+PEOPLE = frozenset((TERMINAL, VISITOR, OPERATOR))
 """Senders behind whose messages stands a person."""

@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Any, Literal
 
 from lumen.language.actions import ComputedValue, Expression, PlacedAction, Template
+from lumen.language.buttons import Button
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.properties import Property
@@ -97,6 +98,7 @@ class State:
     `children` are paths in document order, `transitions` candidates in document order. `output` is the data of
     `done.state.*` for a final state. `resume` says how its `do` goes on where a history leads back into it, or where
     the engine was away: the step that it was at `again`, the one `after` it, or `never`; empty for all of it anew.
+    `buttons` are for the operator, also while a state within is active.
     """
 
     path: str
@@ -114,6 +116,7 @@ class State:
     output: ComputedValue = None
     on_reload: str = ""
     resume: Resume = ""
+    buttons: tuple[Button, ...] = ()
     for_each: ForEach | None = None
     where: NodePath = field(default=(), compare=False)
 

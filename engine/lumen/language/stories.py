@@ -55,6 +55,13 @@ class Happen:
 
 
 @dataclass(frozen=True, slots=True)
+class Press:
+    """`operator: {press: LABEL}`: an operator presses a button that is shown and works."""
+
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
 class SendMessage:
     """`message: {route, body}`: a message as a module would send it."""
 
@@ -96,7 +103,7 @@ class Expect:
     within: float = 30.0
 
 
-VisitorAction = Arrive | Leave | Speak | TouchSensor | Happen | SendMessage | StoryPause | AwaitTime | Expect
+VisitorAction = Arrive | Leave | Speak | TouchSensor | Happen | Press | SendMessage | StoryPause | AwaitTime | Expect
 
 
 @dataclass(frozen=True, slots=True)

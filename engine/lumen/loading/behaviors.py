@@ -11,6 +11,7 @@ from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_K
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.loading.actions import Actions
+from lumen.loading.buttons import buttons
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
@@ -118,6 +119,7 @@ class _Builder:
             output=self.expressions.value(data.get("output"), (*where, "output")),
             on_reload=self.on_reload(entry),
             resume=data.get("resume", ""),
+            buttons=buttons(data.get("buttons"), (*where, "buttons")),
             where=where,
         )
 

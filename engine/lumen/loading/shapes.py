@@ -15,7 +15,8 @@ _HISTORY = {*_COMMON, "history", "target"}
 _FINAL = {*_COMMON, "entry", "exit", "output"}
 _MACHINE = {"units", "context", "types", "events", "words", "phrases", "answers", "lists", "properties", "renamed"}
 _STATE = {
-    *_COMMON, *_MACHINE, "on", "always", "after", "at", "onDone", "onError", "onReload", "resume", "entry",
+    *_COMMON, *_MACHINE, "on", "always", "after", "at", "onDone", "onError", "onReload", "resume", "buttons",
+    "entry",
     "do", "exit", "invoke", "for",
 }  # fmt: skip
 _ALLOWED = {

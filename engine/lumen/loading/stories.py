@@ -12,6 +12,7 @@ from lumen.language.stories import (
     Expect,
     Happen,
     Leave,
+    Press,
     SendMessage,
     Speak,
     Story,
@@ -75,6 +76,8 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> 
             return Happen(body) if isinstance(body, str) else Happen(body["name"], body.get("data"))
         case "message":
             return SendMessage(body["route"], body.get("body"))
+        case "operator":
+            return Press(body["press"])
         case "wait":
             length = duration(row, "wait", report, where)
             return None if length is None else StoryPause(length)

@@ -105,6 +105,7 @@ _VALUES: Mapping[str, Table] = {
         ("raise", "event"): NameKind.EVENT,
         ("send",): NameKind.EVENT,
         ("send", "event"): NameKind.EVENT,
+        ("buttons", "event"): NameKind.EVENT,
         ("invoke",): NameKind.BEHAVIOR,
         ("invoke", "behavior"): NameKind.BEHAVIOR,
         ("words",): NameKind.WORDS,

@@ -59,7 +59,8 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
         if route.event:
             schema = draft.messages.get(route.schema)
             found[route.event] = schema if found.get(route.event, schema) == schema else None
-    return {**controller_events(draft.controllers.values()), **ROBOT_EVENTS, **found, **machine.events}
+    pressed = {b.event: None for other in draft.behaviors.values() for s in other.states.values() for b in s.buttons}
+    return {**pressed, **controller_events(draft.controllers.values()), **ROBOT_EVENTS, **found, **machine.events}
 
 
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:

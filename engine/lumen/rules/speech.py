@@ -125,6 +125,8 @@ class _Speech:
         self.languages, self.lost = languages, set(lost)
 
     def behavior(self, machine: MachineDefinition, report: DocumentReport) -> None:
+        for button in (button for state in machine.states.values() for button in state.buttons):
+            self.texts(report, (*button.where, "label"), button.label)
         for site in action_sites(machine):
             match site.step.action:
                 case SayText(texts):

@@ -85,6 +85,8 @@ def _places(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
     for name, machine in draft.behaviors.items():
         said = (site.step.where for site in action_sites(machine) if isinstance(site.step.action, SayText))
         yield from ((draft.report("behaviors", name), (*where, "say")) for where in said)
+        for state in machine.states.values():
+            yield from ((draft.report("behaviors", name), (*button.where, "label")) for button in state.buttons)
     for tables in word_tables(draft):
         yield from ((tables.report, ("phrases", name)) for name in tables.phrases)
         for table, rows in tables.answers.items():

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import inf
 from typing import Any
 
+from lumen.interpreters.explaining.pressing import pressed
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
 from lumen.interpreters.statechart import Step, due
@@ -104,6 +105,14 @@ class BehaviorLoop:
     def happen(self, event: Event) -> None:
         """Let something happen at the next tick."""
         self._events.append(event)
+
+    def press(self, label: str, by: str) -> str:
+        """Let the event of a button happen at the next tick; why that can't be, empty where it can."""
+        found = pressed(self.project.machine, self.runtime.snapshot, label, self.clock.now(), by)
+        if isinstance(found, str):
+            return found
+        self.happen(found)
+        return ""
 
     def tick(self, now: float | None = None) -> float:
         """Live through one tick at `now` [s], where nobody says so a period after the last; its time [s]."""

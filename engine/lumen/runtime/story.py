@@ -9,7 +9,7 @@ from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.interpreters.statechart.property_monitor import Violation, monitors
 from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
-from lumen.language.causes import VISITOR, Cause, MessageOrigin
+from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -22,6 +22,7 @@ from lumen.language.stories import (
     Expect,
     Happen,
     Leave,
+    Press,
     SendMessage,
     Speak,
     Story,
@@ -128,6 +129,10 @@ class StoryEnvironment(Protocol):
     def project(self) -> Project: ...
 
     def happen(self, event: Event) -> None: ...
+
+    def press(self, label: str, by: str) -> str:
+        """Press a button; why that can't be, empty where it can."""
+        ...
 
 
 class StoryPlayer(Observer):
@@ -252,6 +257,9 @@ class StoryPlayer(Observer):
                 self._hall.touch(sensor, pressed)
             case Happen(name, data):
                 self._exhibition.happen(Event(name, data, now, cause=Cause("person", sender=VISITOR)))
+            case Press(label):
+                if reason := self._exhibition.press(label, OPERATOR):
+                    self.fail(UnmetExpectation("", reason))
             case SendMessage(name, body):
                 if reason := send(
                     self._exhibition.bus, self._exhibition.project, name, body, MessageOrigin(sender=VISITOR)

@@ -5,13 +5,17 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, get_args
 
+from lumen.errors import BusError
 from lumen.language.commands import BodyCommand, Command, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.routing_keys import OPERATOR_REQUEST, key_of_robot
 from lumen.ports import Bus, Message
 from lumen.runtime.trace_publisher import TRACE_ROUTE
 from lumen.upkeep.threads import MessageGuard
 
+REQUEST_TTL = 5.0
+"""How long a wish may wait for the brain [s]."""
 MAX_PENDING_TRACES = 10_000
 
 _log = logging.getLogger(__name__)
@@ -54,6 +58,15 @@ class TraceSubscriber:
                 with self._guard(message.key):
                     for watcher in self.watchers:
                         _tell(watcher, body, now)
+
+    def press(self, label: str, by: str) -> str:
+        """Ask the brain to press a button; it tells nobody here whether it could."""
+        request = {"ask": "press", "button": label, "by": by}
+        try:
+            self.bus.publish(key_of_robot(OPERATOR_REQUEST, self.project.robot), request, ttl=REQUEST_TTL)
+        except BusError as error:
+            return str(error)
+        return ""
 
     def close(self) -> None:
         self._undo()

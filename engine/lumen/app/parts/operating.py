@@ -32,8 +32,8 @@ GOTO = "operator.goto"
 MAX_PENDING_REQUESTS = 100
 NOTHING_RECORDED = "nothing is being recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
 REQUESTS = (
-    '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "goto", "state": …}`,'
-    ' `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
+    '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "press", "button": …}`,'
+    ' `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
 )
 
 
@@ -102,7 +102,7 @@ class OperatorPart(Part, Observer):
                     self._answering.ask(message)
                 case {"ask": "now"}:
                     self._pages.answer(message, partial(self._view.tell, self._moment()))
-                case {"ask": "event"}:
+                case {"ask": "event" | "press"}:
                     self._raising.happen(message, now)
                 case body:
                     self._reply(message, self._answer(body, now))

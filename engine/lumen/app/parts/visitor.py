@@ -36,7 +36,7 @@ class VisitorPart(Part):
         story: Story | None,
         tell: Callable[[VisitorAction], None],
     ) -> None:
-        self.actor = VisitorActor(project, hall, bus)
+        self.actor, self.environment = VisitorActor(project, hall, bus), environment
         self.player = StoryPlayer(story, environment, hall, self.actor, tell) if story else None
 
     @property

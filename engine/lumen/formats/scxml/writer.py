@@ -4,7 +4,7 @@ import json
 from collections.abc import Container, Iterator, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_block, plain_properties
+from lumen.formats.behavior_data import plain_block, plain_button, plain_properties
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary
@@ -133,6 +133,9 @@ class _ScxmlWriter:
         if state.resume:
             self.report.foreign("`resume`", (*state.where, "resume"))
             ours["resume"] = state.resume
+        if state.buttons:
+            self.report.foreign("`buttons`", (*state.where, "buttons"))
+            yield _json("buttons", [plain_button(button) for button in state.buttons])
         if ours:
             yield _json("state", ours)
         timers = {t.event: t.delay for t in state.transitions if isinstance(t.delay, float)}

@@ -179,6 +179,8 @@ class _XStateReader:
             data["onReload"] = state.calls(found, self.outline.title)
         if own.get("resume") in RESUME_WORDS:
             data["resume"] = own["resume"]
+        if isinstance(own.get("buttons"), list):
+            data["buttons"] = own["buttons"]
         invocations = self.invocations.of(state, own)
         data.update(invocations.data)
         if "onDone" in state.source and state.kind == "atomic":

@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_action, plain_block, plain_properties, plain_value
+from lumen.formats.behavior_data import plain_action, plain_block, plain_button, plain_properties, plain_value
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD
 from lumen.formats.xstate.descriptors import EventDescriptors
@@ -195,6 +195,8 @@ class _XStateWriter:
             yield "onReload", self._target(state, state.on_reload)
         if state.resume:
             yield "resume", state.resume
+        if state.buttons:
+            yield "buttons", [plain_button(button) for button in state.buttons]
         if state.output is not None:
             yield "output", plain_value(state.output)
         if state.invoke:

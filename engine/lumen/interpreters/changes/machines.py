@@ -88,11 +88,20 @@ class _Comparison:
             yield self.change(
                 "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"
             )
+        yield from self.buttons(old, new, title)
         if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
             target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
             yield self.change("state", title, f"`onReload` of {title} {target}")
         if old.output != new.output:
             yield self.change("state", title, f"{title} hands on other data")
+
+    def buttons(self, old: State, new: State, title: str) -> Iterator[Change]:
+        """Buttons by their labels: people press them, the behaviour does nothing else for them."""
+        before, after = ({next(iter(b.label.values())): b for b in one.buttons} for one in (old, new))
+        for label in dict.fromkeys((*before, *after)):
+            if before.get(label) != after.get(label):
+                how = "added" if label not in before else "removed" if label not in after else "changed"
+                yield self.change("button", title, f"the button {quoted(label)} of {title} {how}")
 
     def named_now(self, path: str) -> str:
         """What a state is called; one that is gone, what it was called."""

@@ -23,7 +23,11 @@ class GuardPart(NamedTuple):
 
 def parts(guard: Expression, scope: Scope) -> tuple[GuardPart, ...]:
     """The parts of a guard, in the order written; of one without `&&` the whole."""
-    meant, shown = (tuple(_joined(parse_expression(text))) for text in (guard.source, guard.shown))
+    meant = tuple(_joined(parse_expression(guard.source)))
+    try:
+        shown = tuple(_joined(parse_expression(guard.shown)))
+    except ExpressionError:  # words, such as those of a round: there is a next exhibit
+        return (_part(parse_expression(guard.source), guard.shown, scope),)
     if len(meant) != len(shown):
         shown = meant
     return tuple(_part(one, unparse(other), scope) for one, other in zip(meant, shown, strict=True))

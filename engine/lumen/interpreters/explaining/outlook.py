@@ -13,6 +13,7 @@ from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.values import Snapshot, Timer
+from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
 
 
@@ -61,20 +62,24 @@ def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", hos
         yield from running(inner, child.snapshot, outer_id(id, owner) if owner else id, around)
 
 
-def ways_out(machine: MachineDefinition, snapshot: Snapshot, at: float) -> Iterator[WayOut]:
-    """Every way out of the states that are active at `at` [s], innermost first; invoked behaviours' last."""
+def ways_out(machine: MachineDefinition, snapshot: Snapshot, at: float, event: Event | None = None) -> Iterator[WayOut]:
+    """Every way out of the states that are active at `at` [s], innermost first; invoked behaviours' last.
+
+    Of an `event`, only those that it selects, and with what it brings.
+    """
     for one in running(machine, snapshot):
-        yield from _out_of(one, snapshot, at)
+        yield from _out_of(one, snapshot, at, event)
 
 
-def _out_of(one: Running, outermost: Snapshot, at: float) -> Iterator[WayOut]:
+def _out_of(one: Running, outermost: Snapshot, at: float, event: Event | None) -> Iterator[WayOut]:
     program = compiled(one.machine)
     configuration = program.planner.configuration(one.snapshot.configuration)
     if configuration.finished:
         return
-    asked = _Asked(one, configuration, outermost, at)
+    asked = _Asked(one, configuration, outermost, at, event)
     for transition, rival in _ranked(configuration, asked):
-        yield asked.way(transition, rival)
+        if event is None or transition.matches(event.name):
+            yield asked.way(transition, rival)
 
 
 def _ranked(
@@ -108,13 +113,16 @@ def _covers(one: Transition, other: Transition) -> bool:
 class _Asked:
     """What is asked of the transitions of one running behaviour; each guard is looked at once."""
 
-    def __init__(self, one: Running, configuration: Configuration, outermost: Snapshot, at: float) -> None:
-        self._one, self._at = one, at
+    def __init__(
+        self, one: Running, configuration: Configuration, outermost: Snapshot, at: float, event: Event | None
+    ) -> None:
+        self._one, self._at, self._brought = one, at, event
         chart = compiled(one.machine).chart
         self._timers = {(t.state, t.event): t for t in one.snapshot.timers if t.kind in ("after", "at")}
         self._view = (outermost.language, outermost.place)
+        seen = {"name": event.name, "data": event.data} if event else None
         self._scope = Scope(
-            one.snapshot.context, None, chart.root.view(*self._view), configuration.known.__contains__, at,
+            one.snapshot.context, seen, chart.root.view(*self._view), configuration.known.__contains__, at,
             outermost.language, one.machine.phrases, one.machine.answers, outermost.epoch, outermost.timezone,
             one.machine.lists, no_draw,
         )  # fmt: skip
@@ -152,7 +160,7 @@ class _Asked:
             return None, ""
         scope = self._scope._replace(state=transition.source.view(*self._view))
         named = bool(transition.definition.event) and not transition.definition.timed
-        later = _awaiting(guard.source) if named else ()
+        later = _awaiting(guard.source) if named and not self._brought else ()
         looked = parts(guard, scope)
         open_parts = later if len(later) == len(looked) else (any(later),) * len(looked)
         false = [part for part, waits in zip(looked, open_parts, strict=True) if not waits and not part.holds]

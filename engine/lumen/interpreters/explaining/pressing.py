@@ -1,0 +1,107 @@
+"""The buttons of the states that are active, and whether pressing one would lead anywhere now."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from lumen.errors import LumenError
+from lumen.interpreters.explaining.names import machines_in
+from lumen.interpreters.explaining.outlook import Running, running, ways_out
+from lumen.interpreters.explaining.words import prefix_of
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.stepping import step
+from lumen.interpreters.statechart.values import Snapshot, Step
+from lumen.language.buttons import Button
+from lumen.language.causes import Cause
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+
+MAX_NAMED_STATES = 3
+"""Of the states in which a button works."""
+
+
+class ShownButton(NamedTuple):
+    """A button of an active `state`; `enabled` where its event would be taken now, else `reason` says why not.
+
+    `key` is empty where another one that is shown has it.
+    """
+
+    button: Button
+    state: str
+    key: str
+    enabled: bool
+    reason: str
+
+
+def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> list[ShownButton]:
+    """The buttons of all active states, the innermost first; what stands further in takes the place of its like."""
+    found: list[ShownButton] = []
+    keys: set[str] = set()
+    for one in running(machine, snapshot):
+        for state, button in _active(one):
+            reason = refusal_of(machine, snapshot, button, at)
+            key = "" if button.key in keys else button.key
+            keys.add(key)
+            found.append(ShownButton(button, state, key, not reason, reason))
+    return found
+
+
+def pressed(machine: MachineDefinition, snapshot: Snapshot, label: str, at: float, by: str) -> Event | str:
+    """The event of the button of that label, in any language, which `by` presses; why not, where it can't be."""
+    shown = shown_buttons(machine, snapshot, at)
+    found = sorted((one for one in shown if one.button.named(label)), key=lambda one: not one.enabled)
+    if not found:
+        labels = [text for one in shown for text in one.button.label.values()]
+        return f"there is no button “{label}” now: {did_you_mean(label, labels, 'there are')}"
+    if not found[0].enabled:
+        return f"the button “{label}” can't be pressed: {found[0].reason}"
+    button = found[0].button
+    return Event(button.event, button.data, at, cause=Cause("person", f"the button “{label}”", sender=by))
+
+
+def refusal_of(machine: MachineDefinition, snapshot: Snapshot, button: Button, at: float) -> str:
+    """Why pressing it would lead nowhere at `at` [s], in people's words; empty where it would."""
+    event = Event(button.event, button.data, at)
+    try:
+        if takes(step(machine, snapshot, event)):
+            return ""
+    except LumenError as error:
+        return str(error)
+    closed = next((way.why for way in ways_out(machine, snapshot, at, event) if not way.open), "")
+    return closed or _elsewhere(machine, button.event)
+
+
+def takes(step: Step) -> bool:
+    """Whether a transition was taken, here or in an invoked behaviour, for what happened."""
+    return bool(step.transitions) or any(takes(inner) for _, inner in step.invoked)
+
+
+def _active(one: Running) -> Iterator[tuple[str, Button]]:
+    """Each button of a running behaviour once, with the state that it stands in."""
+    configuration = compiled(one.machine).planner.configuration(one.snapshot.configuration)
+    seen: set[str] = set()
+    if configuration.finished:
+        return
+    for leaf in configuration.leaves:
+        above: list[Button] = []
+        for node in (leaf, *leaf.ancestors):
+            own = node.state.buttons if node.state else ()
+            shown = [button for button in own if not any(inner.replaces(button) for inner in above)]
+            if node.path not in seen:
+                yield from ((one.prefix + (node.name or one.machine.id), button) for button in shown)
+            seen.add(node.path)
+            above += own
+
+
+def _elsewhere(machine: MachineDefinition, event: str) -> str:
+    """Where it would be taken."""
+    names = [
+        prefix_of(owner) + (node.name or inner.id)
+        for owner, inner in machines_in(machine)
+        for node in compiled(inner).chart.nodes.values()
+        if any(transition.matches(event) for transition in node.transitions)
+    ]
+    if not names:
+        return f"nothing waits for {event}"
+    more = f", and {len(names) - MAX_NAMED_STATES} more" if len(names) > MAX_NAMED_STATES else ""
+    return f"only in {', '.join(names[:MAX_NAMED_STATES])}{more}"
