@@ -142,3 +142,19 @@ def test_every_key_of_2015_is_there_under_its_old_name(project: Project) -> None
         "visual.face.recognition", "visual.face.tracking", "visual.human.detection", "visual.command",
     ):  # fmt: skip
         assert keys[f"lumen.{words}"] == keys[f"lumen.NAO.{words}"]
+
+
+def test_a_crowd_of_robots_fills_neither_log_nor_memory_and_hides_nobody(
+    project: Project, stranger: Bus, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = ours(project)
+    for number in range(3 * aliases.MAX_ROBOTS):
+        stranger.publish("lumen.presence", {**BEN, "robot": f"R{number}" + "x" * 1000})
+    assert len(caplog.records) == 1
+    for other in robot._aliases._others:
+        robot._aliases._others[other] -= 2 * aliases.AWAY_AFTER
+    assert robot._aliases.used
+    stranger.publish("lumen.Ben.presence", BEN)
+    assert not robot._aliases.used, "one that comes after a crowd is seen, too"
+    assert len(robot._aliases._others) == aliases.MAX_ROBOTS
+    robot.close()

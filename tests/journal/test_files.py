@@ -9,9 +9,11 @@ import pytest
 from lumen.errors import JournalError
 from lumen.interpreters.replay.entries import JournalInput, RecordedEntry
 from lumen.language.events import Event
+from lumen.language.people import PersonName
 from lumen.runtime.inputs.frames import FramePacker
 from lumen.runtime.inputs.journal_file import JournalHeader, header_of, line_of, read_content, read_journal
 from lumen.runtime.inputs.journal_folder import DAY, JournalFolder
+from lumen.runtime.inputs.redaction import redact
 
 HEADER = JournalHeader(5, "run", "hash", 1.0)
 
@@ -103,3 +105,23 @@ def test_what_is_old_and_what_is_too_much_is_deleted(tmp_path: Path) -> None:
     assert [file.name[11] for file in JournalFolder(tmp_path, 2.0, 1.0).files()] == ["4", "5"]
     JournalFolder(tmp_path, 0.001, 1.0).prune(1e9 + 9 * DAY)
     assert [file.name[11] for file in JournalFolder(tmp_path, 2.0, 1.0).files()] == ["5"]
+
+
+def test_what_a_cut_left_is_gone_when_somebody_is_forgotten(tmp_path: Path) -> None:
+    """Nobody can say whom it names."""
+    file = tmp_path / "x.journal"
+    file.write_bytes(packed(entries(20, 1), 4)[:-3] + b"Budi")
+    os.utime(file, (1e9, 1e9))
+    assert redact(file, PersonName("Nobody Else")) == 0
+    assert b"Budi" not in file.read_bytes()
+    assert read_journal(file).whole
+    assert len(read_journal(file).entries) == 16
+    assert file.stat().st_mtime == 1e9, "it is not kept for longer"
+
+
+def test_a_file_without_somebody_is_as_old_as_it_was(tmp_path: Path) -> None:
+    file = tmp_path / "x.journal"
+    file.write_bytes(packed(entries(20, 1), 4))
+    os.utime(file, (1e9, 1e9))
+    assert redact(file, PersonName("Ada"))
+    assert file.stat().st_mtime == 1e9

@@ -218,4 +218,14 @@ def test_a_page_tells_of_this_run_also_where_nothing_is_kept(copy: Path, kept: s
     assert told[0]["jump"] == "start"
     assert [entry["position"] for entry in told] == list(range(len(told)))
     assert "face" in [entry.get("heard") for entry in told]
-    assert (copy / ".lumen" / "journal").exists() == (kept == "keep: 30")
+    assert len(list((copy / ".lumen").rglob("*.journal"))) == (kept == "keep: 30")
+
+
+@pytest.mark.slow
+def test_who_wants_no_journal_any_more_keeps_none_of_before(copy: Path) -> None:
+    for line in ("", "\njournal: {keep: 0}\n"):
+        with (copy / "lumen.yaml").open("a", encoding="utf-8") as file:
+            file.write(line)
+        with lumen.open(copy) as exhibition:
+            exhibition.run(0.1)
+        assert len(list((copy / ".lumen").rglob("*.journal"))) == (not line)

@@ -7,18 +7,22 @@ both takes it once. While another robot is on the same bus neither happens: nobo
 import logging
 import time
 from collections.abc import Callable, Mapping
+from math import inf
 
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS, INTERNAL_ALIASES, default_key, key_of_robot
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.upkeep.drops import TELL_PERIOD
 
 COPY = "/alias"
 """How the id of a copy ends that goes out under an alias."""
 AWAY_AFTER = 10.0
 """How long another robot has to be silent to be gone [s]; it says every half second that it is there."""
 MAX_ROBOTS = 100
-"""How many other robots are remembered: nobody fills the memory."""
+"""How many other robots are remembered, those that were heard last: nobody fills the memory."""
+MAX_NAME = 100
+"""Characters of each of their names."""
 PRESENCE = "presence"
 
 _log = logging.getLogger(__name__)
@@ -41,6 +45,7 @@ class Aliases:
         self.names: Mapping[str, str] = {}
         self._project: Project | None = None
         self._others: dict[str, float] = {}
+        self._warned = -inf
         self._undo: list[Callable[[], None]] = []
 
     def use(self, project: Project, bus: Bus) -> None:
@@ -74,10 +79,13 @@ class Aliases:
     def _hear(self, message: Message) -> None:
         match message.body:
             case {"robot": str(robot), "state": str()} if self._project and robot != self._project.robot:
-                known = robot in self._others
-                if known or len(self._others) < MAX_ROBOTS:
-                    self._others[robot] = time.monotonic()
-                if not known:
+                robot = robot[:MAX_NAME]
+                known, now = robot in self._others, time.monotonic()
+                if not known and len(self._others) >= MAX_ROBOTS:
+                    del self._others[min(self._others, key=self._others.__getitem__)]
+                self._others[robot] = now
+                if not known and now - self._warned >= TELL_PERIOD:
+                    self._warned = now
                     self._warn(robot, self._project)
 
     def _warn(self, robot: str, project: Project) -> None:

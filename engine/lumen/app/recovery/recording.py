@@ -5,6 +5,7 @@ from pathlib import Path
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.reload.records import RunRecords
 from lumen.errors import LumenError
+from lumen.language.projects import Project
 from lumen.language.retention import JournalRetention
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint, read_files
@@ -24,23 +25,28 @@ def record_inputs(
     """Have it kept from now on what happens to a behaviour, by the writer that is returned.
 
     What visitors did is in the home of the run that has it. What a story or a program plays is `rehearsed`, and beside
-    it: nobody's visit is pushed out by it. Where the project wants no journal, the last of it is in memory alone.
+    it: nobody's visit is pushed out by it. Where the project wants no journal, the last of it is in memory alone, and
+    what there was is deleted.
     """
-    project = behavior.project
-    folder, retention = home_of(Path(project.root)) / JOURNAL_FOLDER, project.journal
-    if rehearsed:
-        folder, retention = folder / REHEARSED_FOLDER, REHEARSED
-    wanted = project.journal.wanted and (rehearsed or records.keeper is not None)
-    if rehearsed and wanted:
-        _keep_files(project.root, project.hash)
-    writer = JournalWriter(
-        JournalFolder(folder, retention.keep, retention.size) if wanted else None,
-        story=story.name if story else "",
-        rehearsed=rehearsed,
-    )
+    files = _files(behavior.project, rehearsed=rehearsed) if rehearsed or records.keeper else None
+    writer = JournalWriter(files, story=story.name if story else "", rehearsed=rehearsed)
     records.inputs = behavior.loop.runtime.recorder = writer
     writer.start()
     return writer
+
+
+def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
+    """Where it is written, None where nothing is to be kept."""
+    folder, retention = home_of(Path(project.root)) / JOURNAL_FOLDER, project.journal
+    if rehearsed:
+        folder, retention = folder / REHEARSED_FOLDER, REHEARSED
+    files = JournalFolder(folder, retention.keep, retention.size)
+    if not project.journal.wanted:
+        files.clear()
+        return None
+    if rehearsed:
+        _keep_files(project.root, project.hash)
+    return files
 
 
 def _keep_files(root: str, hash: str) -> None:

@@ -1,10 +1,10 @@
 """The entries of a journal of inputs: what happened to a behaviour, in order, and as JSON data."""
 
 from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 from lumen.errors import JournalError
-from lumen.language.causes import Cause
+from lumen.language.causes import Cause, CauseKind
 from lumen.language.events import Event
 
 How = Literal["heard", "timer", "goto"]
@@ -18,7 +18,11 @@ without somebody's name, without a timer or an event that it could not bear, aft
 changes nothing.
 """
 
-HOWS: tuple[How, ...] = ("heard", "timer", "goto")
+HOWS: tuple[How, ...] = get_args(How)
+JUMP_KINDS: tuple[JumpKind, ...] = get_args(JumpKind)
+CAUSE_KINDS: tuple[CauseKind, ...] = get_args(CauseKind)
+LATEST = 1e11
+"""No time is later [s]: the year 5138."""
 
 
 class JournalInput(NamedTuple):
@@ -86,17 +90,48 @@ def entry_data(entry: RecordedEntry) -> dict[str, Any]:
 def read_entry(data: Any, position: int) -> RecordedEntry:
     """The entry in JSON data, at that position. Raises JournalError where it is none."""
     try:
-        commands = tuple(data.get("commands", ()))
-        redacted = data.get("redacted") is True
-        if "jump" in data:
-            return JournalJump(
-                position, data["jump"], data["at"], data["bundle"], data["behavior"], data["snapshot"],
-                commands, data.get("said", {}), redacted,
-            )  # fmt: skip
-        how = next(how for how in HOWS if how in data)
-        cause = Cause(*data["cause"]) if "cause" in data else None
-        event = Event(data[how], data.get("data"), data["at"], data.get("id", ""), cause)
-        states = tuple(data.get("exited", ())), tuple(data.get("entered", ()))
-        return JournalInput(position, how, event, *states, commands, data.get("digest", ""), redacted)
-    except (KeyError, TypeError, AttributeError, StopIteration):
+        return _jump(data, position) if "jump" in data else _input(data, position)
+    except (KeyError, TypeError, ValueError, AttributeError, StopIteration, OverflowError):
         raise JournalError(f"entry {position} of the journal is none that this Lumen knows") from None
+
+
+def _jump(data: Any, position: int) -> JournalJump:
+    kind, snapshot, said = data["jump"], data["snapshot"], data.get("said", {})
+    if kind not in JUMP_KINDS or not isinstance(snapshot, dict | None) or type(said.get("lost", 0)) is not int:
+        raise TypeError
+    bundle, behavior, redacted = _text(data["bundle"]), _text(data["behavior"]), data.get("redacted") is True
+    commands = tuple(data.get("commands", ()))
+    return JournalJump(position, kind, _time(data["at"]), bundle, behavior, snapshot, commands, said, redacted)
+
+
+def _input(data: Any, position: int) -> JournalInput:
+    how = next(how for how in HOWS if how in data)
+    cause = _cause(data["cause"]) if "cause" in data else None
+    event = Event(_text(data[how]), data.get("data"), _time(data["at"]), _text(data.get("id", "")), cause)
+    states = _texts(data.get("exited", ())), _texts(data.get("entered", ()))
+    commands, redacted = tuple(data.get("commands", ())), data.get("redacted") is True
+    return JournalInput(position, how, event, *states, commands, _text(data.get("digest", "")), redacted)
+
+
+def _cause(said: Any) -> Cause:
+    *texts, time = Cause(*said)
+    kind, id, key, sender = _texts(texts)
+    if kind not in CAUSE_KINDS:
+        raise TypeError
+    return Cause(kind, id, key, sender, _time(time))
+
+
+def _text(said: Any) -> str:
+    if not isinstance(said, str):
+        raise TypeError
+    return said
+
+
+def _texts(said: Any) -> tuple[str, ...]:
+    return tuple(map(_text, said))
+
+
+def _time(said: Any) -> float:
+    if type(said) not in (int, float) or not abs(said) < LATEST:
+        raise TypeError
+    return float(said)

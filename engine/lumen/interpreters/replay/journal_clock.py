@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from datetime import datetime, time, timedelta, tzinfo
 
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
+from lumen.interpreters.replay.entries import LATEST, JournalJump, RecordedEntry
 from lumen.interpreters.wall_clock import zone
 from lumen.language.events import CLOCK_SET
 
@@ -37,4 +37,8 @@ class JournalClock:
 
     def _set(self, said: object) -> None:
         if isinstance(said, Mapping):
-            self.epoch, self._timezone = said.get("epoch", self.epoch), said.get("timezone", self._timezone)
+            epoch, timezone = said.get("epoch"), said.get("timezone")
+            if isinstance(epoch, int | float) and 0 <= epoch < LATEST:
+                self.epoch = float(epoch)
+            if isinstance(timezone, str):
+                self._timezone = timezone

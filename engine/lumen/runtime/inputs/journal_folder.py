@@ -59,6 +59,12 @@ class JournalFolder:
                 if number and (now - said.st_mtime > self._keep * DAY or left > self._size * MEGABYTE):
                     file.unlink()
 
+    def clear(self) -> None:
+        """Delete all files."""
+        for file in self.files():
+            with suppress(OSError):
+                file.unlink()
+
 
 def newest(home: Path) -> Path | None:
     """The file of a home that its run writes, or wrote last."""

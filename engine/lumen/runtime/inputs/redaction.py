@@ -17,18 +17,21 @@ LINES_PER_FRAME = 1000
 def redact(file: Path, person: PersonName) -> int:
     """Take somebody's name out of a file, which is replaced as a whole; how many entries named them.
 
-    Raises ModuleError where it can't be written anew. One that can't be read is deleted: nobody can say whom it names.
+    What can't be read is deleted: nobody can say whom it names. The file stays as old as it was, and is not kept
+    longer. Raises ModuleError where it can't be written anew.
     """
     try:
         content = read_journal(file)
     except JournalError:
         return 0 if _emptied(file) else 1
     named = sum(names(entry, person) for entry in content.entries)
-    if named:
+    if named or not content.whole:
         draft = file.with_name(f"{file.name}.{os.getpid()}.new")
         try:
             with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as written:
                 written.writelines(_packed(content, person))
+            was = file.stat()
+            os.utime(draft, ns=(was.st_atime_ns, was.st_mtime_ns))
             os.replace(draft, file)
         except OSError as error:
             raise ModuleError(f"{file} can't be written: {error.strerror}") from None
