@@ -9,19 +9,20 @@ from lumen.errors import UsageError
 from lumen.interpreters.explaining import RecordedStep, StepHistory, why_not
 from lumen.interpreters.explaining.chains import chain
 from lumen.interpreters.explaining.effects import Effect
+from lumen.interpreters.explaining.outlook import ways_out
 from lumen.language.commands import Cancel
 
 ENDS = {"person", "message", "start", "event"}
 
 
-def played(story: str) -> list[RecordedStep]:
-    with lumen.open(".", story=story) as exhibition:
+def played(story: str, project: str) -> list[RecordedStep]:
+    with lumen.open(project, story=story) as exhibition:
         exhibition.run()
         return exhibition.history()
 
 
-def check(story: str, tally: Counter[str]) -> None:
-    steps = played(story)
+def check(story: str, tally: Counter[str], project: str = ".") -> None:
+    steps = played(story, project)
     history = StepHistory(steps)
     for number, one in enumerate(steps):
         done = [Effect(number, "", command) for command in one.step.commands if not isinstance(command, Cancel)]
@@ -46,6 +47,22 @@ def test_a_visit_that_is_not_understood() -> None:
     assert tally["end at a person"] > 10
     assert tally["guard"]
     assert not tally["guard without a change"]
+
+
+@pytest.mark.slow
+def test_a_tour_of_which_no_author_wrote_the_guards() -> None:
+    """A `for` waits for what is told in words: these are no expression."""
+    tally = Counter[str]()
+    check("visit", tally, "examples/museum")
+    assert tally["end at a person"] > 10
+    assert tally["guard"]
+
+
+def test_ways_out_of_a_for_are_told_in_its_words() -> None:
+    told = set[str]()
+    for one in played("visit", "examples/museum")[::5]:
+        told |= {way.guard.text for way in ways_out(one.machine, one.step.snapshot, one.at) if way.guard}
+    assert "there is a next exhibit" in told
 
 
 @pytest.mark.soak

@@ -104,9 +104,18 @@ class AnsweringThread:
             message, make = asked
             try:
                 self._drops.tell()
-                self._bus.reply(message, make())
+                self._bus.reply(message, _made(make))
             except BusError:
                 continue  # who asked is gone
+
+
+def _made(make: AnswerMaker) -> Any:
+    """What it makes; a fault of ours costs this question, and no other."""
+    try:
+        return make()
+    except Exception as error:
+        _log.exception("a question could not be answered")
+        return {"verdict": "refused", "reason": f"the exhibition failed on that question: {error}"}
 
 
 def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:
