@@ -37,6 +37,7 @@ VERBS = {
     "goto": "let a running exhibition enter a state",
     "reload": "let a running exhibition read its files again, or say which files run",
     "replay": "take the steps of a journal again, with the files that ran then or with others",
+    "story": "make a story of a recorded visit, to be kept as a test",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",
     "record": "record the messages of a running exhibition, for Foxglove and Lichtblick",

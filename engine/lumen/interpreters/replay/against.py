@@ -82,7 +82,7 @@ def _verdict(play: "_Play", then: list[tuple[float, Any]], trouble: str, home: s
     """`home` is where it ended, empty for anywhere; `trouble` what ended it."""
     if play.trouble != trouble:
         return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "nothing of the kind")
-    was, now = list(_told(then)), list(_told(play.done))
+    was, now = list(noticed(then)), list(noticed(play.done))
     elsewhere = bool(home) and not play.is_home
     for place in range(max(len(was), len(now))):
         one, other = (row[place] if place < len(row) else (play.at, "nothing", -1) for row in (was, now))
@@ -95,7 +95,7 @@ def _verdict(play: "_Play", then: list[tuple[float, Any]], trouble: str, home: s
     return VisitVerdict(SAME, play.steps)
 
 
-def _told(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str, int]]:
+def noticed(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str, int]]:
     """What others notice of commands, and which it is: without their ids, and without what is only logged."""
     for number, (at, command) in enumerate(commands):
         begun = started(command)

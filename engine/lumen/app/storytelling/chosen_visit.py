@@ -1,0 +1,60 @@
+"""Which recorded visit somebody means by a time of day."""
+
+from collections.abc import Sequence
+from datetime import datetime, time, timedelta
+from typing import NamedTuple
+
+from lumen.app.replaying.journals import ChosenJournal, time_of_day
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import with_machines
+from lumen.errors import UsageError
+from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.interpreters.replay.visits import RecordedVisit, visits
+
+
+class ChosenVisit(NamedTuple):
+    """A visit, and when it was, where the exhibition is."""
+
+    visit: RecordedVisit
+    began: datetime
+    ended: datetime
+
+    @property
+    def when(self) -> str:
+        """In words."""
+        return f"from {self.began:%H:%M:%S} to {self.ended:%H:%M:%S} on {self.began:%Y-%m-%d}"
+
+
+def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -> ChosenVisit:
+    """The visit that was under way at a time of day, `14:03` for any time of that minute; without one the last.
+
+    Raises UsageError where there is none, which names the nearest, and where somebody is forgotten who was in it.
+    """
+    entries, clock = list(journal.entries()), JournalClock()
+    for entry in entries:
+        clock.of(entry)
+    found = [
+        ChosenVisit(visit, clock.local(visit.began), clock.local(visit.ended))
+        for visit in visits(with_machines(entries, bundles))
+    ]
+    if not found:
+        raise UsageError("there is no visit in that journal; `lumen replay --list` shows which files there are")
+    one = _under_way(found, at) if at else found[-1]
+    if one.visit.redacted:
+        raise UsageError(f"the visit {one.when} is redacted: somebody in it is forgotten, and what was said is gone")
+    return one
+
+
+def _under_way(found: Sequence[ChosenVisit], at: str) -> ChosenVisit:
+    wanted, length = time_of_day(at), timedelta(minutes=1) if at.count(":") == 1 else timedelta(seconds=1)
+    nearest = min(found, key=lambda one: _distance(one, wanted, length))
+    if _distance(nearest, wanted, length):
+        raise UsageError(f"no visit was under way at {at}; the nearest was {nearest.when}")
+    return nearest
+
+
+def _distance(one: ChosenVisit, wanted: time, length: timedelta) -> timedelta:
+    """How far a time of day is from a visit, nothing where that was under way then."""
+    days = {one.began.date(), one.ended.date()}
+    moments = [datetime.combine(day, wanted, one.began.tzinfo) for day in days]
+    return min(max(one.began - (moment + length), moment - one.ended, timedelta()) for moment in moments)

@@ -1,0 +1,91 @@
+"""A script played on the recording robot, and what could be noticed of the robot meanwhile, tick by tick."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.app.rehearsal import Rehearsal, rehearse
+from lumen.interpreters.replay.against import noticed
+from lumen.interpreters.replay.command_data import command_data
+from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.nesting import active_names, entered_names
+from lumen.language.commands import Command, Play, Publish, Say, Start
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.runtime.loop import Observer
+
+
+@dataclass
+class TickNotes:
+    """What was noticed in the tick at `at` [s]: the states that are `active` at its end, and those it entered."""
+
+    at: float
+    active: frozenset[str] = frozenset()
+    entered: list[str] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
+    played: list[str] = field(default_factory=list)
+    published: list[str] = field(default_factory=list)
+
+    def __bool__(self) -> bool:
+        return bool(self.entered or self.said or self.played or self.published)
+
+
+@dataclass
+class Rendition:
+    """How a story went: `ticks` in which something was noticed, when somebody did something, and what others heard."""
+
+    rehearsal: Rehearsal
+    ticks: list[TickNotes]
+    acted: list[float]
+    told: list[str]
+
+
+def played(project: Project, story: Story) -> Rendition:
+    """The story, played to its end or failure."""
+    watch = _Watch()
+    rehearsal = rehearse(project, story, observers=[watch], hooks=[watch.tick], whole=True)
+    acted = [at for at, who, _ in rehearsal.trace if who in ("visitor", "story")]
+    return Rendition(rehearsal, list(watch.ticks()), acted, told(watch.commands))
+
+
+def told(commands: Sequence[tuple[float, Any]]) -> list[str]:
+    """What others notice of commands, in words."""
+    return [words for _, words, _ in noticed(list(commands))]
+
+
+class _Watch(Observer):
+    def __init__(self) -> None:
+        self._ticks = [TickNotes(0.0)]
+        self._playing = dict[str, str]()
+        self.commands = list[tuple[float, Any]]()
+
+    def ticks(self) -> Iterator[TickNotes]:
+        return filter(None, self._ticks)
+
+    def tick(self, now: float) -> None:
+        if not self._ticks[-1]:
+            self._ticks.pop()
+        self._ticks.append(TickNotes(now))
+
+    def stepped(self, step: Step) -> None:
+        notes = self._ticks[-1]
+        notes.active = active_names(step.snapshot)
+        notes.entered += entered_names(step)
+        if step.event:
+            self.commands += ((step.snapshot.at, command_data(command)) for command in step.commands)
+
+    def performing(self, command: Command, now: float) -> None:
+        notes = self._ticks[-1]
+        match command:
+            case Start(_, Say(text)):
+                notes.said += [text] if text else []
+            case Start(id, Play(motion)):
+                self._playing[id] = motion
+            case Publish(route):
+                notes.published.append(route)
+
+    def answered(self, event: Event) -> None:
+        kind, _, id = event.name.partition(".command.")
+        if (motion := self._playing.pop(id, "")) and kind == "done":
+            self._ticks[-1].played.append(motion)

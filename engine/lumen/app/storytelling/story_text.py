@@ -1,0 +1,90 @@
+"""A story as the text of its file."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from typing import Any, assert_never
+
+import yaml
+
+from lumen.language.stories import (
+    Arrive,
+    AwaitTime,
+    Expect,
+    Happen,
+    Leave,
+    Press,
+    SendMessage,
+    Speak,
+    Story,
+    StoryPause,
+    TouchSensor,
+    Visitor,
+    VisitorAction,
+)
+
+HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
+USUAL_WITHIN = 30.0
+
+
+def story_text(story: Story, remarks: list[str]) -> str:
+    """The YAML of a story; `remarks` are comments on top."""
+    lines = [HEAD, *(f"# {remark}" for remark in remarks), f"title: {flow(story.title)}"]
+    robot = {verb: how if isinstance(how, str) else f"{how:g}s" for verb, how in story.robot.items()}
+    top: Mapping[str, Any] = {
+        "behavior": story.behavior,
+        "language": story.language,
+        "at": story.clock.text if story.clock else "",
+        "context": dict(story.context),
+        "robot": robot,
+    }
+    lines += [f"{key}: {flow(value)}" for key, value in top.items() if value]
+    return "\n".join([*lines, "steps:", *(f"  - {line}" for line in _steps(story))]) + "\n"
+
+
+def flow(value: Any) -> str:
+    """The value as YAML in one line."""
+    text: str = yaml.safe_dump([value], default_flow_style=True, allow_unicode=True, sort_keys=False, width=10**6)
+    return text.strip()[1:-1]
+
+
+def _steps(story: Story) -> Iterator[str]:
+    return (f"{verb}: {flow(body)}" for verb, body in map(_step, (step.action for step in story.steps)))
+
+
+def _step(action: VisitorAction) -> tuple[str, Any]:
+    match action:
+        case Arrive(visitor):
+            return "visitor", "arrives" if visitor == Visitor() else asdict(visitor)
+        case Leave():
+            return "visitor", "leaves"
+        case Speak(text, language):
+            return "says", {"text": text, "language": language} if language else text
+        case TouchSensor(sensor, pressed):
+            return "touch" if pressed else "release", sensor
+        case Happen(name, data):
+            return "event", {"name": name, "data": data} if data else name
+        case Press(label):
+            return "operator", {"press": label}
+        case SendMessage(route, body):
+            return "message", {"route": route, "body": body}
+        case StoryPause(seconds):
+            return "wait", f"{seconds:g}s"
+        case AwaitTime(schedule):
+            return "at", schedule.text
+        case Expect():
+            return "expect", _expected(action)
+    assert_never(action)
+
+
+def _expected(wanted: Expect) -> dict[str, Any]:
+    states = wanted.states[0] if len(wanted.states) == 1 else list(wanted.states)
+    published = {"route": wanted.published, "body": wanted.body} if wanted.body is not None else wanted.published
+    found = {
+        "state": states,
+        "said": wanted.said,
+        "said_exactly": wanted.said_exactly,
+        "played": wanted.played,
+        "published": published,
+        "within": None if wanted.within == USUAL_WITHIN else f"{wanted.within:g}s",
+    }
+    return {key: value for key, value in found.items() if value}

@@ -1,0 +1,125 @@
+"""What happened in a recorded visit, as what somebody does in a story, each at its time."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from lumen.interpreters.replay.command_data import started
+from lumen.interpreters.replay.entries import JournalInput
+from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.language.controller_events import controller_events
+from lumen.language.events import CLOCK_SET, Event
+from lumen.language.projects import Project
+from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, Visitor, VisitorAction
+from lumen.runtime.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
+
+FACE_ROUTE = "face"
+GONE = 3.0
+"""Who has not been seen for so long has left [s]."""
+OF_ITSELF = ("arrived", "left", CLOCK_SET)
+"""What a robot notices again by itself, where it does what it did."""
+
+
+class TimedAction(NamedTuple):
+    """Something that somebody did at `at` [s]; `states` were entered last before, at `since`, and still active."""
+
+    at: float
+    action: VisitorAction
+    states: tuple[str, ...] = ()
+    since: float = 0.0
+
+
+def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[TimedAction]:
+    """What was done, in its order; with `faces` those that changed something, else who comes and goes."""
+    found = [row for entry in visit.inputs if entry.how == "heard" for row in _done(entry, project, faces=faces)]
+    if not faces:
+        found += _walks([entry.event.at for entry in visit.inputs if _is_face(entry.event, project)], visit)
+    return list(_anchored(sorted(found, key=lambda row: row.at), visit))
+
+
+def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, str | float]:
+    """What the robot did badly, or otherwise than usual, as `robot:` of a story says it: verbs that always failed.
+
+    With `hanging` also those that never ended, with `lasting` how long it spoke each time [s].
+    """
+    begun = dict[str, tuple[str, float]]()
+    kinds = dict[str, list[tuple[str, float]]]()
+    for entry in visit.inputs:
+        how, separator, id = entry.event.name.partition(".command.")
+        if separator and id in begun:
+            kind, since = begun.pop(id)
+            kinds.setdefault(kind, []).append((how, entry.event.at - since))
+        for command in entry.commands:
+            if row := started(command):
+                begun[row[0]] = row[1].lower(), entry.event.at
+    found: dict[str, str | float] = {}
+    for kind, answers in kinds.items():
+        hows = {how for how, _ in answers}
+        took = {round(length, 2) for how, length in answers if how == "done"}
+        if hows == {"error"}:
+            found[kind] = "fails"
+        elif hanging and hows == {"cancelled"}:
+            found[kind] = "hangs"
+        elif lasting and kind == "say" and took:
+            found[kind] = min(took)  # what waits for another one ends later
+    if hanging:
+        found |= {kind: "hangs" for kind, _ in begun.values() if kind not in kinds}
+    return found
+
+
+def _done(entry: JournalInput, project: Project, *, faces: bool) -> Iterator[TimedAction]:
+    event = entry.event
+    if ".command." in event.name or event.name in (*OF_ITSELF, *controller_events(project.controllers.values())):
+        return
+    if not _is_face(event, project):
+        yield TimedAction(event.at, _action(event, project))
+    elif faces and (entry.entered or entry.exited or entry.commands):
+        seen = event.data if isinstance(event.data, Mapping) else {}
+        yield TimedAction(event.at, Happen(event.name, {key: seen[key] for key in seen if key != "time"}))
+
+
+def _action(event: Event, project: Project) -> VisitorAction:
+    data = event.data
+    row = next((row for row in project.routes.values() if row.event == event.name), None)
+    said = data.get("result") if isinstance(data, Mapping) else None
+    if row and row.name == SPEECH_ROUTE and said and isinstance(said, str) and isinstance(data, Mapping):
+        return Speak(said, str(data.get("language", "")))
+    if event.name in ("touched", "released") and isinstance(data, Mapping):
+        return TouchSensor(str(data.get("sensor")), event.name == "touched")
+    if row and event.cause and event.cause.key:
+        return SendMessage(row.name, data)
+    return Happen(event.name, data)
+
+
+def _is_face(event: Event, project: Project) -> bool:
+    row = project.routes.get(FACE_ROUTE)
+    return row is not None and row.event == event.name
+
+
+def _walks(seen: Sequence[float], visit: RecordedVisit) -> Iterator[TimedAction]:
+    """Somebody comes where a face is seen, and leaves before none is."""
+    away = APPROACH_DISTANCE / VISITOR_SPEED
+    if not seen:
+        return
+    yield TimedAction(seen[0], Arrive(Visitor()))
+    for one, other in pairwise(seen):
+        if other - one > GONE:
+            yield TimedAction(one - away, Leave())
+            yield TimedAction(other, Arrive(Visitor()))
+    if visit.inputs[-1].event.at - seen[-1] > GONE:
+        yield TimedAction(seen[-1] - away, Leave())
+
+
+def _anchored(found: Sequence[TimedAction], visit: RecordedVisit) -> Iterator[TimedAction]:
+    """Each with the states that were entered last before it."""
+    steps = iter(visit.inputs)
+    entry, active, states, since = next(steps, None), set[str](), tuple[str, ...](), 0.0
+    for row in found:
+        while entry and entry.event.at < row.at:
+            active = (active - set(entry.exited)) | set(entry.entered)
+            states = tuple(state for state in states if state in active)
+            if came := tuple(state for state in entry.entered if state in active):
+                states, since = came, entry.event.at
+            entry = next(steps, None)
+        yield row._replace(states=states, since=since)
+        states = ()

@@ -1,0 +1,221 @@
+"""A recorded visit made into a story that passes: the simplest one in which the robot does what it did then."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from itertools import product
+from math import ceil
+from typing import Any, NamedTuple
+
+from lumen.app.storytelling.rendition import Rendition, TickNotes, played, told
+from lumen.app.storytelling.visit_script import TimedAction, broken, script
+from lumen.errors import LumenError, UsageError
+from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.interpreters.statechart import Snapshot, deserialize, initial
+from lumen.interpreters.wall_clock import zone
+from lumen.language.hours import WEEKDAYS, Schedule
+from lumen.language.projects import Project
+from lumen.language.stories import Expect, Story, StoryPause, StoryStep, VisitorAction
+from lumen.runtime.loop import TICK_PERIOD
+
+USUAL_WITHIN = 30.0
+LEAD = 2.0
+"""How long nothing happens before a visit at most [s]."""
+TRIES = 20
+"""How often a check that does not hold is left out before it is given up."""
+
+Renamed = Callable[[Any], Any]
+
+
+class _Way(NamedTuple):
+    """How the story is told: with each face that was seen, by states or by the clock alone, and the robot's faults."""
+
+    lasting: bool
+    hanging: bool
+    faces: bool
+    clocked: bool
+
+
+WAYS = [_Way(*way) for way in product((False, True), repeat=4)]
+"""From what a person would write to what is most exact."""
+
+
+@dataclass(frozen=True)
+class VisitStory:
+    """A story of a visit; `same` is whether the robot says and does in it what it did then.
+
+    If not, it `was` something then that `now` is something else.
+    """
+
+    story: Story
+    same: bool
+    was: str = ""
+    now: str = ""
+
+
+def visit_story(
+    project: Project, old: Project, visit: RecordedVisit, *, name: str, title: str, renamed: Renamed = lambda data: data
+) -> VisitStory:
+    """The story of a visit that was recorded with the files of `old`, as it goes with those of `project`.
+
+    `renamed` takes names out of whatever somebody said. Raises UsageError where none can be made.
+    """
+    home = visit.home
+    if home is None or home.snapshot is None or not visit.inputs:
+        raise UsageError("the beginning of that visit is not in the journal: no story can be made of it")
+    if home.behavior not in project.behaviors:
+        raise UsageError(f"there is no behaviour `{home.behavior}` any more: no story can be made of that visit")
+    stands = deserialize(old.machine, home.snapshot)
+    blank = _blank(project, stands, visit, name, title, renamed)
+    was = told([(entry.event.at, renamed(command)) for entry in visit.inputs for command in entry.commands])
+    best: tuple[int, Rendition, Sequence[TimedAction], Story] | None = None
+    for way in WAYS:
+        acts: Sequence[TimedAction] = [
+            row._replace(action=_without(row.action, renamed)) for row in script(visit, project, faces=way.faces)
+        ]
+        robot = broken(visit, hanging=way.hanging, lasting=way.lasting)
+        draft = replace(blank, robot=robot, steps=tuple(_draft(acts, visit, clocked=way.clocked)))
+        if not draft.steps:
+            continue
+        rendition = played(project, draft)
+        alike = _alike(was, rendition.told)
+        if rendition.rehearsal.failed is None and (best is None or alike > best[0]):
+            best = alike, rendition, acts, draft
+            if alike == len(was):
+                break
+    if best is None:
+        raise UsageError("that visit can't be played as a story on the recording robot")
+    alike, rendition, acts, draft = best
+    story = _checked(project, draft, rendition, [row.action for row in acts])
+    if alike == len(was):
+        return VisitStory(story, same=True)
+    now = rendition.told[alike] if alike < len(rendition.told) else "nothing"
+    return VisitStory(story, same=False, was=was[alike], now=now)
+
+
+def _blank(project: Project, stands: Snapshot, visit: RecordedVisit, name: str, title: str, renamed: Renamed) -> Story:
+    """The world as it was when the visit began."""
+    assert visit.home is not None
+    machine = project.behaviors[visit.home.behavior]
+    first = initial(machine, language=stands.language).snapshot.context
+    context = {key: value for key, value in stands.context.items() if key in first and first[key] != value}
+    return Story(
+        name=name,
+        title=title,
+        steps=(),
+        behavior="" if visit.home.behavior == project.behavior else visit.home.behavior,
+        language="" if stands.language == project.languages[0] else stands.language,
+        clock=_clock(stands, visit),
+        context=renamed(context),
+    )
+
+
+def _clock(stands: Snapshot, visit: RecordedVisit) -> Schedule:
+    where = zone(stands.timezone) if stands.timezone else None
+    moment = datetime.fromtimestamp(visit.began, where)
+    text = f"{WEEKDAYS[moment.weekday()]} {moment:%H:%M}"
+    return Schedule((moment.hour * 60 + moment.minute,), weekdays=(moment.weekday(),), text=text)
+
+
+def _draft(acts: Sequence[TimedAction], visit: RecordedVisit, *, clocked: bool) -> Iterator[StoryStep]:
+    """What somebody does, each so long after what the robot did; `clocked`: after what they did before."""
+    assert visit.home is not None
+    last = max(visit.home.at, visit.inputs[0].event.at - LEAD)
+    for row in acts:
+        if row.states and not clocked and row.since >= last:
+            yield StoryStep(Expect(states=row.states, within=max(USUAL_WITHIN, 2 * (row.since - last) + 10)))
+            last = row.since
+        if row.at - last > TICK_PERIOD:
+            yield StoryStep(StoryPause(round(row.at - last, 2)))
+        yield StoryStep(row.action)
+        last = row.at
+    yield StoryStep(StoryPause(round(max(0.0, visit.inputs[-1].event.at - last) + 2 * TICK_PERIOD, 2)))
+
+
+def _alike(was: Sequence[str], now: Sequence[str]) -> int:
+    """How many of what was told come again, in their order from the beginning."""
+    return next((i for i, row in enumerate(was) if i >= len(now) or now[i] != row), len(was))
+
+
+def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequence[VisitorAction]) -> Story:
+    """The story with what was noticed as what is expected; what can't be expected at that moment is left out."""
+    left_out = set[int]()
+    for digits in (1, 2):
+        for _ in range(TRIES):
+            rows = list(_steps(rendition, acts, left_out, digits))
+            story = replace(draft, steps=tuple(StoryStep(action) for _, action in rows))
+            again = played(project, story)
+            failed = again.rehearsal.failed
+            if failed is None:
+                if _alike(rendition.told, again.told) == len(rendition.told) or digits == 2:
+                    return story
+                break
+            number = rows[failed.step - 1][0]
+            if number is None:
+                break
+            left_out.add(number)
+        left_out = set()
+    raise UsageError("that visit can't be played as a story: what happened in it does not come about again")
+
+
+def _steps(
+    rendition: Rendition, acts: Sequence[VisitorAction], left_out: set[int], digits: int
+) -> Iterator[tuple[int | None, VisitorAction]]:
+    """The steps in their order, those that expect something with their number among what was noticed."""
+    rows: list[tuple[float, int, int]] = [(at, 0, i) for i, at in enumerate(rendition.acted)]
+    rows += [(notes.at, 1, i) for i, notes in enumerate(rendition.ticks)]
+    last, before = 0.0, frozenset[str]()
+    for at, kind, i in sorted(rows):
+        if kind == 0:
+            if at - last > TICK_PERIOD:
+                yield None, StoryPause(round(at - last, digits) or TICK_PERIOD)
+            yield None, acts[i]
+            last = at
+            continue
+        notes = rendition.ticks[i]
+        expected = _expected(notes, before, at - last)
+        before = notes.active or before
+        if expected and i not in left_out and not (i == 0 and at <= TICK_PERIOD):
+            yield i, expected
+            last = at + TICK_PERIOD
+
+
+def _expected(notes: TickNotes, before: frozenset[str], gap: float) -> Expect | None:
+    fresh = [state for state in dict.fromkeys(notes.entered) if state in notes.active and state not in before]
+    states = tuple(fresh[-1:])
+    said, exactly = [*notes.said, None, None][:2]
+    if not (states or said or notes.played or notes.published):
+        return None
+    within = USUAL_WITHIN if gap < USUAL_WITHIN - 5 else float(ceil(1.2 * gap + 10))
+    motion, route = (row[-1] if row else None for row in (notes.played, notes.published))
+    return Expect(states=states, said=said, said_exactly=exactly, played=motion, published=route, within=within)
+
+
+def renaming(names: Mapping[str, str]) -> Renamed:
+    """Writes other names in texts, wherever they are in data."""
+
+    patterns = [(re.compile(rf"(?<!\w){re.escape(old)}(?!\w)", re.IGNORECASE), new) for old, new in names.items()]
+
+    def renamed(data: Any) -> Any:
+        match data:
+            case str():
+                for pattern, new in patterns:
+                    data = new.join(pattern.split(data))
+                return data
+            case Mapping():
+                return {key: renamed(value) for key, value in data.items()}
+            case list() | tuple():
+                return [renamed(value) for value in data]
+        return data
+
+    return renamed
+
+
+def _without(action: VisitorAction, renamed: Renamed) -> VisitorAction:
+    """The same, with other names."""
+    found = {name: renamed(value) for name in ("text", "data", "body") if (value := getattr(action, name, None))}
+    try:
+        return replace(action, **found) if found else action
+    except (TypeError, LumenError):
+        return action

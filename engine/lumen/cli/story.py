@@ -1,0 +1,79 @@
+"""`lumen story`: a recorded visit as a story, to be kept as a test."""
+
+import argparse
+from pathlib import Path
+
+import lumen
+from lumen.app.replaying.journals import chosen
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.storytelling.chosen_visit import chosen_visit
+from lumen.app.storytelling.story_text import story_text
+from lumen.app.storytelling.visit_story import renaming, visit_story
+from lumen.cli.formats import configure_format, print_object
+from lumen.cli.writing import write_result
+from lumen.errors import UsageError
+from lumen.loading.packaged import find_project
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add(
+        "what",
+        nargs="?",
+        metavar="FILE|DAY",
+        help="a .journal file, today, yesterday or 2026-11-23; default: the last run",
+    )
+    add("--at", metavar="14:03", help="the visit that was under way then; default: the last one")
+    add("-o", "--output", type=Path, metavar="FILE.yaml", help="where to write it; default: the terminal")
+    add("--name", action="append", default=[], metavar="OLD=NEW", help="write another name for somebody; several times")
+    add("--title", help="what the story is called")
+    add("--force", action="store_true", help="replace a file that is there")
+    add("--project", metavar="DIR", help="whose journal; default: that of the project here or above")
+    configure_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where the robot does in the story what it did then, 1 where it does something else with the files here."""
+    output: Path | None = options.output
+    if output and output.exists() and not options.force:
+        raise UsageError(f"{output} is there already: name another file, or add --force")
+    names = dict(_name(pair) for pair in options.name)
+    project = lumen.load(find_project(options.project))
+    root = Path(project.root)
+    bundles = KeptBundles(root)
+    one = chosen_visit(chosen(root, options.what), bundles, options.at)
+    home = one.visit.home
+    old = bundles.project(home.bundle, home.behavior) if home else None
+    if old is None:
+        raise UsageError("that visit is not whole in the journal, or the files that ran then were not kept")
+    title = options.title or f"A visit on {one.began:%Y-%m-%d} at {one.began:%H:%M}"
+    stem = output.stem if output else "visit"
+    made = visit_story(project, old, one.visit, name=stem, title=title, renamed=renaming(names))
+    remarks = [f"Of the visit {one.when}, by `lumen story`. It holds what people said: mind their names."]
+    if not made.same:
+        remarks.append(f"Then it was otherwise: {made.was}, where it is {made.now} now.")
+    text = story_text(made.story, remarks)
+    if options.format == "json":
+        if output:
+            _written(text, output)
+        began, ended = one.began.isoformat(), one.ended.isoformat()
+        said = {"began": began, "ended": ended, "same": made.same, "was": made.was, "is": made.now}
+        print_object({**said, "story": text, "wrote": str(output.absolute()) if output else None})
+    else:
+        write_result(text, output, folders=True)
+    return int(not made.same)
+
+
+def _name(pair: str) -> tuple[str, str]:
+    old, separator, new = pair.partition("=")
+    if not (separator and old.strip() and new.strip()):
+        raise UsageError(f"`--name {pair}` says no two names: write it as --name Budi=Ani")
+    return old.strip(), new.strip()
+
+
+def _written(text: str, output: Path) -> None:
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None
