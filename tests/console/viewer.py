@@ -1,0 +1,132 @@
+"""Looks at the console's pages in Debian's Chromium, driven by selenium, without a window."""
+
+import shutil
+import socket
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.common.exceptions import WebDriverException
+from selenium.webdriver import ActionChains, ChromeOptions, Remote
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
+
+from tests.fetched import ROOT, not_provided
+from tests.guarded import DEVNULL, Guarded
+from tests.waiting import until
+
+UNPACKED = ROOT / ".cache/debian/root"
+"""Where scripts/packages.sh unpacks for who is not root."""
+ARGUMENTS = (
+    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars", "--lang=en-GB",
+    "--disable-background-networking", "--disable-component-update", "--no-first-run", "--remote-debugging-pipe",
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+)  # fmt: skip
+"""It reaches nothing but this machine, and ends with its driver, whose pipe it reads."""
+WAIT = 60.0
+"""How long a page may take on a crowded machine [s]."""
+
+
+class Viewer:
+    """A browser; `open` begins a page as somebody who was never here sees it."""
+
+    def __init__(self) -> None:
+        program, driver = _program("usr/lib/chromium/chromium", "chromium"), _program("usr/bin/chromedriver")
+        port = _free_port()
+        self._process: Guarded[bytes] = Guarded([driver, f"--port={port}"], stdout=DEVNULL, stderr=DEVNULL)
+        until(lambda: _listens(port), WAIT)
+        options = ChromeOptions()
+        options.binary_location = str(program)
+        for argument in ARGUMENTS:
+            options.add_argument(argument)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = Remote(f"http://127.0.0.1:{port}", options=options)
+        self.driver.set_script_timeout(WAIT)
+
+    def open(self, address: str, path: str = "", *, ready: str = "main h1", width: int = 1400, **kept: str) -> None:
+        """Open a page and wait until it shows `ready`; `kept` is what it remembers from before, as `theme="dark"`."""
+        self.size(width)
+        self.driver.get(address + "pages/look/icon.svg")  # of the same origin, and does nothing
+        self.run("localStorage.clear(); for (const [k, v] of arguments[0]) localStorage.setItem(`lumen.${k}`, v)",
+                 list(kept.items()))  # fmt: skip
+        self.log("browser"), self.log("performance")
+        self.driver.get(address + path)
+        until(lambda: self.all(ready), WAIT)
+
+    def size(self, width: int, height: int = 800) -> None:
+        """Make the page so large [px]."""
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.command("Emulation.setDeviceMetricsOverride", metrics)
+
+    def command(self, name: str, fields: dict[str, Any]) -> Any:
+        """One of the protocol of its developer tools."""
+        return self.driver.execute("executeCdpCommand", {"cmd": name, "params": fields})["value"]
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        return self.driver.execute_script(script, *arguments)
+
+    def all(self, selector: str) -> list[WebElement]:
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def text(self, selector: str) -> str:
+        """What those of the elements that one sees say, while they are drawn anew."""
+        seen = "[...document.querySelectorAll(arguments[0])].filter(e => e.checkVisibility())"
+        return str(self.run(f"return {seen}.map(e => e.innerText).join('\\n')", selector))
+
+    def shows(self, text: str, selector: str = "body") -> None:
+        """Wait until it does."""
+        until(lambda: text in self.text(selector), WAIT)
+
+    def click(self, selector: str) -> None:
+        """Click the first of them, wherever it has been drawn by now."""
+
+        def clicked() -> bool:
+            with suppress(WebDriverException, IndexError):
+                self.all(selector)[0].click()
+                return True
+            return False
+
+        until(clicked, WAIT)
+
+    def type(self, *keys: str) -> None:
+        ActionChains(self.driver).send_keys(*keys).perform()
+
+    def escape_twice(self) -> None:
+        self.type(Keys.ESCAPE, Keys.ESCAPE)
+
+    def complaints(self) -> list[str]:
+        """What the page's own console said that is more than information."""
+        return [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+
+    def log(self, kind: str) -> list[dict[str, Any]]:
+        """What it has written since it was asked last."""
+        return list(self.driver.execute("getLog", {"type": kind})["value"])
+
+    def close(self) -> None:
+        with suppress(WebDriverException):
+            self.driver.quit()
+        self._process.kill()
+        self._process.wait()
+
+
+def _program(unpacked: str, name: str = "") -> Path:
+    """The program; leaves the test out where this machine has none and could not be given one."""
+    found = UNPACKED / unpacked if (UNPACKED / unpacked).exists() else shutil.which(name or Path(unpacked).name)
+    if found is None:
+        if "chromium" in (told := not_provided()):
+            pytest.skip(told)
+        pytest.fail("Chromium is not installed: `make setup` installs it", pytrace=False)
+    return Path(found)
+
+
+def _free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return int(server.getsockname()[1])
+
+
+def _listens(port: int) -> bool:
+    with suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
+        return True
+    return False
