@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +55,8 @@ def test_now_holds_the_status_and_what_can_happen_next(copy: Path) -> None:
         line = Path(copy / greet["file"]).read_text().splitlines()[greet["line"] - 1]
         assert "greet" in line
         assert greet["since"] == status["since"]
+        since = datetime.fromisoformat(now["time"]) - datetime.fromisoformat(greet["since"])
+        assert 0.4 < since.total_seconds() < 0.6
         assert now["saying"]["text"]
         assert now["saying"]["language"] == "en"
         assert "heard" in now["events"]

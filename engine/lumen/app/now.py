@@ -71,6 +71,7 @@ class NowView:
 
         return {
             **now.status(),
+            "time": time(now.at),
             "position": now.position,
             "states": _tree(now, bundle, time),
             "saying": _saying(now.saying, time),

@@ -27,7 +27,7 @@ function Senses({ robot }) {
       level=${(battery ?? 0) / 100} state=${battery !== null && battery < LOW ? "bad" : "well"} words=${battery !== null && battery < LOW ? t("battery.low") : ""} />
     <${Fact} name=${t("heat")} value=${heat === null ? t("unknown") : `${fixed(heat)} °C${Array.isArray(hot) ? ` ${hot[0]}` : ""}`}
       state=${heat > HOT ? "bad" : "well"} words=${heat > HOT ? t("heat.high") : ""} />
-    <${Fact} name=${t("sonar")} value=${`${t("left")} ${metres(sonar.left)} · ${t("right")} ${metres(sonar.right)}`} />
+    <${Fact} name=${t("sonar")} value=${`${t("left")} ${metres(sonar.leftSensor)} · ${t("right")} ${metres(sonar.rightSensor)}`} />
     <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : `${fixed(realtime * 100)} %`}
       state=${realtime < SLOW ? "bad" : "well"} words=${realtime < SLOW ? t("realtime.slow") : ""} />
     <${Fact} name=${t("queues")} value=${robot.queues ? t("queues.both", robot.queues) : t("unknown")} /></dl>`;
