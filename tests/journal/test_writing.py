@@ -11,8 +11,8 @@ from lumen.interpreters.replay.entries import JournalJump
 from lumen.interpreters.statechart import Step, initial, step
 from lumen.language.events import Event
 from lumen.language.people import PersonName
-from lumen.runtime.inputs import journal_writer
-from lumen.runtime.inputs.journal_file import JournalHeader, read_journal
+from lumen.runtime.inputs import frames, journal_writer
+from lumen.runtime.inputs.journal_file import JournalHeader, line_of, read_journal
 from lumen.runtime.inputs.journal_folder import JournalFolder
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.statechart import Machine
@@ -178,3 +178,38 @@ def test_somebody_who_is_forgotten_is_in_no_file_and_nothing_else_is_lost(disk: 
     assert not [row for row in again if row.differs]
     assert [row.unknown for row in again if row.unknown] == ["somebody who is forgotten was named"] * 2
     assert again[-1].step is not None
+
+
+def test_who_comes_home_with_each_step_and_remembers_much_fills_no_disk(disk: Disk) -> None:
+    """Where it stands is written when as much has been written besides; and all replays as ever."""
+    machine = Machine.from_dict(
+        {
+            "context": {"n": 0, "all": [f"word {n}" for n in range(10_000)]},
+            "states": {"idle": {"on": {"go": {"target": "idle", "reenter": True}}}},
+        }
+    )
+    writer, told = JournalWriter(disk), [initial(machine)]
+    writer.start()
+    writer.jumped("start", bundle(machine), told[0].snapshot)
+    for number in range(500):
+        told.append(step(machine, told[-1].snapshot, Event("go", {"why": "x" * 500}, number * 0.1)))
+        assert told[-1].entered == ("idle",)
+    tell(writer, told[1:])
+    assert writer.flush(60.0)
+    writer.close()
+    standing = [entry for entry in read(disk) if len(line_of(entry)) > 100_000]
+    assert 2 <= len(standing) < 6
+    again = Recorded(disk.folder, bundles={machine.hash: bundle(machine)}).again()
+    assert not [row for row in again if row.differs or row.unknown]
+
+
+def test_a_frame_is_no_larger_than_a_reader_takes(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal_writer, "MAX_LINES_BYTES", 2_000)
+    monkeypatch.setattr(frames, "MAX_TEXT_BYTES", 10_000)
+    disk.free.clear()
+    writer, made = begun(disk), steps(200)
+    tell(writer, made)  # all waits while the disk does not answer
+    disk.free.set()
+    writer.close()
+    assert len([entry for entry in read(disk) if not isinstance(entry, JournalJump)]) == len(made)
+    assert all(read_journal(file).whole for file in disk.files())

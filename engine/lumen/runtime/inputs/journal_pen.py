@@ -16,6 +16,10 @@ from lumen.runtime.inputs.journal_file import line_of
 KEYFRAME_PERIOD = 60.0
 """How often it is written where the behaviour stands [s of the exhibition], besides each time it has come home."""
 
+LARGE = 50_000
+"""A keyframe of more bytes is written only when as much has been written besides: a behaviour that comes home with each
+step, and remembers much, fills no disk."""
+
 NO_JSON = (TypeError, ValueError, RecursionError)
 """What is raised for data that JSON can't hold."""
 
@@ -45,6 +49,7 @@ class JournalPen:
         self._project: Project | None = None
         self._snapshot: Snapshot | None = None
         self._home, self._kept = "", 0.0
+        self._large, self._since = 0, 0
 
     @property
     def bundle(self) -> str:
@@ -72,7 +77,9 @@ class JournalPen:
             lines = [line_of(JournalInput(0, how, step.event, step.exited, step.entered, commands, digest))]
         except NO_JSON:
             return self.keyframe(gone=1)
-        if (self._home and self._home in step.entered) or step.snapshot.at - self._kept >= KEYFRAME_PERIOD:
+        self._since += len(lines[0])
+        home = self._home and self._home in step.entered
+        if (home or step.snapshot.at - self._kept >= KEYFRAME_PERIOD) and self._since >= self._large:
             lines += self.keyframe()
         return lines
 
@@ -88,6 +95,8 @@ class JournalPen:
         done = tuple(map(command_data, commands))
         entry = JournalJump(0, kind, snapshot.at, project.hash, project.behavior, frozen, done, said)
         try:
-            return [line_of(entry)]
+            line = line_of(entry)
         except NO_JSON:
-            return [line_of(entry._replace(commands=(), said={}))]
+            line = line_of(entry._replace(commands=(), said={}))
+        self._since, self._large = 0, len(line) if len(line) > LARGE else 0
+        return [line]

@@ -29,8 +29,8 @@ WRITE_PERIOD = 0.25
 """How long a step that asks for nothing may wait to be written [s]; any other is written at once."""
 SYNC_PERIOD = 0.5
 """How often the system is asked to bring it to the disk [s], at most."""
-MAX_LINES = 1000
-"""Entries in one frame."""
+MAX_LINES, MAX_LINES_BYTES = 1000, 2_000_000
+"""Entries in one frame, and after how many bytes no more are added to it."""
 FILE_BYTES = 1_000_000
 """After which a new file is begun."""
 RETRY_PERIOD = 5.0
@@ -130,10 +130,10 @@ class JournalWriter:
 
     def _write_next(self) -> None:
         """What waits, in one frame; a file is about one bundle, and begins with where the behaviour stands."""
-        lines = list[bytes]()
+        lines, size = list[bytes](), 0
         if self._bytes > FILE_BYTES or time.strftime("%j") != self._day:
             self._end_file()
-        while self._waiting and len(lines) < MAX_LINES:
+        while self._waiting and len(lines) < MAX_LINES and size < MAX_LINES_BYTES:
             told = self._waiting.popleft()
             if isinstance(told, PersonName):
                 self._put(lines)
@@ -150,7 +150,9 @@ class JournalWriter:
                 if self._begin_file(self.folder, told):
                     lines += self._pen.keyframe(gone=self._gone) if isinstance(told, Stepped) else []
                     self._gone = 0
-            lines += self._pen.write(told)
+            written = self._pen.write(told)
+            lines += written
+            size += sum(map(len, written))
         self._put(lines)
 
     def _put(self, lines: list[bytes]) -> None:
