@@ -95,6 +95,8 @@ class LiveBehavior:
         except Exception:
             self.adopt(old)
             raise
+        if self.trace in self.loop.observers and (plan.entered or plan.exited):
+            self.trace.migrated(plan)
 
     def _timezone(self) -> str:
         """The project's; where it names none this machine's, and for a story, which is the same everywhere, UTC."""

@@ -7,6 +7,7 @@ from math import hypot, inf, isfinite
 from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import seen
+from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Look, Move, Posture, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
@@ -159,7 +160,8 @@ class RecordingRobot:
             raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, self.body.tactile, 'there are')}")
         if pressed != (sensor in self._pressed):
             self._pressed ^= {sensor}
-            self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
+            by = Cause("person", sender=VISITOR)
+            self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time, cause=by))
 
     def plug(self, plugged: bool) -> None:
         self._plugged = plugged

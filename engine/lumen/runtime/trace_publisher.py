@@ -1,17 +1,17 @@
 """What the behaviour does, on the bus: for operators, and for visitors in a process of their own."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from typing import Any
 
 from lumen.errors import BusError
+from lumen.interpreters.migration import MigrationPlan
 from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.statechart.nesting import active_names, entered_names
+from lumen.interpreters.statechart.nesting import active_names, entered_names, flattened_steps
 from lumen.language.causes import Cause
 from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
-from lumen.language.machines import Transition
 from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.loop import Observer
@@ -52,8 +52,15 @@ class TracePublisher(Observer):
         body = {**_standing(step.snapshot), "entered": came, "exited": gone, "event": ""}
         if step.event:
             body |= {"event": step.event.name, "cause": _cause(step.event.cause)}
-        taken = [_transition(project, transition) for transition in step.transitions]
+        taken = list(_transitions(project, step))
         self._tell({**body, "step": self._count(), "transitions": taken, "bundle": project.hash, "data": _data(step)})
+
+    def migrated(self, plan: MigrationPlan) -> None:
+        """Tell where it stands under files that were saved, and which states these left and entered."""
+        project = self._project()
+        cause = Cause("file", f"behaviors/{project.behavior}.yaml")
+        ways = {"entered": list(plan.entered), "exited": list(plan.exited), "event": "", "cause": _cause(cause)}
+        self._tell({**_standing(plan.snapshot), **ways, "step": self._count(), "bundle": project.hash})
 
     def standing(self, snapshot: Snapshot) -> None:
         """Tell somebody who has just come where the behaviour stands."""
@@ -93,11 +100,16 @@ class TracePublisher(Observer):
             _log.debug("what the behaviour does was not published: %s", error)
 
 
-def _transition(project: Project, transition: Transition) -> dict[str, Any]:
-    """Which transition of the behaviour was taken, and where it stands."""
-    place = project.place(f"behaviors/{project.behavior}.yaml", transition.where)
-    said = {"source": transition.source, "targets": list(transition.targets)}
-    return {**said, "file": place.file, "line": place.line}
+def _transitions(project: Project, step: Step) -> Iterator[dict[str, Any]]:
+    """Which transitions were taken, those of invoked behaviours included, and where they stand."""
+    names = {id(machine): name for name, machine in project.behaviors.items()}
+    names[id(project.machine)] = project.behavior
+    for prefix, machine, part in flattened_steps(project.machine, step):
+        file = f"behaviors/{names.get(id(machine), machine.id)}.yaml"
+        for transition in part.transitions:
+            place = project.place(file, transition.where)
+            said = {"source": prefix + transition.source, "targets": [prefix + target for target in transition.targets]}
+            yield {**said, "file": place.file, "line": place.line}
 
 
 def _cause(cause: Cause | None) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from lumen.interpreters.replay.digest import StepDigest
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.causes import Cause
 from lumen.language.machines import MachineDefinition
 
 MachineSource = Callable[[str, str], MachineDefinition | None]
@@ -153,7 +154,8 @@ def _taken(machine: MachineDefinition, before: Snapshot, entry: JournalInput) ->
     timer = due(before)
     if timer is None or timer.sendid != event.sendid:
         raise LumenError(f"the timer `{event.name}` does not run out then")
-    return step(machine, before, timer)
+    taken = step(machine, before, timer)
+    return taken._replace(event=timer._replace(cause=Cause("timer", timer.sendid)))
 
 
 def _standing(was: Any, now: Any) -> tuple[StepOutcome, StepOutcome]:

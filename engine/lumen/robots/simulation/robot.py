@@ -1,11 +1,12 @@
 """The simulated NAO behind the `Robot` seam, in a hall behind the `Hall` seam."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import degrees
 from pathlib import Path
 
 from lumen.errors import RobotError, RobotRefusedError, UsageError
+from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
@@ -186,15 +187,16 @@ class SimulatedRobot:
         if sensor not in self._pressed:
             raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, self._pressed, 'there are')}")
         (self._held.add if pressed else self._held.discard)(sensor)
-        self._feel_touch()
+        self._feel_touch({sensor})
 
-    def _feel_touch(self) -> None:
-        """Notice which tactile sensors are pressed: by a hand, or by what stands in the hall."""
+    def _feel_touch(self, touched: Collection[str] = ()) -> None:
+        """Notice which tactile sensors are pressed: `touched` by a hand, or by what stands in the hall."""
         now = self._held | self._tactile.pressed()
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
                 self._pressed[sensor] = not before
-                self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time))
+                by = Cause("person", sender=VISITOR) if sensor in touched else None
+                self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time, cause=by))
 
     def plug(self, plugged: bool) -> None:
         self.condition.plugged = plugged
