@@ -132,7 +132,7 @@ def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path
         now = ask("now")
         assert [s["name"] for s in now["states"]] == ["shown"]
         assert [s["name"] for s in now["states"][0]["children"]] == ["shown.here"]
-        assert now["position"] > before["position"]
+        until(lambda: ask("now")["position"] > before["position"])  # it is kept on another thread
         assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": False}
         assert ask("event", event="back") == {"verdict": "done", "taken": True}
         assert exhibition.why("waiting")["chain"][-1]["text"] == "somebody"
