@@ -10,7 +10,9 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
+from tests.console.house import House
 from tests.console.pages import Browser, Served
+from tests.rabbitmq import RabbitMQ
 from tests.tour.conftest import copy, project
 from tests.waiting import until
 
@@ -61,3 +63,28 @@ def served(copy: Path, hosted: Hosted) -> Iterator[Served]:
 @pytest.fixture
 def browser(served: Served) -> Browser:
     return served.browser
+
+
+@pytest.fixture
+def house(copy: Path) -> Iterator[House]:
+    """An exhibition on its own bus, and a console, in processes that a test may kill."""
+    yield from lived_in(House(copy, speed="4"))
+
+
+@pytest.fixture
+def house_on_a_broker(copy: Path) -> Iterator[House]:
+    """The same in more processes, on a broker that a test may kill."""
+    broker = RabbitMQ()
+    broker.start()
+    try:
+        yield from lived_in(House(copy, broker, speed="4"))
+    finally:
+        broker.stop()
+
+
+def lived_in(house: House) -> Iterator[House]:
+    try:
+        house.start()
+        yield house
+    finally:
+        house.close()

@@ -31,6 +31,7 @@ function took(robot) {
   const before = live.robots.get(robot.robot), told = Date.parse(robot.time ?? robot.heard ?? "");
   const skew = Number.isNaN(told) ? 0 : told - Date.now();
   live.robots.set(robot.robot, { ...robot, skew: before && Math.abs(before.skew - skew) < 700 ? before.skew : skew });
+  for (const button of document.querySelectorAll("rest-button")) button.heed?.([...live.robots.values()]);
 }
 
 function become(state) {
@@ -63,11 +64,12 @@ function again(mine, after) {
   timer = setTimeout(connect, after);
 }
 
-/** Where to go on: what was seen last of each robot, else a few entries before now. */
+/** Where to go on: what was seen last of each robot, also of one that a new console has not found yet, else a few entries before now. */
 function after(robots) {
-  const at = ({ robot, position }) => seen.get(robot)?.[0] ?? Math.max(0, (position ?? 0) - BEFORE);
-  if (lumen.robot) return String(at(robots.find((one) => one.robot === lumen.robot) ?? { robot: lumen.robot }));
-  return robots.length === 1 ? String(at(robots[0])) : robots.map((one) => `${one.robot}:${at(one)}`).join(",");
+  const known = new Map();
+  for (const { robot, position } of robots) if (position != null) known.set(robot, Math.max(-1, position - BEFORE));
+  for (const [robot, [position]] of seen) known.set(robot, position);
+  return [...known].filter(([robot]) => !lumen.robot || robot === lumen.robot).map(([robot, position]) => `${robot}:${position}`).join(",");
 }
 
 async function read(mine, robots) {

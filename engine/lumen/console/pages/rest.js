@@ -10,6 +10,7 @@
       unknown: "Sent, but no answer came: look at the robot.",
       failed: "The robot does not rest: {reason}",
       finished: "Rests, after {seconds} s.",
+      after_all: "Rests after all: the robot says so now.",
     },
     id: {
       rest: "Istirahat", all: "semua robot", again: "Escape sekali lagi: istirahat", dismiss: "Tutup",
@@ -19,10 +20,14 @@
       unknown: "Terkirim, tetapi tidak ada jawaban: lihat robotnya.",
       failed: "Robot tidak beristirahat: {reason}",
       finished: "Beristirahat, setelah {seconds} dtk.",
+      after_all: "Akhirnya beristirahat: robot mengatakannya sekarang.",
     },
   };
-  const LIMIT = 1000, TWICE = 1500; // [ms]: an answer's first bytes; two presses of Escape
-  const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓" };
+  const LIMIT = 1000, SILENT = 12000, TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
+  const NEW = 5000; // [ms] after a press what a robot says of itself is newer than it
+  const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
+  const ALARMS = ["unsent", "failed", "unknown"];
+  const PRESSED = "lumen.pressed", FRESH = 10000; // a press that the next page is to tell of, for so long [ms]
   const root = document.documentElement;
 
   const kept = (key) => { try { return localStorage.getItem(key); } catch { return null; } };
@@ -37,12 +42,23 @@
 
   const newId = () => Array.from(crypto.getRandomValues(new Uint8Array(16)), (b) => b.toString(16).padStart(2, "0")).join("");
 
+  /** Keep a press of Rest until it is known what became of it, in this window only; null forgets it. */
+  function remember(press) {
+    try { press ? sessionStorage.setItem(PRESSED, JSON.stringify(press)) : sessionStorage.removeItem(PRESSED); } catch { /* a private window */ }
+  }
+  function remembered() {
+    try {
+      const press = JSON.parse(sessionStorage.getItem(PRESSED));
+      return press && Date.now() - press.at < FRESH ? press : null;
+    } catch { return null; }
+  }
+
   /** Send a command, and tell how it stands: sending, unsent, sent, unknown, then finished or failed, with the answer. */
   async function post(fields, tell) {
     const began = performance.now(), passed = () => (performance.now() - began) / 1000;
     tell("sending", {});
     const late = setTimeout(() => tell("unsent", { seconds: passed() }), LIMIT);
-    let sent = false;
+    let sent = false, silent = 0;
     try {
       const answer = await fetch("/api/commands", {
         method: "POST", keepalive: true, cache: "no-store",
@@ -51,12 +67,13 @@
       clearTimeout(late);
       sent = answer.ok && answer.headers.get("Lumen-State") !== "unsent";
       if (sent) tell("sent", { seconds: passed() });
+      if (sent && fields.command === "rest") silent = setTimeout(() => tell("unknown", { seconds: passed() }), SILENT);
       const said = await answer.json().catch((error) => { if (sent) throw error; return {}; });
       tell(sent ? said.state : "unsent", { reason: "", ...said, seconds: passed(), status: answer.status });
     } catch {
       clearTimeout(late);
       tell(sent ? "unknown" : "unsent", { seconds: passed() });
-    }
+    } finally { clearTimeout(silent); }
   }
 
   class RestButton extends HTMLElement {
@@ -77,6 +94,8 @@
       this.said.append(this.sign, this.calm, this.alarm, this.close);
       this.replaceChildren(this.button, this.said);
       this.speak();
+      const before = this.hasAttribute("main") && remembered();
+      if (before) this.press(before); // the page was left meanwhile: the same message, which is heeded once
     }
 
     speak() { // in the page's language
@@ -88,11 +107,21 @@
       if (this.told && !this.said.hidden) this.show(...this.told);
     }
 
-    press() {
+    press(again = null) {
       const press = ++this.presses;
-      post({ robot: this.getAttribute("robot") ?? robot, command: "rest" }, (state, answer) => {
+      const sent = again ?? { id: newId(), robot: this.getAttribute("robot") ?? robot, at: Date.now() };
+      this.sent = sent;
+      remember(sent);
+      post({ id: sent.id, robot: sent.robot, command: "rest" }, (state, answer) => {
+        if (answer.status && remembered()?.id === sent.id) remember(null);
         if (press === this.presses || state === "finished") this.show(state, answer);
       });
+    }
+
+    heed(robots) { // what they say of themselves: who was said not to rest may do so after all
+      if (!this.told || this.said.hidden || !ALARMS.includes(this.told[0]) || Date.now() - this.sent.at < NEW) return;
+      const meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
+      if (meant.length && meant.every((one) => one.stopped && one.connected)) this.show("after_all");
     }
 
     hint() { // after one Escape, for as long as the second counts; it hides nothing that was told
@@ -104,7 +133,7 @@
     show(state, answer = {}) {
       this.told = [state, answer];
       const text = (words()[state] ?? state).replace("{seconds}", (answer.seconds ?? 0).toFixed(1)).replace("{reason}", answer.reason ?? "");
-      const alarming = ["unsent", "failed", "unknown"].includes(state);
+      const alarming = ALARMS.includes(state);
       this.said.hidden = false, this.said.dataset.state = state, this.sign.textContent = SIGNS[state] ?? "";
       this.calm.textContent = alarming ? "" : text;
       this.alarm.textContent = alarming ? text + (state === "unsent" && answer.reason ? ` (${answer.reason})` : "") : "";

@@ -1,0 +1,137 @@
+"""Debian's Chromium, without a screen: windows with pages of the console, and what a person sees and does there."""
+
+import shutil
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+from selenium import webdriver
+from selenium.common.exceptions import WebDriverException
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
+
+from tests.guarded import temporary_folder
+from tests.rabbitmq import ROOTS, UNPACKED
+from tests.waiting import until
+
+BROWSER, DRIVER = "usr/lib/chromium/chromium", "usr/bin/chromedriver"
+SWITCHES = (
+    "headless=new",
+    "no-sandbox",  # root has none
+    "disable-gpu",
+    "disable-dev-shm-usage",
+    "disable-component-update",
+    "no-first-run",
+    "no-proxy-server",
+    "disable-background-networking",
+    "force-prefers-reduced-motion",
+)
+TIMEOUT = 60.0
+"""How long a page may take on a crowded machine [s]."""
+REST = "rest-button[main] button.rest"
+SAID = """
+const said = document.querySelector("rest-button[main] .rest-said");
+if (said) return said.hidden ? "" : said.innerText;
+const broken = document.querySelector(".broken");
+return broken && broken.offsetParent ? broken.innerText : "";
+"""
+QUIET = """
+const said = document.querySelector("rest-button[main] .rest-said");
+if (said) said.querySelector(":scope > button").click();
+document.activeElement?.blur();
+"""
+
+
+def installed(name: str) -> str:
+    """Where one of Debian's files is; the test is skipped in words where packages could not be had."""
+    for root in ROOTS:
+        if (root / name).exists():
+            return str(root / name)
+    told = UNPACKED.with_suffix(".missing")
+    if told.exists() and "chromium" in told.read_text():
+        pytest.skip(told.read_text().strip())
+    pytest.fail("Chromium is not installed: `make packages` installs it, or unpacks it for you", pytrace=False)
+
+
+class Chromium:
+    """A browser with a profile of its own until `close`; in English, `size` is its windows' [px]."""
+
+    def __init__(self, *, size: tuple[int, int] = (1200, 900), language: str = "en") -> None:
+        self.folder = temporary_folder("lumen-chromium-")
+        options = webdriver.ChromeOptions()
+        options.binary_location = installed(BROWSER)
+        options.page_load_strategy = "none"
+        switches = (*SWITCHES, f"user-data-dir={self.folder}", f"lang={language}", f"window-size={size[0]},{size[1]}")
+        for switch in switches:
+            options.add_argument(f"--{switch}")
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = webdriver.Chrome(options, Service(installed(DRIVER)))
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        """What a script in the page returns."""
+        return self.driver.execute_script(script, *arguments)
+
+    def open(self, address: str) -> None:
+        """Go to an address, and don't wait for it."""
+        self.driver.get(address)
+
+    def window(self) -> str:
+        """Another window, which is looked at from now on."""
+        self.driver.switch_to.new_window("window")
+        return str(self.driver.current_window_handle)
+
+    def look(self, window: str) -> None:
+        self.driver.switch_to.window(window)
+
+    def find(self, selector: str) -> WebElement:
+        """The first element that is shown and that this is true of, once there is one."""
+        found: list[WebElement] = []
+
+        def there() -> bool:
+            found[:] = [one for one in self.all(selector) if one.is_displayed()]
+            return bool(found)
+
+        until(there, TIMEOUT)
+        return found[0]
+
+    def all(self, selector: str) -> Sequence[WebElement]:
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def text(self) -> str:
+        """All that is shown."""
+        return str(self.run("return document.body ? document.body.innerText : ''"))
+
+    def shows(self, *texts: str) -> bool:
+        shown = self.text()
+        return all(text in shown for text in texts)
+
+    def rest(self, *, keys: bool = False) -> None:
+        """Press Rest as a person does, as soon as the page has it: with the mouse, or Escape twice."""
+
+        def pressed() -> bool:
+            try:
+                if not (found := self.all(REST)):
+                    return False
+                if keys:
+                    webdriver.ActionChains(self.driver, 0).send_keys(Keys.ESCAPE, Keys.ESCAPE).perform()
+                else:
+                    found[0].click()
+            except WebDriverException:  # the page was another one meanwhile
+                return False
+            return True
+
+        until(pressed, TIMEOUT)
+
+    def said(self) -> str:
+        """What the page says became of Rest, in its words; empty for nothing."""
+        return str(self.run(SAID))
+
+    def quiet(self) -> None:
+        """Close what it said before."""
+        self.run(QUIET)
+
+    def close(self) -> None:
+        self.driver.quit()
+        shutil.rmtree(self.folder, ignore_errors=True)

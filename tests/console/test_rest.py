@@ -1,0 +1,176 @@
+"""Rest at any moment: the robot rests, or the page says that it does not. In a real browser, on both buses.
+
+Whether it rests is asked of the robot, not of the console. `LUMEN_SEED=5` draws other moments.
+"""
+
+import os
+import re
+import sys
+from collections import Counter
+from contextlib import suppress
+from random import Random
+from statistics import median, quantiles
+from threading import Event
+
+import pytest
+
+from tests.console.chromium import Chromium
+from tests.console.house import House
+from tests.console.troubles import (
+    LEAVING,
+    LOADING,
+    LONGEST,
+    QUIET,
+    WITH_BROKER,
+    WITHOUT_BROKER,
+    Happening,
+    Trouble,
+    drawn,
+)  # fmt: skip
+from tests.waiting import until
+
+SEED = int(os.environ.get("LUMEN_SEED", "18"))
+PAGES = ("", "robot/NAO", "robot/NAO/day")
+RESTS = re.compile(r"Rests")
+REFUSES = re.compile(r"NOT SENT|does not rest|no answer came|can't be sent")
+SETTLES = 60.0
+"""How long a page may take until it says what became of Rest, on a crowded machine [s]."""
+TOOK = "return document.querySelector('rest-button[main]')?.told?.[1]?.seconds ?? null"
+
+
+class Desk:
+    """A person at a few windows of one console, who presses Rest, and what came of it."""
+
+    def __init__(self, house: House, draw: Random) -> None:
+        self.house, self.draw, self.chromium = house, draw, Chromium()
+        driver = self.chromium.driver
+        self.windows = [str(driver.current_window_handle), *(self.chromium.window() for _ in PAGES[1:])]
+        for window, page in zip(self.windows, PAGES, strict=True):
+            self.chromium.look(window)
+            self.chromium.open(house.address + page)
+            self.chromium.find("rest-button[main] button.rest")
+        self.times: list[float] = []
+        self.outcomes = Counter[str]()
+        self.silent: list[str] = []
+
+    def live(self, trouble: Trouble) -> None:
+        """One trouble, and presses at moments while it begins and lasts."""
+        house, draw = self.house, self.draw
+        pressed = draw.sample(self.windows, trouble.presses)
+        for window in pressed:
+            self.chromium.look(window)
+            self.chromium.quiet()
+        happening = Happening(trouble, house, draw.uniform(0, 0.4) if trouble.presses > 1 else 0.0)
+        for window in pressed:
+            self.chromium.look(window)
+            if trouble is not QUIET:
+                Event().wait(draw.uniform(0, 0.4))
+            self.press(trouble)
+        happening.mend(draw.uniform(0, LONGEST) if trouble.presses > 1 else 0.0)
+        said = {window: self.hear(window) for window in pressed}
+        until(lambda: house.stopped_by() is not None, SETTLES)
+        rests = bool(house.stopped_by())
+        for window in pressed:
+            self.judge(trouble, window, said[window], rests=rests)
+        house.resume()
+
+    def press(self, trouble: Trouble) -> None:
+        house, draw = self.house, self.draw
+        if trouble is LOADING:
+            self.chromium.open(house.address + draw.choice(PAGES))
+        self.chromium.rest(keys=draw.random() < 0.5)
+        if trouble is LEAVING:
+            self.chromium.open(house.address + draw.choice(PAGES))
+
+    def hear(self, window: str) -> str:
+        """What a page says at last, as far as it does."""
+        self.chromium.look(window)
+        said = ""
+
+        def settled() -> bool:
+            nonlocal said
+            said = self.chromium.said()
+            return bool(RESTS.search(said) or REFUSES.search(said))
+
+        with suppress(AssertionError):
+            until(settled, SETTLES)
+        return said
+
+    def judge(self, trouble: Trouble, window: str, said: str, *, rests: bool) -> None:
+        """What a page said is compared with what is so; where it alarmed for nothing it has to say so."""
+        self.chromium.look(window)
+        what = " ".join(said.split())
+        if rests and REFUSES.search(said):
+            what = " ".join(self.corrected().split())
+            self.outcomes["said NOT, and then that it rests after all"] += bool(RESTS.search(what))
+            if not RESTS.search(what):
+                self.silent.append(f"{trouble.name}: rests, and the page still says “{what}”")
+        elif RESTS.search(said) and not rests:
+            self.silent.append(f"{trouble.name}: does not rest, and the page says “{what}”")
+        elif not rests and not REFUSES.search(said):
+            self.silent.append(f"{trouble.name}: does not rest, and the page says “{what}”, nothing else")
+        elif rests and not said:
+            self.silent.append(f"{trouble.name}: rests, and the page says nothing")
+        else:
+            self.outcomes["rests" if rests else "does not rest, as the page says"] += 1
+            if rests and trouble.presses == 1 and isinstance(seconds := self.chromium.run(TOOK), float | int):
+                self.times.append(float(seconds))
+
+    def corrected(self) -> str:
+        """What a page says once it knows better."""
+        with suppress(AssertionError):
+            until(lambda: RESTS.search(self.chromium.said()), SETTLES)
+        return self.chromium.said()
+
+    def close(self) -> None:
+        self.chromium.close()
+
+
+@pytest.fixture
+def draw() -> Random:
+    return Random(SEED)
+
+
+def pressed(house: House, draw: Random, troubles: tuple[Trouble, ...], presses: int) -> None:
+    """Live through so many moments, tell of them, and fail for each that was silent."""
+    desk = Desk(house, draw)
+    lived = Counter[str]()
+    try:
+        for trouble in drawn(troubles, draw, presses):
+            desk.live(trouble)
+            lived[trouble.name] += trouble.presses
+    finally:
+        desk.close()
+    p95 = quantiles(desk.times, n=20)[-1]
+    lines = (
+        f"Rest at {lived.total()} moments (seed {SEED}): silent failures {len(desk.silent)}",
+        ", ".join(f"{name} {count}" for name, count in lived.most_common()),
+        ", ".join(f"{what} {count}" for what, count in desk.outcomes.most_common()),
+        f"until the robot rests where nothing is broken: median {median(desk.times):.2f} s, p95 {p95:.2f} s",
+    )
+    sys.stdout.write("\n  ".join(lines) + "\n")
+    assert not desk.silent, "\n".join(desk.silent)
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("rest")
+def test_rest_at_120_moments_on_the_local_bus(house: House, draw: Random) -> None:
+    pressed(house, draw, WITHOUT_BROKER, int(os.environ.get("N", "120")))
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("rest on a broker")
+def test_rest_at_180_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
+    pressed(house_on_a_broker, draw, WITH_BROKER, int(os.environ.get("N", "180")))
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("rest")
+def test_rest_at_400_moments_on_the_local_bus(house: House, draw: Random) -> None:
+    pressed(house, draw, WITHOUT_BROKER, 400)
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("rest on a broker")
+def test_rest_at_600_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
+    pressed(house_on_a_broker, draw, WITH_BROKER, 600)
