@@ -54,7 +54,7 @@ class Hall:
 
 def test_a_hand_stays_as_long_as_was_typed() -> None:
     visitor: Any = Hall()
-    commands = TypedCommands(visitor, Mock(), lambda label, by: "")
+    commands = TypedCommands(visitor, Mock(), Mock())
     commands.do("/touch head", 0.0)
     commands.do("/touch left bumper 2s", 0.0)
     commands.do("/touch LEFTBUMPER 3s", 0.0)
@@ -72,7 +72,9 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
     ("line", "says"),
     [
         ("/tuch head", "`/tuch` is nothing that can be done: did you mean `touch`?"),
-        ("/", "there are `help`, `press`, `touch`"),
+        ("/", "there are `go`, `help`, `press`, `stay`, `touch`"),
+        ("/go", "True by the operator"),
+        ("/stay", "False by the operator"),
         ("/press", "write what stands on the button, as in `/press Next exhibit`"),
         ("/press Next exhibit", "no Next exhibit for the operator"),
         ("/touch", "write where, as in `/touch head`"),
@@ -87,6 +89,7 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
 def test_what_can_be_typed_is_said(line: str, says: str) -> None:
     visitor: Any = Hall()
     narrator = Mock()
-    TypedCommands(visitor, narrator, lambda label, by: f"no {label} for {by}").do(line, 0.0)
+    exhibition = Mock(press=lambda label, by: f"no {label} for {by}", approve=lambda by, *, go: f"{go} by {by}")
+    TypedCommands(visitor, narrator, exhibition).do(line, 0.0)
     assert says in narrator.note.call_args.args[0]
     assert visitor.felt == []

@@ -92,6 +92,7 @@ class Exhibition:
             realtime=lambda: self.node.pace.realtime,
             reloaded=lambda: self.reloader.last_reload if self.reloader else None,
             record=directory.records.write if directory else lambda _: None,
+            keep=records.keep_decisions,
         )
         self.node.add(self._operator)
         if directory:
@@ -106,6 +107,7 @@ class Exhibition:
 
             def recover() -> Resumption | FreshStart:
                 found = directory.begin_run(behavior, url, self.reloader, fresh=fresh)
+                self._operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
                 return watch.recovered(found) if watch else found
 
             self.node.brain.recover = recover

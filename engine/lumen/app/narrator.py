@@ -9,7 +9,18 @@ from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
-from lumen.language.stories import Arrive, Happen, Leave, Press, SendMessage, Speak, TouchSensor, VisitorAction
+from lumen.language.stories import (
+    Approve,
+    Arrive,
+    Happen,
+    Leave,
+    Press,
+    SendMessage,
+    SetAutonomy,
+    Speak,
+    TouchSensor,
+    VisitorAction,
+)
 from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 
@@ -107,6 +118,10 @@ class Narrator(Observer):
                 self.line("visitor", f"{'presses' if pressed else 'lets go of'} {sensor}")
             case Happen(name):
                 self.line("story", f"lets `{name}` happen")
+            case Approve(go):
+                self.line("operator", "says GO" if go else "lets it stay")
+            case SetAutonomy(level):
+                self.line("operator", f"sets autonomy: {level}")
             case Press(label):
                 self.line("operator", f"presses “{label}”")
             case SendMessage(route):

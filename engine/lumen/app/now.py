@@ -10,10 +10,12 @@ from lumen.interpreters.explaining.names import machines_in
 from lumen.interpreters.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
 from lumen.interpreters.explaining.pressing import ShownButton, shown_buttons
 from lumen.interpreters.statechart import Snapshot
+from lumen.language.approvals import Autonomy
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.projects import Project
+from lumen.runtime.approvals import Approvals, HeldEvent
 
 Status = dict[str, Any]
 
@@ -32,6 +34,8 @@ class PresentMoment(NamedTuple):
     saying: UnderWay | None
     motion: UnderWay | None
     heard: Spoken | None
+    waiting: tuple[HeldEvent, ...]
+    autonomy: Autonomy
     events: int
     commands: int
     status: Callable[[], Status]
@@ -44,13 +48,26 @@ def moment(
     doings: Doings,
     *,
     position: int,
+    approvals: Approvals,
     events: int,
     status: Callable[[], Status],
 ) -> PresentMoment:
     """What is so now; nothing is computed from it yet."""
     said, moved = doings.saying, doings.motion
     return PresentMoment(
-        project, snapshot, at, position, doings.since, said, moved, doings.heard, events, doings.commands, status
+        project,
+        snapshot,
+        at,
+        position,
+        doings.since,
+        said,
+        moved,
+        doings.heard,
+        approvals.waiting,
+        approvals.autonomy,
+        events,
+        doings.commands,
+        status,
     )
 
 
@@ -79,8 +96,8 @@ class NowView:
             "visitor_said": {"text": now.heard.text, "at": time(now.heard.at)} if now.heard else None,
             "ways": [_way(way, bundle, time) for way in ways_out(now.project.machine, now.snapshot, now.at)],
             "buttons": [_button(one, now.project) for one in shown_buttons(now.project.machine, now.snapshot, now.at)],
-            "waiting": [],
-            "autonomy": "ask",
+            "waiting": [_held(held, bundle, time) for held in now.waiting],
+            "autonomy": now.autonomy,
             "queues": {"events": now.events, "commands": now.commands},
             **bundle.constant,
         }
@@ -206,6 +223,21 @@ def _button(shown: ShownButton, project: Project) -> dict[str, Any]:
         "state": shown.state,
         "enabled": shown.enabled,
         "reason": shown.reason,
+    }
+
+
+def _held(held: HeldEvent, bundle: _Bundle, time: Callable[[float], str]) -> dict[str, Any]:
+    machine, wanted, approval = held.marked
+    return {
+        "id": held.id,
+        "event": held.event.name,
+        "data": held.event.data,
+        "source": machine.states[wanted.source].name or machine.id,
+        "targets": [machine.states[path].name or machine.id for path in wanted.targets],
+        **bundle.place(machine, wanted.where),
+        "since": time(held.since),
+        "until": None if approval.within is None else time(held.until),
+        "else": approval.otherwise,
     }
 
 

@@ -72,7 +72,12 @@ class RaisedEvents(Observer):
         self._loop.happen(event)
 
     def look(self) -> None:
-        """Say of those that were not stepped that they were not: nothing waits any more."""
+        """Say of those that were not stepped that they were not: they wait for approval, or nothing waits any more."""
+        for one in tuple(self._open):
+            held = (held for held in self._loop.runtime.approvals.waiting if held.event.cause is one.cause)
+            if id := next((held.id for held in held), ""):
+                self._open.remove(one)
+                self._reply(one.message, {"verdict": "done", "taken": False, "waiting": id})
         if self._open and not self._loop.waiting:
             for one in self._open:
                 self._reply(one.message, refusal("the behaviour could not take it: its log says why"))

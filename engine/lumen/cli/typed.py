@@ -31,7 +31,7 @@ class TypedVisitorPart(Part):
     def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str) -> None:
         self.needs = visitor.needs
         self._visitor, self._narrator, self._greeting = visitor.actor, narrator, greeting
-        self._commands = TypedCommands(visitor.actor, narrator, visitor.environment.press)
+        self._commands = TypedCommands(visitor.actor, narrator, visitor.environment)
         self._lines: queue.Queue[str | None] = queue.Queue(MAX_WAITING_LINES)
         self._gone: float | None = None
         self._now = 0.0

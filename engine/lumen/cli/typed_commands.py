@@ -7,7 +7,8 @@ from lumen.errors import UsageError
 from lumen.language.causes import OPERATOR
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.durations import seconds
-from lumen.language.stories import Press, TouchSensor
+from lumen.language.stories import Approve, Press, TouchSensor
+from lumen.runtime.story import StoryEnvironment
 from lumen.runtime.visitor import VisitorActor
 
 TAP = 0.5
@@ -26,18 +27,21 @@ What you type is what the visitor says. What begins with / is done:
   /touch head       a hand on its head; also {places}
   /touch head 3s    and it stays there for so long (else {tap})
   /press Next       an operator presses the button of that label, in any of its languages
+  /go, /stay        the operator approves what waits for it, or does not
   /help             this"""
 
 
 class TypedCommands:
     """Does what was typed after a `/`; `tick` takes hands away again when their time is over."""
 
-    def __init__(self, visitor: VisitorActor, narrator: Narrator, press: Callable[[str, str], str]) -> None:
-        self._visitor, self._narrator, self._button = visitor, narrator, press
+    def __init__(self, visitor: VisitorActor, narrator: Narrator, exhibition: StoryEnvironment) -> None:
+        self._visitor, self._narrator, self._exhibition = visitor, narrator, exhibition
         self._hands: dict[str, float] = {}
         self._verbs: dict[str, Callable[[list[str], float], None]] = {
             "touch": self._touch,
             "press": self._press,
+            "go": lambda _words, _now: self._approve(go=True),
+            "stay": lambda _words, _now: self._approve(go=False),
             "help": self._help,
         }
 
@@ -74,9 +78,14 @@ class TypedCommands:
         label = " ".join(words)
         if not label:
             raise UsageError("write what stands on the button, as in `/press Next exhibit`")
-        if reason := self._button(label, OPERATOR):
+        if reason := self._exhibition.press(label, OPERATOR):
             raise UsageError(reason)
         self._narrator.visitor_action(Press(label))
+
+    def _approve(self, *, go: bool) -> None:
+        if reason := self._exhibition.approve(OPERATOR, go=go):
+            raise UsageError(reason)
+        self._narrator.visitor_action(Approve(go))
 
     def _help(self, _words: list[str], _now: float) -> None:
         others = [place for place in self._places() if place != "head"]

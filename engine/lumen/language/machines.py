@@ -26,13 +26,22 @@ class StateKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Approval:
+    """A person has to approve a transition, `within` so long [s] where that is said; else it goes or stays."""
+
+    within: float | None = None
+    otherwise: Literal["go", "stay"] = "stay"
+
+
+@dataclass(frozen=True, slots=True)
 class Transition:
     """A candidate: taken on `event` where its guard holds.
 
     `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` is set for `after` ([s], or what says
     how long when its state is entered), `schedule` for `at`. `targets` are the paths of existing states, empty for a
     targetless transition. `reenter` is SCXML's `type="external"`. Where `exact`, the event's name has to be the whole
-    descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`.
+    descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`. Where it waits for
+    somebody to `approve` it, the event waits: no step knows of that.
     """
 
     source: str
@@ -45,6 +54,7 @@ class Transition:
     exact: bool = False
     where: NodePath = field(default=(), compare=False)
     schedule: Schedule | None = None
+    approve: Approval | None = None
 
     @property
     def timed(self) -> bool:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from lumen.language.approvals import Autonomy
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.properties import Property
@@ -62,6 +63,20 @@ class Press:
 
 
 @dataclass(frozen=True, slots=True)
+class Approve:
+    """`operator: {approve: go}` or `stay`: an operator decides what waits longest."""
+
+    go: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SetAutonomy:
+    """`operator: {autonomy: alone}` or `ask`: whether marked transitions go by themselves."""
+
+    level: Autonomy
+
+
+@dataclass(frozen=True, slots=True)
 class SendMessage:
     """`message: {route, body}`: a message as a module would send it."""
 
@@ -103,7 +118,20 @@ class Expect:
     within: float = 30.0
 
 
-VisitorAction = Arrive | Leave | Speak | TouchSensor | Happen | Press | SendMessage | StoryPause | AwaitTime | Expect
+VisitorAction = (
+    Arrive
+    | Leave
+    | Speak
+    | TouchSensor
+    | Happen
+    | Press
+    | Approve
+    | SetAutonomy
+    | SendMessage
+    | StoryPause
+    | AwaitTime
+    | Expect
+)
 
 
 @dataclass(frozen=True, slots=True)

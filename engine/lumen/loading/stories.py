@@ -7,6 +7,7 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.stories import (
+    Approve,
     Arrive,
     AwaitTime,
     Expect,
@@ -14,6 +15,7 @@ from lumen.language.stories import (
     Leave,
     Press,
     SendMessage,
+    SetAutonomy,
     Speak,
     Story,
     StoryPause,
@@ -77,7 +79,7 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> 
         case "message":
             return SendMessage(body["route"], body.get("body"))
         case "operator":
-            return Press(body["press"])
+            return _operator(body)
         case "wait":
             length = duration(row, "wait", report, where)
             return None if length is None else StoryPause(length)
@@ -87,6 +89,15 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> 
         case "expect":
             return _expect(body, report, (*where, verb))
     return None
+
+
+def _operator(body: Mapping[str, Any]) -> VisitorAction:
+    match body:
+        case {"approve": str(word)}:
+            return Approve(word == "go")
+        case {"autonomy": str(level)}:
+            return SetAutonomy("alone" if level == "alone" else "ask")
+    return Press(body["press"])
 
 
 def _moment(text: str, report: DocumentReport, where: NodePath) -> Schedule | None:

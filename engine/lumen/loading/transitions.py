@@ -7,7 +7,7 @@ from typing import Any
 from lumen.language.actions import Template
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
-from lumen.language.machines import StateKind, Transition
+from lumen.language.machines import Approval, StateKind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
@@ -18,8 +18,14 @@ from lumen.loading.schedules import schedule
 CONFLICTING_TARGETS = Code(
     "conflicting-targets", "statecharts", ERROR, "the states of a target can't be active together"
 )
+MISPLACED_APPROVAL = Code(
+    "misplaced-approval", "statecharts", ERROR, "a transition that no event from outside selects waits for approval"
+)
 ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would run for ever")
 
+_OUTSIDE = frozenset(("on",))
+_OWN = ("done", "error", "after", "at")
+"""How the names of events begin that come from within."""
 
 PlacedValue = tuple[NodePath, Any]
 
@@ -127,7 +133,20 @@ class TransitionReader:
             self.report(ENDLESS_ALWAYS, where, "an `always` without target and guard would run for ever", hint=hint)
             return None
         paths = tuple(target.path for target in targets)
-        return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False))
+        approve = self._approval(row["approve"], (*where, "approve"), event) if "approve" in row else None
+        return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False), approve=approve)
+
+    def _approval(self, data: Any, where: NodePath, event: str) -> Approval | None:
+        """What has to be approved, None (and reported) where nothing can wait."""
+        if event == "*" or event.split(".")[0] in _OWN or len(set(where) & _OUTSIDE) == 0:
+            message = "only what an event from outside selects can wait for approval"
+            hint = "lead to a state that waits for a button, and mark the transition under its `on`"
+            self.report(MISPLACED_APPROVAL, where, message, hint=hint, key=True)
+            return None
+        if isinstance(data, str):
+            return Approval()
+        within = self.actions.duration(data["within"], (*where, "within")) if "within" in data else None
+        return Approval(within, data.get("else", "stay"))
 
     def _together(self, states: list[OutlinedState], where: NodePath) -> bool:
         if (rivals := _rivals(states)) is None:

@@ -8,6 +8,7 @@ from lumen.interpreters.explaining.pressing import pressed
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
 from lumen.interpreters.statechart import Step, due
+from lumen.language.approvals import Autonomy
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
@@ -24,6 +25,7 @@ from lumen.runtime.wall_clock_watch import WallClockWatch
 
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0
+NOTHING_WAITS = "nothing waits for approval"
 CAUSES = ("brain.lost", "robot.lost")
 """What comes before the failures that it causes."""
 
@@ -106,6 +108,14 @@ class BehaviorLoop:
         """Let something happen at the next tick."""
         self._events.append(event)
 
+    def approve(self, by: str, *, go: bool) -> str:
+        """Decide what waits longest for a person; why that can't be, empty where it can."""
+        return "" if self.runtime.approvals.decide("", by, go=go) else NOTHING_WAITS
+
+    def set_autonomy(self, level: Autonomy, by: str) -> None:
+        """Whether marked transitions wait for GO."""
+        self.runtime.approvals.set(level, by)
+
     def press(self, label: str, by: str) -> str:
         """Let the event of a button happen at the next tick; why that can't be, empty where it can."""
         found = pressed(self.project.machine, self.runtime.snapshot, label, self.clock.now(), by)
@@ -146,7 +156,7 @@ class BehaviorLoop:
         if pending or self.tracking.on or self.performer.navigator.busy:
             return now
         event = due(self.runtime.snapshot)
-        return event.at if event else inf
+        return max(now, min(event.at if event else inf, self.runtime.approvals.due))
 
     def leap(self, now: float) -> None:
         """It is `now` [s] after a time in which nothing happened."""
@@ -215,6 +225,7 @@ class BehaviorLoop:
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
         if self.wall_clock and (clock_set := self.wall_clock.tick(self.clock.now(), self.runtime.snapshot)):
             happened = [clock_set, *happened]
+        happened = [*happened, *self.runtime.approvals.tick(now)]
         own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]
         own.sort(key=lambda event: event.name not in CAUSES)
         return [*own, *self.inbox.drain(now)]

@@ -13,6 +13,7 @@ from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
+from lumen.runtime.approvals import Approvals
 from lumen.runtime.forgetting import forgetful
 
 _log = logging.getLogger(__name__)
@@ -49,7 +50,7 @@ class Runtime:
 
     `observe` is shown every step in the order taken, and `steps` counts them: the first of a run is 1. `epoch` is when
     time 0 was [s since 1970], `timezone` where the clock on the wall hangs. A `recorder` keeps what is needed to take
-    the steps again.
+    the steps again. `approvals` holds back what a person has to approve.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class Runtime:
         self._observe, self._rescue = observe, rescue
         self._snapshot: Snapshot | None = None
         self.recorder: InputRecorder | None = None
+        self.approvals = Approvals()
         self.steps = 0
 
     @property
@@ -116,6 +118,7 @@ class Runtime:
     ) -> None:
         """Go on with another bundle as planned, between two macrosteps; `commands` are those that it asks for."""
         self.project, self._snapshot = project, planned
+        self.approvals.use(project.machine, planned)
         self._record(kind, commands)
 
     def take(self, taken: Step) -> list[Command]:
@@ -133,6 +136,7 @@ class Runtime:
 
     def _begin(self, first: Step, arguments: Mapping[str, Any]) -> list[Command]:
         self._snapshot = first.snapshot
+        self.approvals.use(self.project.machine)
         self.steps += 1
         self._record("start", first.commands, arguments=arguments)
         self._observe(first)
@@ -144,6 +148,8 @@ class Runtime:
         if self.recorder:
             self.recorder.stepped(taken, how)
         self._observe(taken)
+        if self.approvals.waiting and (taken.exited or taken.invoked):
+            self.approvals.look(self.project.machine, taken.snapshot)
         return list(taken.commands)
 
     def _record(self, kind: JumpKind, commands: Sequence[Command] = (), **said: Any) -> None:
@@ -152,7 +158,9 @@ class Runtime:
 
     def _hear(self, event: Event, emitted: list[Emission]) -> None:
         try:
-            self._emit(step(self.project.machine, self.snapshot, event), "heard", emitted)
+            waits = self.approvals.marked and self.approvals.holds(self.project.machine, self.snapshot, event)
+            if not waits:
+                self._emit(step(self.project.machine, self.snapshot, event), "heard", emitted)
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:

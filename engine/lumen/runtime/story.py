@@ -9,6 +9,7 @@ from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.interpreters.statechart.property_monitor import Violation, monitors
 from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
+from lumen.language.approvals import Autonomy
 from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
@@ -17,6 +18,7 @@ from lumen.language.hours import Schedule
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import (
+    Approve,
     Arrive,
     AwaitTime,
     Expect,
@@ -24,6 +26,7 @@ from lumen.language.stories import (
     Leave,
     Press,
     SendMessage,
+    SetAutonomy,
     Speak,
     Story,
     StoryPause,
@@ -132,6 +135,14 @@ class StoryEnvironment(Protocol):
 
     def press(self, label: str, by: str) -> str:
         """Press a button; why that can't be, empty where it can."""
+        ...
+
+    def approve(self, by: str, *, go: bool) -> str:
+        """Decide what waits longest for approval; why that can't be, empty where it can."""
+        ...
+
+    def set_autonomy(self, level: Autonomy, by: str) -> None:
+        """Whether marked transitions wait for GO."""
         ...
 
 
@@ -260,6 +271,11 @@ class StoryPlayer(Observer):
             case Press(label):
                 if reason := self._exhibition.press(label, OPERATOR):
                     self.fail(UnmetExpectation("", reason))
+            case Approve(go):
+                if reason := self._exhibition.approve(OPERATOR, go=go):
+                    self.fail(UnmetExpectation("", reason))
+            case SetAutonomy(level):
+                self._exhibition.set_autonomy(level, OPERATOR)
             case SendMessage(name, body):
                 if reason := send(
                     self._exhibition.bus, self._exhibition.project, name, body, MessageOrigin(sender=VISITOR)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol, get_args
 
 from lumen.errors import BusError
+from lumen.language.approvals import Autonomy
 from lumen.language.commands import BodyCommand, Command, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -61,7 +62,17 @@ class TraceSubscriber:
 
     def press(self, label: str, by: str) -> str:
         """Ask the brain to press a button; it tells nobody here whether it could."""
-        request = {"ask": "press", "button": label, "by": by}
+        return self._wish({"ask": "press", "button": label, "by": by})
+
+    def approve(self, by: str, *, go: bool) -> str:
+        """Have what waits longest decided."""
+        return self._wish({"ask": "approve", "id": "", "go": go, "by": by})
+
+    def set_autonomy(self, level: Autonomy, by: str) -> None:
+        """Have marked transitions wait for GO, or not."""
+        self._wish({"ask": "autonomy", "level": level, "by": by})
+
+    def _wish(self, request: dict[str, Any]) -> str:
         try:
             self.bus.publish(key_of_robot(OPERATOR_REQUEST, self.project.robot), request, ttl=REQUEST_TTL)
         except BusError as error:

@@ -8,6 +8,7 @@ from typing import Any
 
 from lumen.app.answering import AnsweringThread
 from lumen.app.asking import operator_key
+from lumen.app.decisions import Decisions
 from lumen.app.doings import Doings
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
@@ -33,6 +34,7 @@ MAX_PENDING_REQUESTS = 100
 NOTHING_RECORDED = "nothing is being recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
 REQUESTS = (
     '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "press", "button": …}`,'
+    ' `{"ask": "approve", "id": …, "go": true}`, `{"ask": "autonomy", "level": "ask"}`,'
     ' `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
 )
 
@@ -44,8 +46,8 @@ class OperatorPart(Part, Observer):
     `journal` writes.
 
     `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
-    last; `record` keeps an entry of the journal. `marking` says what becomes of a mark, which the
-    recorder hears by itself; empty where nothing is recorded.
+    last; `record` keeps an entry of the journal, `keep` what people decided. `marking` says what becomes of a mark,
+    which the recorder hears by itself; empty where nothing is recorded.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class OperatorPart(Part, Observer):
         realtime: Callable[[], float],
         reloaded: Callable[[], LastReload | None] = lambda: None,
         record: Callable[[Mapping[str, Any]], None] = lambda _: None,
+        keep: Callable[[Mapping[str, Any]], None] = lambda _: None,
         needs: Sequence[str] = (),
     ) -> None:
         self.needs, self._behavior, self._narrator = needs, behavior, narrator
@@ -79,6 +82,8 @@ class OperatorPart(Part, Observer):
         )
         behavior.forgetting.append(lambda _: self._doings.forget())
         self._unsay = self._bus.subscribe(key_of(behavior.project, TEXT_ROUTE), self._doings.told.append)
+        self._decisions = Decisions(runtime.approvals, narrator, record, keep)
+        behavior.forgetting.append(lambda _: runtime.approvals.forget())
         self._raising = RaisedEvents(behavior.loop, self._reply)
         behavior.loop.observers += [self.steps, self._doings, self._raising, self]
 
@@ -113,6 +118,10 @@ class OperatorPart(Part, Observer):
         self._answering.close()
         self._pages.close()
 
+    def recover(self, kept: Any, *, resumed: bool) -> None:
+        """Go on with what people had decided in the run before, where this one goes on from there."""
+        self._decisions.recover(kept, resumed=resumed)
+
     def status(self) -> dict[str, Any]:
         """How the exhibition is, as JSON data."""
         return self._status()()
@@ -143,6 +152,7 @@ class OperatorPart(Part, Observer):
             loop.clock.now(),
             self._doings,
             position=self._journal.tail.next - 1,
+            approvals=runtime.approvals,
             events=loop.waiting,
             status=self._status(),
         )
@@ -158,6 +168,10 @@ class OperatorPart(Part, Observer):
             case {"ask": "mark"}:
                 kept = self.marking()
                 return {"verdict": "done", "text": kept} if kept else refusal(NOTHING_RECORDED)
+            case {"ask": "approve", "id": str(id), "go": bool(go)}:
+                return self._decisions.approve(id, person_in(body), go=go)
+            case {"ask": "autonomy", "level": "ask" | "alone" as level}:
+                return self._decisions.autonomy(level, person_in(body))
             case {"ask": "goto", "state": str(state)}:
                 return self._goto(state[:200], person_in(body), now, only=body.get("only") == "check")
             case _:

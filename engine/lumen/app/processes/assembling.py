@@ -102,6 +102,7 @@ def assemble(
 
         def recover() -> Resumption | FreshStart:
             found = run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
+            operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
             return watch.recovered(found) if watch else found
 
         brain.recover = recover
@@ -124,6 +125,7 @@ def assemble(
             realtime=lambda: node.pace.realtime,
             reloaded=lambda: reloader.last_reload,
             record=run_directory.records.write,
+            keep=records.keep_decisions,
             needs=brain.needs,
         )
         operator.marking = recording.marking

@@ -1,5 +1,6 @@
 """What a running exhibition writes into its home: journal, bundles, and where its behaviour stands."""
 
+import json
 import logging
 import time
 from collections.abc import Mapping
@@ -20,6 +21,8 @@ from lumen.runtime.snapshot_store import SnapshotStore
 HEARTBEAT_PERIOD = 1.0
 """How often it is noted that the run lives, where nothing else is [s]."""
 
+DECISIONS_FILE = "decisions.json"
+
 _log = logging.getLogger(__name__)
 
 
@@ -35,6 +38,7 @@ class RunRecords:
         self._desk = ThreadPoolExecutor(1, "records")
         self._keeping: Future[None] | None = None
         self._beaten = 0.0
+        self._home = home
         self.keeper = SnapshotStore(home) if home else None
         self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
@@ -52,6 +56,15 @@ class RunRecords:
 
     def write(self, entry: Mapping[str, Any]) -> None:
         self.journal.write(entry)
+
+    def keep_decisions(self, decisions: Mapping[str, Any]) -> None:
+        """Have it written what people decided, and what waits for them: for the run that goes on after a crash."""
+        if self._home:
+            self._desk.submit(self._home.write, DECISIONS_FILE, json.dumps(decisions, default=str).encode())
+
+    def decisions(self) -> Any:
+        """What people had decided when the run before ended; None where nothing is known."""
+        return self._home.read_json(DECISIONS_FILE) if self._home else None
 
     def store(self, files: Mapping[str, bytes]) -> None:
         """Keep the files of a good bundle."""

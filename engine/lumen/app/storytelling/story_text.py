@@ -7,6 +7,7 @@ from typing import Any, assert_never
 import yaml
 
 from lumen.language.stories import (
+    Approve,
     Arrive,
     AwaitTime,
     Expect,
@@ -14,6 +15,7 @@ from lumen.language.stories import (
     Leave,
     Press,
     SendMessage,
+    SetAutonomy,
     Speak,
     Story,
     StoryPause,
@@ -65,6 +67,10 @@ def _step(action: VisitorAction) -> tuple[str, Any]:
             return "event", {"name": name, "data": data} if data else name
         case Press(label):
             return "operator", {"press": label}
+        case Approve(go):
+            return "operator", {"approve": "go" if go else "stay"}
+        case SetAutonomy(level):
+            return "operator", {"autonomy": level}
         case SendMessage(route, body):
             return "message", {"route": route, "body": body}
         case StoryPause(seconds):

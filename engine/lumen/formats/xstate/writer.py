@@ -158,6 +158,8 @@ class _XStateWriter:
 
     def _row(self, state: State, transition: Transition) -> dict[str, Any]:
         row: dict[str, Any] = {}
+        if transition.approve:
+            self.report.lost("`approve` is left out: in XState nothing waits for a person", transition.where)
         if transition.targets:
             row["target"] = self._targets(state, transition.targets)
         if transition.guard:

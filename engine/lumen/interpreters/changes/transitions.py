@@ -57,6 +57,10 @@ class _TransitionComparison:
         elif old.guard != new.guard:
             condition = f"if {code(new.guard.shown)}" if new.guard else "whatever is so"
             yield self.change(f"{self.title} {self.leads(new)} {trigger} {condition} now")
+        if old.approve != new.approve:
+            how = "waits for approval now" if old.approve is None else "waits for approval in another way now"
+            how = how if new.approve else "waits for no approval now"
+            yield self.change(f"{self.title} {how} {trigger}")
         if old.reenter != new.reenter:
             how = "is left and entered" if new.reenter else "stays active"
             yield self.change(f"{self.title} {how} {trigger} now")
@@ -101,7 +105,9 @@ def _trigger(transition: Transition) -> str:
 
 
 def _same(old: Sequence[Transition], new: Sequence[Transition]) -> bool:
-    return [(t.targets, t.guard, t.actions) for t in old] == [(t.targets, t.guard, t.actions) for t in new]
+    return [(t.targets, t.guard, t.actions, t.approve) for t in old] == [
+        (t.targets, t.guard, t.actions, t.approve) for t in new
+    ]
 
 
 def _if(transition: Transition) -> str:

@@ -1,0 +1,66 @@
+"""What people decide while an exhibition runs: what waits for approval goes or stays, and whether anything waits."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from lumen.app.narrator import Narrator
+from lumen.language.approvals import Autonomy
+from lumen.runtime.approvals import Approvals, HeldEvent
+
+HOW = {"waits": "waits for GO", "goes": "goes", "stays": "stays"}
+
+
+class Decisions:
+    """Lets people decide, and tells of it: a line of the transcript, and by `record` an entry of the journal.
+
+    `keep` has it written what was decided and what waits.
+    """
+
+    def __init__(
+        self,
+        approvals: Approvals,
+        narrator: Narrator,
+        record: Callable[[Mapping[str, Any]], None],
+        keep: Callable[[Mapping[str, Any]], None],
+    ) -> None:
+        self._approvals, self._narrator, self._record, self._keep = approvals, narrator, record, keep
+        approvals.tell = self._told
+
+    def recover(self, kept: Any, *, resumed: bool) -> None:
+        """Go on with the autonomy that a run had which ended without notice, and say what it lost."""
+        match kept:
+            case {"autonomy": "ask" | "alone" as level, "waiting": list(waiting)} if resumed:
+                self._approvals.autonomy = level
+                if level == "alone":
+                    self._narrator.line("operator", "autonomy: alone, as before")
+                for event in waiting:
+                    self._narrator.line("operator", f"{event} waited for GO, and is lost: the engine was away")
+                    self._record({"approval": "lost", "event": str(event)})
+        if kept:
+            self._write()
+
+    def approve(self, id: str, by: str, *, go: bool) -> dict[str, Any]:
+        """GO, or not, for the event of that id; of an empty one for what waits longest."""
+        if self._approvals.decide(id, by, go=go):
+            return {"verdict": "done"}
+        waiting = ", ".join(f"`{held.id}` ({held.event.name})" for held in self._approvals.waiting)
+        return {"verdict": "refused", "reason": f"nothing waits under `{id[:20]}`: {waiting or 'nothing waits at all'}"}
+
+    def autonomy(self, level: Autonomy, by: str) -> dict[str, Any]:
+        """Whether marked transitions wait for GO from now on."""
+        self._narrator.line("operator", f"autonomy: {level}, by {by}")
+        self._record({"autonomy": level, "by": by})
+        self._approvals.set(level, by)
+        self._write()
+        return {"verdict": "done", "autonomy": level}
+
+    def _told(self, how: str, held: HeldEvent, why: str) -> None:
+        machine, wanted, _ = held.marked
+        targets = ", ".join(machine.states[path].name for path in wanted.targets) or "what it does"
+        self._narrator.line("operator", f"{held.event.name} {HOW[how]}, to {targets}" + (f": {why}" if why else ""))
+        self._record({"approval": how, "id": held.id, "event": held.event.name, "why": why})
+        self._write()
+
+    def _write(self) -> None:
+        waiting = [held.event.name for held in self._approvals.waiting]
+        self._keep({"autonomy": self._approvals.autonomy, "waiting": waiting})

@@ -1,0 +1,6 @@
+"""Whether transitions that are marked `approve: operator` wait for a person."""
+
+from typing import Literal
+
+Autonomy = Literal["ask", "alone"]
+"""`ask`: they wait for GO; `alone`: they go by themselves."""

@@ -1,0 +1,167 @@
+"""Events that wait for a person's GO: what would take a transition marked `approve: operator` is not stepped yet.
+
+The chart knows nothing of it. Whether an event would take one is asked of the pure step; with GO the event happens as
+it was, and that is what the journal holds.
+"""
+
+from collections.abc import Callable, Iterator
+from itertools import count
+from math import inf
+from typing import NamedTuple
+
+from lumen.errors import LumenError
+from lumen.interpreters.explaining.names import machines_in
+from lumen.interpreters.statechart import Snapshot, Step, step
+from lumen.interpreters.statechart.nesting import behavior_of
+from lumen.language.approvals import Autonomy
+from lumen.language.causes import Cause
+from lumen.language.events import Event
+from lumen.language.machines import Approval, MachineDefinition, Transition
+
+MAX_WAITING = 20
+"""Events that may wait for GO at once; the oldest gives way."""
+LEFT, REPLACED, LATE = "its state was left", "too many others wait", "nobody said anything"
+RELOADED, FORGOTTEN = "the files changed", "somebody is forgotten"
+
+
+class MarkedTransition(NamedTuple):
+    """A marked transition, and the machine that it is in."""
+
+    machine: MachineDefinition
+    transition: Transition
+    approval: Approval
+
+
+class HeldEvent(NamedTuple):
+    """An event that waits under an id, for a marked transition, since a time [s] and `until` another, if any."""
+
+    id: str
+    event: Event
+    marked: MarkedTransition
+    since: float
+
+    @property
+    def until(self) -> float:
+        """When it is decided without a person [s]; never, for infinity."""
+        within = self.marked.approval.within
+        return inf if within is None else self.since + within
+
+
+class Approvals:
+    """Holds events back while autonomy is `ask`.
+
+    `tell` hears what became of each: that it `waits`, `goes` or `stays`, and why. `marked` is whether the machine has
+    transitions that anything could wait for. Of several events for one transition the first waits.
+    """
+
+    def __init__(self) -> None:
+        self.autonomy: Autonomy = "ask"
+        self.waiting: tuple[HeldEvent, ...] = ()
+        self.tell: Callable[[str, HeldEvent, str], None] = lambda _how, _held, _why: None
+        self.marked = False
+        self._ids = count(1)
+        self._released: list[Event] = []
+        self._passing: list[Cause] = []
+
+    @property
+    def due(self) -> float:
+        """When something is decided by itself [s]; minus infinity where something goes now."""
+        return -inf if self._released else min((held.until for held in self.waiting), default=inf)
+
+    def use(self, machine: MachineDefinition, snapshot: Snapshot | None = None) -> None:
+        """Go by this machine; what would not take a marked transition there any more stays."""
+        self.marked = any(
+            transition.approve
+            for _, inner in machines_in(machine)
+            for state in inner.states.values()
+            for transition in state.transitions
+        )
+        self._passing.clear()
+        if snapshot:
+            self.look(machine, snapshot, RELOADED)
+
+    def holds(self, machine: MachineDefinition, snapshot: Snapshot, event: Event) -> bool:
+        """Whether an event has to wait; then it does."""
+        if self.autonomy == "alone" or event.sendid or ".command." in event.name:
+            return False
+        if any(event.cause is cause for cause in self._passing):
+            self._passing = [cause for cause in self._passing if cause is not event.cause]
+            return False
+        marked = _marked(machine, step(machine, snapshot, event))
+        if marked is None:
+            return False
+        if all(held.marked.transition is not marked.transition for held in self.waiting):
+            self._hold(HeldEvent(f"a{next(self._ids)}", event, marked, event.at))
+        return True
+
+    def look(self, machine: MachineDefinition, snapshot: Snapshot, why: str = LEFT) -> None:
+        """Let those stay that would no longer take a marked transition."""
+        kept = []
+        for held in self.waiting:
+            found = _marked_by(machine, snapshot, held.event)
+            if found:
+                kept.append(held._replace(marked=found))
+            else:
+                self.tell("stays", held, why)
+        self.waiting = tuple(kept)
+
+    def decide(self, id: str, by: str, *, go: bool) -> bool:
+        """What a person decides of the event of that id, of the oldest for an empty one; whether there is one."""
+        held = next((held for held in self.waiting if id in ("", held.id)), None)
+        if held is None:
+            return False
+        self._end(held, by, Cause("person", f"GO for {held.event.name}", sender=by) if go else None)
+        return True
+
+    def set(self, level: Autonomy, by: str) -> None:
+        """Let a person set autonomy; what waits goes where that is `alone` now."""
+        self.autonomy = level
+        while level == "alone" and self.waiting:
+            self.decide("", by, go=True)
+
+    def forget(self) -> None:
+        """Let everything stay that waits: a name may stand in it."""
+        while self.waiting:
+            self._end(self.waiting[0], FORGOTTEN, None)
+
+    def tick(self, now: float) -> list[Event]:
+        """The events that go now, at `now` [s]."""
+        for held in [held for held in self.waiting if held.until <= now]:
+            go = held.marked.approval.otherwise == "go"
+            self._end(held, LATE, Cause("timer", f"approve {held.event.name}") if go else None)
+        found, self._released = self._released, []
+        return [event._replace(at=now) for event in found]
+
+    def _hold(self, held: HeldEvent) -> None:
+        if len(self.waiting) >= MAX_WAITING:
+            self._end(self.waiting[0], REPLACED, None)
+        self.waiting = (*self.waiting, held)
+        self.tell("waits", held, "")
+
+    def _end(self, held: HeldEvent, why: str, cause: Cause | None) -> None:
+        """It goes for that cause, or stays."""
+        self.waiting = tuple(other for other in self.waiting if other is not held)
+        if cause:
+            self._passing.append(cause)
+            self._released.append(held.event._replace(cause=cause))
+        self.tell("goes" if cause else "stays", held, why)
+
+
+def _marked_by(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> MarkedTransition | None:
+    try:
+        return _marked(machine, step(machine, snapshot, event._replace(at=max(event.at, snapshot.at))))
+    except LumenError:
+        return None
+
+
+def _marked(machine: MachineDefinition, taken: Step) -> MarkedTransition | None:
+    """The first marked transition that a step has taken."""
+    return next(_all_marked(machine, taken), None)
+
+
+def _all_marked(machine: MachineDefinition, taken: Step) -> Iterator[MarkedTransition]:
+    for transition in taken.transitions:
+        if transition.approve:
+            yield MarkedTransition(machine, transition, transition.approve)
+    for id, inner in taken.invoked:
+        yield from _all_marked(machine.invoked[behavior_of(machine, id, inner)], inner)
