@@ -3,12 +3,13 @@
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up
 from tests.console.house import House
 from tests.console.pages import Browser, Served
@@ -24,8 +25,8 @@ class Hosted:
 
     def __init__(self, root: Path) -> None:
         self._ending = threading.Event()
-        loaded = lumen.load(root)
         self.directory = RunDirectory(root)
+        loaded = startup_project(root, self.directory, last_good=False, warn=print)
         self.exhibition = Exhibition(
             loaded, set_up("recording", loaded, "1"), run_directory=self.directory, reload="manual"
         )
@@ -37,6 +38,10 @@ class Hosted:
     def _live(self) -> None:
         while not self._ending.is_set():
             self.exhibition.tick()
+
+    def send(self, route: str, body: dict[str, Any]) -> None:
+        """A message as a module would send it."""
+        self.exhibition.send(route, body)
 
     def close(self) -> None:
         self._ending.set()

@@ -1,34 +1,54 @@
 """`lumen console`: pages in a browser for the people who run an exhibition."""
 
 import argparse
+import os
+import sys
+from collections.abc import Callable
 from functools import partial
 
 from lumen.app.reaching import reach_exhibition
 from lumen.cli.reach import configure_reach
 from lumen.extras import demand
+from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.loading.packaged import find_project
-
-PORT = 8080
+from lumen.loading.project import main_settings
+from lumen.upkeep.threads import WatchedThread
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
-    parser.add_argument("--port", type=int, default=PORT, metavar="PORT", help=f"where it listens (default: {PORT})")
-    parser.add_argument(
+    add = parser.add_argument
+    add("--port", type=int, metavar="PORT", help=f"where it listens (default: lumen.yaml's, else {CONSOLE_PORT})")
+    add(
         "--host",
-        default="127.0.0.1",
         metavar="HOST",
-        help="at which address (default: 127.0.0.1, this machine only)",
+        help=f"at which address (default: lumen.yaml's, else {CONSOLE_HOST})",
     )
+    add("--beside", action="store_true", help=argparse.SUPPRESS)
 
 
 def run(options: argparse.Namespace) -> int:
     """0 once it was ended. It goes on without the exhibition, and with the next one."""
     demand("console", "`lumen console`", "starlette", "uvicorn")
+    from lumen.console.access import pins_from
     from lumen.console.serving import Console
 
     root, reach = find_project(options.project), partial(reach_exhibition, options.project, options.bus)
-    console = Console(reach, root, options.host, options.port)
+    found = main_settings(root)
+    said = found.console if found else ConsoleSettings()
+    port = said.port if options.port is None else options.port
+    console = Console(
+        reach, root, options.host or said.host, port, pins=pins_from(said.pins, os.environ), hosts=said.hosts
+    )
+    if options.beside:
+        WatchedThread("lumen-console-parent", lambda: _end_with_parent(console.end)).start()
     print(f"The console is at {console.address} (Ctrl-C ends it)", flush=True)
     console.run()
     return 0
+
+
+def _end_with_parent(end: Callable[[], None]) -> None:
+    """Whoever has begun us holds the other end of our standard input; it is closed when that process is gone."""
+    while sys.stdin.buffer.read(1024):
+        pass
+    end()

@@ -5,6 +5,7 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
+from functools import partial
 from pathlib import Path
 
 from lumen.app.alerts.alert import Origin
@@ -13,6 +14,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.loudspeaker import Loudspeaker
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
+from lumen.app.parts.console import ConsolePart
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.processes.assembling import ProcessOptions, assemble
 from lumen.app.processes.choosing import parts_of
@@ -140,6 +142,8 @@ def _whole(
         try:
             if video:
                 node.add_film(video, track)
+            if project.console.wanted and options.speed != "max":
+                node.add(ConsolePart(run_directory.root, url, partial(performance.transcript.line, "console")))
             node.claim()
             performance.introduce(exhibition, run_directory, options.speed)
             folder = None if story else home_of_run(run_directory.root)
@@ -177,6 +181,8 @@ def _processes(
     alerts = _alerts(project, parts, transcript, story)
     node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
     transcript.unread = lambda: node.interrupt(2, leave=True)
+    if project.console.wanted and BRAIN in parts:
+        node.parts.append(ConsolePart(run_directory.root, url, partial(transcript.line, "console")))
     visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
     if visitor and story is None:
         greeting = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"

@@ -11,6 +11,7 @@ from lumen.app.resting import STOP_TIMEOUT, no_robot, stop_behavior
 from lumen.console.exchanges import Exchange
 from lumen.console.orders import REST, Fields, Order, order_of
 from lumen.console.people import Person
+from lumen.console.requests import ALL
 from lumen.console.streams import Streams
 from lumen.console.watch import Watch
 from lumen.errors import BusError
@@ -21,8 +22,6 @@ SENT_TIMEOUT = 0.8
 REST_TTL = 5.0
 """How long a wish to rest may be on its way [s], that of the route `stop`."""
 MAX_REMEMBERED = 1_000
-ALL = "*"
-"""Instead of a robot's name: all of them."""
 FINISHED, FAILED, UNSENT, SENT = "finished", "failed", "unsent", "sent"
 
 

@@ -1,5 +1,6 @@
 """What stands before every request: from this address, from our own pages, JSON, not too large."""
 
+import asyncio
 import ipaddress
 import json
 from collections.abc import Awaitable, Callable, Iterable, Mapping
@@ -8,6 +9,8 @@ from urllib.parse import urlsplit
 
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from lumen.console.connections import READ_TIMEOUT, cut_off
 
 MAX_BODY = 65_536
 """Of what is posted [bytes]."""
@@ -49,10 +52,10 @@ class Gate:
             body, refusal = await _read(receive, headers)
             receive = _given(body, receive)
         if refusal is None:
-            await self._app(scope, receive, _with_headers(send))
+            await self._app(scope, receive, _guarded(send, scope.get("client")))
         else:
             status, reason = refusal
-            await refused(status, reason)(scope, receive, _with_headers(send))
+            await refused(status, reason)(scope, receive, _guarded(send, scope.get("client")))
 
     def _refusal(self, scope: Scope, headers: Mapping[str, str]) -> tuple[int, str] | None:
         host = headers.get("host", "")
@@ -125,12 +128,18 @@ def _given(body: bytes, receive: Receive) -> Receive:
     return again
 
 
-def _with_headers(send: Send) -> Callable[[Message], Awaitable[None]]:
+def _guarded(send: Send, client: tuple[str, int] | None) -> Callable[[Message], Awaitable[None]]:
+    """Sends with our headers, and cuts off who does not read what is sent."""
+
     async def told(message: Message) -> None:
         if message["type"] == "http.response.start":
             given = {name.lower() for name, _ in message["headers"]}
             message["headers"] = [*message["headers"], *(one for one in _HEADERS if one[0] not in given)]
-        await send(message)
+        late = asyncio.get_running_loop().call_later(READ_TIMEOUT, cut_off, client)
+        try:
+            await send(message)
+        finally:
+            late.cancel()
 
     return told
 

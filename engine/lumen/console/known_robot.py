@@ -13,6 +13,11 @@ from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
 SILENT_AFTER = 2.5
 """How long an exhibition may say nothing until it counts as away [s]."""
 MAX_PROCESSES = 30
+SEEN_FOR = 1.5
+"""How long a face that was seen counts [s]."""
+MAX_NAME = 100
+NO_NAMES = ("unknown", "face unrecognized", "error cvException")
+"""What the eyes say of a face that they do not know."""
 FOR_NOBODY = ("robot", "connected", "heard", "stopped", "saying", "language", "languages")
 """What is shown to who has no role: enough for subtitles and Rest, no name and nothing that a visitor said."""
 
@@ -31,8 +36,13 @@ class KnownRobot:
         self.senses: dict[str, Any] = {}
         self.connected, self._answered = False, 0.0
         self._heard = ""
+        self.seen: dict[str, Any] = {"faces": []}
+        self._seen: dict[str, Any] = {}
+        self._known, self._saw, self._knew = "", 0.0, 0.0
         self._processes: dict[str, dict[str, Any]] = {}
         self._sensed: dict[str, Any] = {}
+        self.joints: Mapping[str, Any] = {}
+        self.moved = 0
         self._blocks: dict[bool, tuple[int, bytes]] = {}
 
     @property
@@ -58,8 +68,9 @@ class KnownRobot:
         for session in gone:
             self._processes[session]["state"] = LEAVES
             self.version += 1
-        if self.senses != self._sensed:
-            self.senses = dict(self._sensed)
+        seen = self._faces()
+        if self.senses != self._sensed or self.seen != seen:
+            self.senses, self.seen = dict(self._sensed), seen
             self.version += 1
 
     def feel(self, sense: str, body: Mapping[str, Any]) -> None:
@@ -67,7 +78,13 @@ class KnownRobot:
         match sense:
             case "battery" | "sonar":
                 self._sensed[sense] = {key: value for key, value in body.items() if key != "time"}
+            case "face" if type(body.get("x")) in (int, float) and type(body.get("y")) in (int, float):
+                self._seen, self._saw = {"x": body["x"], "y": body["y"]}, time.monotonic()
+            case "recognised" if isinstance(name := body.get("name"), str):
+                self._known, self._knew = name[:MAX_NAME], time.monotonic()
             case "joint" if isinstance(names := body.get("name"), list):
+                self.joints = body
+                self.moved += 1
                 hot = body.get("temperature")
                 if isinstance(hot, list) and len(hot) == len(names):
                     self._sensed["temperatures"] = dict(zip(names, hot, strict=True))
@@ -102,7 +119,7 @@ class KnownRobot:
         """The object for a page; `full` for who has a role."""
         processes = [{k: v for k, v in said.items() if k != "at"} for said in self._processes.values()]
         said = {"robot": self.robot, **self.said, "connected": self.connected, "heard": self._heard or None}
-        said |= {"senses": self.senses, "processes": processes, "files": self.files}
+        said |= {"senses": self.senses, "processes": processes, "files": self.files, "seen": self.seen}
         return said if full else {key: said[key] for key in FOR_NOBODY if key in said}
 
     def block(self, *, full: bool) -> bytes:
@@ -112,6 +129,14 @@ class KnownRobot:
             block = b"event: now\ndata: " + orjson.dumps(self.to_json(full=full)) + b"\n\n"
             self._blocks[full] = self.version, block
         return block
+
+    def _faces(self) -> dict[str, Any]:
+        """What its eyes found just now, in the image [px of 320 x 240]; who that is, where they know."""
+        now = time.monotonic()
+        if now - self._saw > SEEN_FOR:
+            return {"faces": []}
+        known = self._known if now - self._knew <= SEEN_FOR and self._known not in NO_NAMES else ""
+        return {"faces": [{**self._seen, "name": known}]}
 
     def _away(self, said: Mapping[str, Any]) -> bool:
         return time.monotonic() - float(said["at"]) > LOST_AFTER

@@ -13,8 +13,9 @@ from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 
 PRESENCE, IMAGE = "presence", "image"
 SENSES = ("battery", "sonar", "joint")
+FACES = ("face", "recognised")
 """Routes that are always listened to; images only while somebody looks."""
-HEARD = (PRESENCE, *SENSES)
+HEARD = (PRESENCE, *SENSES, *FACES)
 
 
 class RobotKeys(NamedTuple):
@@ -43,7 +44,7 @@ class KeyBook:
         rows = settings.routes if settings else {}
         self._routes = {name: rows[name].key_for(reached.robot) for name in (*HEARD, IMAGE) if name in rows}
         usual = [DEFAULT_KEYS[name].replace("{robot}", "*") for name in HEARD]
-        told = [key_of_robot(CONFIG_STATUS, "*"), STATUS, DEFAULT_ALIASES[PRESENCE]]
+        told = [key_of_robot(CONFIG_STATUS, "*"), STATUS, *(DEFAULT_ALIASES[name] for name in (PRESENCE, *FACES))]
         covered = {default_key(name, self._own) for name in HEARD}
         return [*usual, *told, *(key for name, key in self._routes.items() if name != IMAGE and key not in covered)]
 
@@ -62,6 +63,12 @@ class KeyBook:
         for name, own in self._routes.items():
             if key == own:
                 return self._own, name
+        for name in FACES:
+            if key == DEFAULT_ALIASES[name]:
+                return self._own, name
+            before, _, after = DEFAULT_KEYS[name].partition("{robot}")
+            if key.startswith(before) and key.endswith(after):
+                return key[len(before) : -len(after)], name
         words = key.split(".")
         if len(words) == 4 and words[0] == "avatar" and words[2] == "data":
             return words[1], words[3]

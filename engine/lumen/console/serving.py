@@ -1,17 +1,21 @@
 """The console as a server: a port of this machine, until a signal ends it."""
 
 import asyncio
+import ipaddress
 import signal
 import socket
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 import uvicorn
 
 from lumen.app.reaching import Reached
+from lumen.console.access import Access, secret_in
+from lumen.console.connections import KnownConnection
 from lumen.console.gate import LOOPBACK, Gate
+from lumen.console.people import Role
 from lumen.console.site import Site
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
@@ -23,18 +27,35 @@ END_TIMEOUT = 1
 class Console:
     """Listens at `address` from the beginning, and serves while it is `run`, until a signal or `end`.
 
-    `reach` opens the bus of the project in `root`. Port 0 is any that is free. Raises UsageError.
+    `reach` opens the bus of the project in `root`. `pins` are those of the roles; without any everybody may do
+    everything, so that it has to be on loopback. `hosts` are other names of this machine. Port 0 is any that is free.
+    Raises UsageError.
     """
 
-    def __init__(self, reach: Callable[[], Reached], root: Path, host: str, port: int) -> None:
+    def __init__(
+        self,
+        reach: Callable[[], Reached],
+        root: Path,
+        host: str,
+        port: int,
+        *,
+        pins: Mapping[Role, str] | None = None,
+        hosts: Iterable[str] = (),
+    ) -> None:
+        local = is_loopback(host)
+        if not local and not pins:
+            raise UsageError(
+                f"{host} can be reached from elsewhere, and there are no PINs: write `console: {{pins: {{operator: "
+                "$LUMEN_PIN}}` into lumen.yaml and the PIN into that environment variable, or leave out --host"
+            )
         self._listener = _listen(host, port)
         shown = f"[{host}]" if ":" in host else host
         self.address = f"http://{shown}:{self._listener.getsockname()[1]}/"
-        self.site = Site(Watch(reach, root))
-        gate = Gate(self.site.app, {host, *(LOOPBACK if host in LOOPBACK else ())})
+        self.site = Site(Watch(reach, root), Access(pins or {}, secret_in(root) if pins else b""), root)
+        gate = Gate(self.site.app, {host, *hosts, *(LOOPBACK if local else ())})
         config = uvicorn.Config(
             gate, log_level="warning", access_log=False, lifespan="on", server_header=False, date_header=False,
-            proxy_headers=False, ws="none", http="h11", loop="asyncio", timeout_graceful_shutdown=END_TIMEOUT,
+            proxy_headers=False, ws="none", http=KnownConnection, loop="asyncio", timeout_graceful_shutdown=END_TIMEOUT,
         )  # fmt: skip
         self._server = _Server(config, self.site)
 
@@ -71,8 +92,16 @@ class _Server(uvicorn.Server):
                 signal.signal(number, handler)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        self._site.streams.close()
+        self._site.close()
         await super().shutdown(sockets)
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine reaches it."""
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
 
 
 def _listen(host: str, port: int) -> socket.socket:

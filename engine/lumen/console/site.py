@@ -1,10 +1,9 @@
-"""The console's paths: pages, what happens, and commands."""
+"""The console's paths: pages, what happens, commands, and who is here."""
 
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Any
 
 import orjson
 from starlette.applications import Starlette
@@ -14,26 +13,31 @@ from starlette.responses import FileResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from lumen.console.commands import ALL, SENT, Commands, PageCommand
-from lumen.console.gate import json_object, refused
-from lumen.console.known_robot import iso_now
-from lumen.console.orders import NEEDS
+from lumen.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFastError
+from lumen.console.commands import Commands, PageCommand
+from lumen.console.known_robot import KnownRobot, iso_now
+from lumen.console.orders import NEEDS, REST
+from lumen.console.past import Past
 from lumen.console.people import Person, Role
+from lumen.console.ration import MAX_STREAMS
+from lumen.console.requests import ALL, NO_STORE, DeniedError, Reception, address_of, as_json, say_why_not
+from lumen.console.sights import STREAM, Sights
 from lumen.console.streams import Listener, Streams, positions_in
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
 
 PAGES = Path(__file__).parent / "pages"
-STREAM = "text/event-stream"
 _ID = re.compile(r"[A-Za-z0-9._:-]{1,100}")
 
 
 class Site:
-    """Answers requests from a watch; `app` is what serves them."""
+    """Answers requests from a watch, of the project in `root`; `app` is what serves them."""
 
-    def __init__(self, watch: Watch) -> None:
-        self.watch, self.streams = watch, Streams(watch)
+    def __init__(self, watch: Watch, access: Access, root: Path) -> None:
+        self.watch, self.access = watch, access
+        self.streams, self.reception = Streams(watch), Reception(watch, access)
         self.commands = Commands(watch, self.streams)
+        self.sights, past = Sights(self.reception, root), Past(self.reception, root)
         self.app = Starlette(
             routes=[
                 Route("/", self._shell),
@@ -42,11 +46,19 @@ class Site:
                 Route("/api/now", self._now),
                 Route("/api/events", self._events),
                 Route("/api/commands", self._command, methods=["POST"]),
+                Route("/api/session", self._session, methods=["POST", "DELETE"]),
+                *past.routes,
+                *self.sights.routes,
                 Mount("/pages", StaticFiles(directory=PAGES)),
             ],
-            exception_handlers={HTTPException: _http_error, Exception: _our_error},
+            exception_handlers={HTTPException: say_why_not, DeniedError: say_why_not, Exception: say_why_not},
             lifespan=self._living,
         )
+
+    def close(self) -> None:
+        """End all streams."""
+        self.streams.close()
+        self.sights.close()
 
     @asynccontextmanager
     async def _living(self, _: Starlette) -> AsyncIterator[None]:
@@ -54,70 +66,86 @@ class Site:
         yield
         await self.watch.close()
 
-    def person(self, request: Request) -> Person:
-        """Who asks."""
-        return Person(Role.AUTHOR)
-
     async def _shell(self, request: Request) -> Response:
         return FileResponse(PAGES / "shell.html")
 
     async def _now(self, request: Request) -> Response:
-        person = self.person(request)
+        person = self.reception.person(request)
         full = person.role > Role.NOBODY
         robots = [view.to_json(full=full) for _, view in sorted(self.watch.robots.items())]
-        return _json({"robots": robots, "role": person.role.word, "time": iso_now(), "bus": self.watch.link.trouble})
+        told = {"role": person.role.word, "name": person.name, "time": iso_now(), "bus": self.watch.link.trouble}
+        return as_json({"robots": robots, **told})
 
     async def _events(self, request: Request) -> Response:
+        full = self.reception.person(request).role > Role.NOBODY
         robot = request.query_params.get("robot", "")
         after = request.headers.get("last-event-id") or request.query_params.get("after", "")
-        who = Listener(robot, positions_in(after, robot), self.person(request).role > Role.NOBODY)
-        return StreamingResponse(self.streams.events(who), media_type=STREAM, headers={"Cache-Control": "no-store"})
+        if self.watch.lookers >= MAX_STREAMS:
+            raise DeniedError(503, f"{MAX_STREAMS} pages listen already: close some")
+        who = Listener(robot, positions_in(after, robot), full)
+        return StreamingResponse(self.streams.events(who), media_type=STREAM, headers=NO_STORE)
 
     async def _command(self, request: Request) -> Response:
+        data = await self.reception.posted(request)
+        id, name = data.get("id"), data.get("command")
+        if not isinstance(name, str) or name not in NEEDS:
+            raise DeniedError(400, f"`command` is one of {', '.join(NEEDS)}")
+        rests = name == REST
+        person = self.reception.resting(request) if rests else self.reception.person(request, NEEDS[name])
+        if not isinstance(id, str) or not _ID.fullmatch(id):
+            raise DeniedError(400, "`id` is 1 to 100 letters, digits or . _ : -, the same where it is the same command")
+        robot = self._meant(data.get("robot"), rests=rests)
+        if person.role == Role.SHOW and name == "event":
+            _check_button(self.reception.robot(robot), data)
         try:
-            data = json_object(await request.body())
-            id, robot, name = (data.get(key) for key in ("id", "robot", "command"))
-            if not isinstance(id, str) or not _ID.fullmatch(id):
-                raise UsageError("`id` is 1 to 100 letters, digits or . _ : -, the same where it is the same command")
-            if not isinstance(name, str) or name not in NEEDS:
-                raise UsageError(f"`command` is one of {', '.join(NEEDS)}")
-            person = self.person(request)
-            if person.role < NEEDS[name]:
-                return refused(403, f"`{name}` is for the role {NEEDS[name].word}: sign in with its PIN")
-            command = self.commands.send(id, self._robot(robot, name), name, data, person)
-        except (UsageError, ValueError) as error:
-            return refused(400, str(error))
+            command = self.commands.send(id, robot, name, data, person)
+        except UsageError as error:
+            raise DeniedError(400, str(error)) from None
         await command.sent.wait()
-        headers = {"Lumen-State": SENT if command.state != "unsent" else "unsent", "Cache-Control": "no-store"}
+        headers = {"Lumen-State": "unsent" if command.state == "unsent" else "sent", **NO_STORE}
         return StreamingResponse(_outcome(command), media_type="application/json", headers=headers)
 
-    def _robot(self, name: object, command: str) -> str:
-        """The robot that is meant; where there is one only it need not be named. Raises UsageError."""
-        known = sorted(self.watch.robots)
-        if not name and len(known) == 1:
-            return known[0]
-        if name == ALL and command == "rest":
+    def _meant(self, robot: object, *, rests: bool) -> str:
+        """The robot's name; what rests may go to all, and to one that is not known yet."""
+        if rests and (robot == ALL or (not self.watch.robots and isinstance(robot, str) and robot)):
+            return str(robot)
+        if rests and not robot:
             return ALL
-        if not isinstance(name, str) or (name not in known and known):
-            raise UsageError(f"`robot` is one of {', '.join(known) or 'none that is known yet'}")
-        return name
+        return self.reception.robot(robot).robot
+
+    async def _session(self, request: Request) -> Response:
+        if request.method == "DELETE":
+            self.access.end(request.cookies.get(COOKIE, ""))
+            gone = as_json({"role": self.reception.person(request).role.word if not self.access.pins else "nobody"})
+            gone.delete_cookie(COOKIE, httponly=True, samesite="strict")
+            return gone
+        data = await self.reception.posted(request)
+        pin, name = data.get("pin"), data.get("name") or ""
+        if not isinstance(pin, str) or not isinstance(name, str) or len(name) > MAX_NAME:
+            raise DeniedError(400, f"`pin` is a text, and `name` one of up to {MAX_NAME} characters")
+        self.reception.person(request)
+        try:
+            role = self.access.role(address_of(request), pin) if self.access.pins else Role.AUTHOR
+        except TooFastError as error:
+            raise DeniedError(429, str(error), **{"Retry-After": str(error.wait)}) from None
+        if not role:
+            raise DeniedError(401, "that is the PIN of no role")
+        shown = "".join(sign for sign in name if sign.isprintable()).strip()
+        answer = as_json({"role": role.word, "name": shown})
+        cookie = self.access.sign(Person(role, shown))
+        answer.set_cookie(COOKIE, cookie, max_age=int(SESSION_TIME), httponly=True, samesite="strict", path="/")
+        return answer
+
+
+def _check_button(view: KnownRobot, data: dict[str, object]) -> None:
+    """Raises DeniedError for an event that no button of the states which are active now sends."""
+    buttons = view.said.get("buttons")
+    for button in buttons if isinstance(buttons, list) else ():
+        if button.get("event") == data.get("event") and (button.get("data") or {}) == (data.get("data") or {}):
+            return
+    raise DeniedError(403, "the role show sends only the events of the buttons that are there: sign in as operator")
 
 
 async def _outcome(command: PageCommand) -> AsyncIterator[bytes]:
     await command.over.wait()
     yield orjson.dumps(command.to_json())
-
-
-def _json(data: Any, status: int = 200) -> Response:
-    headers = {"Cache-Control": "no-store"}
-    return Response(orjson.dumps(data), status, headers=headers, media_type="application/json")
-
-
-async def _http_error(request: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)
-    reason = {404: "there is nothing under that path", 405: "that path does not take this method"}
-    return refused(error.status_code, reason.get(error.status_code, str(error.detail)))
-
-
-async def _our_error(request: Request, error: Exception) -> Response:
-    return refused(500, "the console failed on that; its terminal says more")

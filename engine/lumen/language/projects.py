@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lumen.language.alerts import Alerts
+from lumen.language.console_settings import ConsoleSettings
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.hall_places import HallPlace
@@ -39,8 +40,9 @@ class Project:
     stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for
     what is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by
     name; `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened,
-    `record` what is recorded of the bus. `replay_check` is how saved files are tried on recorded visits. `aliases`
-    is whether routes have their aliases: None for as long as no other robot is seen on the bus.
+    `record` what is recorded of the bus, `console` where its pages are. `replay_check` is how saved files are tried
+    on recorded visits. `aliases` is whether routes have their aliases: None for as long as no other robot is seen on
+    the bus.
     """
 
     root: str
@@ -69,6 +71,7 @@ class Project:
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)
     replay_check: ReplayCheck = field(default_factory=ReplayCheck)
+    console: ConsoleSettings = field(default_factory=ConsoleSettings)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

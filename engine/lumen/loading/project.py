@@ -113,6 +113,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         aliases=settings.aliases,
         record=settings.record,
         replay_check=settings.replay_check,
+        console=settings.console,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

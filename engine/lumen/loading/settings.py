@@ -9,6 +9,7 @@ from zoneinfo import available_timezones
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
 from lumen.language.alerts import Alerts
+from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import SHOW, ModuleSettings
@@ -59,6 +60,7 @@ class Settings:
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)
     replay_check: ReplayCheck = field(default_factory=ReplayCheck)
+    console: ConsoleSettings = field(default_factory=ConsoleSettings)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
@@ -89,6 +91,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         aliases=data.get("aliases"),
         record=_record(data, report),
         replay_check=_replay_check(data, journal, report),
+        console=_console(data.get("console")),
     )
 
 
@@ -173,6 +176,18 @@ def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSetting
         report(BAD_DURATION, ("record", "ring"), message, hint="10min is usual; delete `ring` to keep nothing")
         ring = None
     return RecordingSettings(ring=ring or 0.0, camera=said.get("camera", True), **numbers)
+
+
+def _console(said: Any) -> ConsoleSettings:
+    if not isinstance(said, Mapping):
+        return ConsoleSettings()
+    return ConsoleSettings(
+        wanted=True,
+        port=int(said.get("port", CONSOLE_PORT)),
+        host=said.get("host", CONSOLE_HOST),
+        pins=dict(said.get("pins", {})),
+        hosts=tuple(said.get("hosts", ())),
+    )
 
 
 def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:

@@ -11,6 +11,7 @@ RESTART_FIELDS: Mapping[str, str] = {
     "hall": "the hall",
     "stage": "the stage",
     "bus": "the broker's address",
+    "console": "the console",
     "modules": "what is said of the modules",
 }
 """Fields of `Project` that are active only from the next start on, and what they are called."""

@@ -1,0 +1,96 @@
+"""The console beside an exhibition: a process of its own, begun again where it dies; the exhibition goes on."""
+
+import os
+import subprocess
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from lumen.app.parts.part import Part
+from lumen.language.events import Event
+from lumen.upkeep.threads import WatchedThread
+
+FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
+"""How long after its end it is begun again [s], twice as long after each further one, and at most."""
+LOOK_PERIOD = 0.5
+STABLE = 30.0
+"""How long it has to live to count as well [s]."""
+END_TIMEOUT = 5.0
+
+
+class ConsolePart(Part):
+    """Has `lumen console` run for the project in `root` on the bus at `url`; `tell` hears what it says."""
+
+    def __init__(self, root: Path, url: str, tell: Callable[[str], None]) -> None:
+        self._root, self._url, self._tell = root, url, tell
+        self._process: subprocess.Popen[str] | None = None
+        self._lines: deque[str] = deque(maxlen=20)
+        self._last, self._said = "", ""
+        self._pause, self._next, self._began, self._looked = FIRST_PAUSE, 0.0, 0.0, 0.0
+
+    @property
+    def pid(self) -> int | None:
+        """Of the process, None while there is none."""
+        return self._process.pid if self._process else None
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        while self._lines:
+            self._last = self._lines.popleft()
+            if self._last != self._said:
+                self._said = self._last
+                self._tell(self._last)
+        here = time.monotonic()
+        if here - self._looked < LOOK_PERIOD:
+            return
+        self._looked = here
+        if self._process is not None and (code := self._process.poll()) is not None:
+            self._process = None
+            self._pause = FIRST_PAUSE if here - self._began > STABLE else min(2 * self._pause, LONGEST_PAUSE)
+            self._next = here + self._pause
+            self._tell(f"the console has ended ({code}); it is begun again in {self._pause:g} s")
+        if self._process is None and here >= self._next:
+            self._begin(here)
+
+    def close(self) -> None:
+        if (process := self._process) is None:
+            return
+        self._process = None
+        process.terminate()
+        try:
+            process.wait(END_TIMEOUT)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        for pipe in (process.stdin, process.stdout):
+            if pipe:
+                with suppress(OSError):
+                    pipe.close()
+
+    def _begin(self, now: float) -> None:
+        environment = dict(os.environ)
+        if not self._url.startswith("memory:"):
+            environment["LUMEN_BUS"] = self._url  # it may hold a password: not in the arguments, which all can read
+        else:
+            environment.pop("LUMEN_BUS", None)
+        command = [sys.executable, "-m", "lumen", "console", str(self._root), "--beside"]
+        try:
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                errors="replace", env=environment, start_new_session=True,
+            )  # fmt: skip
+        except OSError as error:
+            self._pause = min(2 * self._pause, LONGEST_PAUSE)
+            self._next = now + self._pause
+            self._tell(f"the console can't be begun: {error.strerror or error}")
+            return
+        self._began = now
+        process = self._process
+        WatchedThread("lumen-console-lines", lambda: self._read(process)).start()
+
+    def _read(self, process: "subprocess.Popen[str]") -> None:
+        with suppress(OSError, ValueError):
+            for line in process.stdout or ():
+                self._lines.append(line.strip()[:300])

@@ -1,0 +1,157 @@
+"""Who is at a page: by a PIN, or by a session that a PIN has begun; and how fast PINs may be tried."""
+
+import base64
+import hashlib
+import hmac
+import json
+import math
+import secrets
+import time
+from collections import OrderedDict
+from collections.abc import Mapping
+from pathlib import Path
+
+from lumen.console.people import ROLES, Person, Role
+from lumen.errors import UsageError
+from lumen.loading.regular_files import read_regular
+from lumen.runtime.home import Home, home_of
+
+COOKIE = "lumen_session"
+SESSION_TIME = 16 * 3600.0
+"""How long somebody stays signed in [s]: a day in a museum."""
+SHORTEST_PIN = 4
+MAX_NAME = 60
+FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
+"""How long an address waits after its first wrong PIN, twice as long after each further one, and at most [s]."""
+FREE_TRIES = 3
+"""Wrong PINs of an address that cost nothing: people mistype."""
+ALL_TRIES, ALL_PERIOD = 20, 10.0
+"""So many wrong PINs at a time from anywhere, then one in so long [s]."""
+MAX_ADDRESSES = 1_000
+SECRET_FILE = "console.key"
+_SECRET_BYTES = 32
+
+
+class TooFastError(Exception):
+    """A PIN may be tried again only after `wait` [s]."""
+
+    def __init__(self, wait: float) -> None:
+        self.wait = max(1, math.ceil(wait))
+        super().__init__(f"too many wrong PINs: the next may be tried in {self.wait} s. Rest needs none")
+
+
+class Access:
+    """Knows people by the PINs of the roles; without any PIN everybody is an author, which is for loopback only.
+
+    Sessions are signed with a `secret`, so that they outlive the console; those that were ended are not accepted.
+    """
+
+    def __init__(self, pins: Mapping[Role, str], secret: bytes = b"") -> None:
+        self.pins = {role: pin.encode() for role, pin in pins.items()}
+        self._secret = secret or secrets.token_bytes(_SECRET_BYTES)
+        self._guard = PinGuard()
+        self._ended: OrderedDict[str, float] = OrderedDict()
+
+    def person(self, address: str, bearer: str, cookie: str) -> Person:
+        """Who asks from an address. Raises TooFastError where PINs are tried too fast."""
+        if not self.pins:
+            return Person(Role.AUTHOR)
+        if bearer:
+            return Person(self.role(address, bearer))
+        return self._signed(cookie)
+
+    def role(self, address: str, pin: str) -> Role:
+        """The role of a PIN, nobody's for a wrong one. Raises TooFastError before it looks."""
+        self._guard.check(address)
+        given, found = pin.encode("utf-8", "surrogatepass"), Role.NOBODY
+        for role, wanted in self.pins.items():  # all of them: how long it takes says nothing
+            if hmac.compare_digest(_digest(given), _digest(wanted)) and role > found:
+                found = role
+        self._guard.note(address, right=found > Role.NOBODY)
+        return found
+
+    def sign(self, person: Person) -> str:
+        """A session of that person, as a cookie's value."""
+        said = [person.role.word, person.name[:MAX_NAME], time.time() + SESSION_TIME, secrets.token_hex(8)]
+        body = base64.urlsafe_b64encode(json.dumps(said).encode()).decode()
+        return f"{body}.{self._mark(body)}"
+
+    def end(self, cookie: str) -> None:
+        """Accept a session no more."""
+        self._ended[cookie] = time.time()
+        while len(self._ended) > MAX_ADDRESSES:
+            self._ended.popitem(last=False)
+
+    def _signed(self, cookie: str) -> Person:
+        body, _, mark = cookie.partition(".")
+        if not hmac.compare_digest(mark.encode(), self._mark(body).encode()) or cookie in self._ended:
+            return Person(Role.NOBODY)
+        role, name, until, _ = json.loads(base64.urlsafe_b64decode(body))
+        known = ROLES.get(role, Role.NOBODY)
+        return Person(known, name) if time.time() < until and known in self.pins else Person(Role.NOBODY)
+
+    def _mark(self, body: str) -> str:
+        pins = b"\0".join(_digest(pin) for _, pin in sorted(self.pins.items()))  # a changed PIN ends its sessions
+        return hmac.new(self._secret, body.encode("utf-8", "surrogatepass") + pins, hashlib.sha256).hexdigest()
+
+
+class PinGuard:
+    """Makes who tries PINs wait: an address longer each time, and all together where many of them try."""
+
+    def __init__(self) -> None:
+        self._wrong: OrderedDict[str, tuple[int, float]] = OrderedDict()
+        self._tries, self._since = float(ALL_TRIES), time.monotonic()
+
+    def check(self, address: str) -> None:
+        """Raises TooFastError where it is too early."""
+        now = time.monotonic()
+        count, at = self._wrong.get(address, (0, 0.0))
+        pause = min(FIRST_PAUSE * 2.0 ** min(count - FREE_TRIES, 10), LONGEST_PAUSE) if count >= FREE_TRIES else 0.0
+        if (left := at + pause - now) > 0:
+            raise TooFastError(left)
+        self._tries = min(ALL_TRIES, self._tries + (now - self._since) / ALL_PERIOD)
+        self._since = now
+        if self._tries < 1.0:
+            raise TooFastError((1.0 - self._tries) * ALL_PERIOD)
+
+    def note(self, address: str, *, right: bool) -> None:
+        """A PIN was tried."""
+        if right:
+            self._wrong.pop(address, None)
+            return
+        self._tries -= 1.0
+        self._wrong[address] = self._wrong.pop(address, (0, 0.0))[0] + 1, time.monotonic()
+        while len(self._wrong) > MAX_ADDRESSES:
+            self._wrong.popitem(last=False)
+
+
+def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[Role, str]:
+    """The PINs that variables of the environment hold, by the roles of lumen.yaml. Raises UsageError."""
+    found: dict[Role, str] = {}
+    for word, variable in said.items():
+        pin = environment.get(variable.removeprefix("$"), "")
+        if not pin:
+            raise UsageError(f"the PIN for {word} is to be in {variable}, and that is not set")
+        if len(pin) < SHORTEST_PIN:
+            raise UsageError(f"the PIN for {word}, in {variable}, is too short: {SHORTEST_PIN} characters at least")
+        if pin in found.values():
+            raise UsageError(f"the PIN for {word}, in {variable}, is that of another role, too: each needs its own")
+        found[ROLES[word]] = pin
+    return found
+
+
+def secret_in(root: Path) -> bytes:
+    """What sessions are signed with, kept in the home of the project; empty where nothing can be kept."""
+    home = Home(home_of(root))
+    try:
+        kept = read_regular(home.folder / SECRET_FILE, 2 * _SECRET_BYTES, follow=False)
+    except OSError:
+        kept = b""
+    if len(kept) == _SECRET_BYTES:
+        return kept
+    new = secrets.token_bytes(_SECRET_BYTES)
+    return b"" if not home.folder.is_dir() or home.write(SECRET_FILE, new) else new
+
+
+def _digest(pin: bytes) -> bytes:
+    return hashlib.sha256(pin).digest()

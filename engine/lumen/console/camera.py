@@ -1,0 +1,114 @@
+"""What robots see: their newest image, asked for only while somebody looks."""
+
+import asyncio
+import base64
+import binascii
+from collections.abc import AsyncIterator, Callable
+from contextlib import suppress
+from typing import Any
+
+from lumen.console.watch import Watch
+from lumen.errors import BusError
+from lumen.ports import Bus, Message
+
+BOUNDARY = "lumen-frame"
+MEDIA_TYPE = f"multipart/x-mixed-replace; boundary={BOUNDARY}"
+JPEG = "data:image/jpeg;base64,"
+MAX_IMAGE = 4_000_000
+"""Characters of an image on the bus."""
+PERIOD = 1 / 15
+"""How long after an image the next is sent at the earliest [s]."""
+SILENCE = 10.0
+"""How long a robot may send no image until the stream ends [s]."""
+LINGER = 2.0
+"""How long after the last looker images are still asked for [s]."""
+
+
+class WatchedCamera:
+    """The newest image of one robot; `frame` is it, `count` how many there were."""
+
+    def __init__(self) -> None:
+        self.frame, self.count, self.lookers = b"", 0, 0
+        self.bus: Bus | None = None
+        self.undo: Callable[[], None] = lambda: None
+        self.came = asyncio.Event()
+
+    def show(self, frame: bytes) -> None:
+        self.frame, self.count = frame, self.count + 1
+        self.came.set()
+        self.came = asyncio.Event()
+
+
+class Cameras:
+    """The cameras of all robots of a watch."""
+
+    def __init__(self, watch: Watch) -> None:
+        self._watch = watch
+        self._cameras: dict[str, WatchedCamera] = {}
+        self._closing = False
+
+    def close(self) -> None:
+        self._closing = True
+        for camera in self._cameras.values():
+            camera.came.set()
+
+    def looked_at(self, robot: str) -> bool:
+        """Whether images of a robot are asked for."""
+        return robot in self._cameras and self._cameras[robot].bus is not None
+
+    async def stream(self, robot: str) -> AsyncIterator[bytes]:
+        """Images as parts of one answer, only the newest; it ends where none comes any more."""
+        camera = self._cameras.setdefault(robot, WatchedCamera())
+        camera.lookers += 1
+        seen = camera.count
+        try:
+            while not self._closing:
+                await self._listen(robot, camera)
+                try:
+                    async with asyncio.timeout(SILENCE):
+                        while camera.count == seen and not self._closing:
+                            await camera.came.wait()
+                except TimeoutError:
+                    return
+                if self._closing:
+                    return
+                seen = camera.count
+                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(camera.frame)}\r\n\r\n"
+                yield head.encode() + camera.frame + b"\r\n"
+                await asyncio.sleep(PERIOD)
+        finally:
+            camera.lookers -= 1
+            asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
+
+    async def _listen(self, robot: str, camera: WatchedCamera) -> None:
+        """Subscribe on the bus that there is, unless that was done."""
+        bus = self._watch.link.bus
+        if bus is None or bus is camera.bus:
+            return
+        camera.bus, loop = bus, asyncio.get_running_loop()
+
+        def take(message: Message) -> None:
+            if (frame := jpeg_in(message.body)) is not None:
+                with suppress(RuntimeError):  # the loop has ended
+                    loop.call_soon_threadsafe(camera.show, frame)
+
+        with suppress(BusError):
+            key = self._watch.keys.of(robot).image
+            camera.undo = await asyncio.to_thread(bus.subscribe, key, take)
+
+    def _leave(self, camera: WatchedCamera) -> None:
+        if not camera.lookers and camera.bus:
+            camera.bus, undo, camera.undo = None, camera.undo, lambda: None
+            asyncio.get_running_loop().run_in_executor(None, undo)
+
+
+def jpeg_in(body: Any) -> bytes | None:
+    """The image in a message; None where it is none, or is too large."""
+    url = body.get("contentUrl") if isinstance(body, dict) else None
+    if not isinstance(url, str) or not url.startswith(JPEG) or len(url) > MAX_IMAGE:
+        return None
+    try:
+        found = base64.b64decode(url[len(JPEG) :], validate=True)
+    except (binascii.Error, ValueError):
+        return None
+    return found if found.startswith(b"\xff\xd8") else None

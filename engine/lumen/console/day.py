@@ -1,0 +1,161 @@
+"""A day of an exhibition: its visits, and the numbers that a museum wants of them."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from datetime import date, datetime
+from typing import Any
+
+from lumen.app.recording.happenings import FALLEN
+from lumen.app.replaying.replay_report import iso
+from lumen.interpreters.replay.command_data import started
+from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, Replayer
+from lumen.interpreters.replay.visits import VisitWatch
+from lumen.language.modules import VISITOR_KEY
+
+HEARD = "heard"
+MAX_TEXT = 200
+MAX_ROWS = 1_000
+"""Different texts of a kind that are told."""
+
+
+@dataclass
+class DayVisit:
+    """One visit: its first and last position, when it was [s since 1970], and who it was, as far as that is known."""
+
+    number: int
+    first: int
+    last: int
+    began: float
+    ended: float
+    visitor: str = ""
+    language: str = ""
+    asked: int = 0
+    missed: int = 0
+
+    def to_json(self) -> dict[str, Any]:
+        seconds = round(self.ended - self.began, 1)
+        return {
+            "n": self.number, "from": self.first, "to": self.last, "began": iso(self.began), "ended": iso(self.ended),
+            "seconds": seconds, "visitor": self.visitor or None, "language": self.language or None,
+            "asked": self.asked, "missed": self.missed,
+        }  # fmt: skip
+
+
+@dataclass
+class Day:
+    """What happened on a day, and on which `dates` something did."""
+
+    day: date
+    dates: list[date]
+    visits: list[DayVisit] = field(default_factory=list)
+    asked: Counter[str] = field(default_factory=Counter)
+    missed: Counter[str] = field(default_factory=Counter)
+    answers: Counter[str] = field(default_factory=Counter)
+    languages: Counter[str] = field(default_factory=Counter)
+    hours: Counter[int] = field(default_factory=Counter)
+    falls: int = 0
+
+    def to_json(self) -> dict[str, Any]:
+        """For the page: `numbers` are of the whole day, rows of a text and how often, the most frequent first."""
+        lengths = [visit.ended - visit.began for visit in self.visits]
+        numbers = {
+            "visits": len(lengths),
+            "mean_seconds": round(sum(lengths) / len(lengths), 1) if lengths else None,
+            "longest_seconds": round(max(lengths), 1) if lengths else None,
+            "falls": self.falls,
+            "hours": sorted([hour, count] for hour, count in self.hours.items()),
+        }
+        rows = {name: getattr(self, name).most_common(MAX_ROWS) for name in COUNTED}
+        return {
+            "date": self.day.isoformat(), "dates": [one.isoformat() for one in self.dates],
+            "visits": [visit.to_json() for visit in self.visits], "marks": [], "numbers": numbers | rows,
+        }  # fmt: skip
+
+
+COUNTED = ("asked", "missed", "answers", "languages")
+
+
+def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: date | None) -> Day:
+    """What the entries of a journal hold of a day, by the exhibition's clock; of the last one where none is wanted."""
+    clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
+    days: dict[date, Day] = {}
+    visit: DayVisit | None = None
+    for entry in entries:
+        at = clock.of(entry)
+        here = clock.local(at)
+        taken = replayer.take(entry)
+        machine = taken.machine
+        part = watch.take(entry, machine)
+        today = days.setdefault(here.date(), Day(here.date(), []))
+        if visit and (not part or (isinstance(entry, JournalJump) and entry.kind in ("start", "gap"))):
+            visit = None
+        if part and visit is None:
+            visit = DayVisit(len(today.visits) + 1, entry.position, entry.position, at, at)
+            today.visits.append(visit)
+            today.hours[here.hour] += 1
+        _count(today, visit, taken)
+        if visit:
+            visit.last, visit.ended = entry.position, at
+            _name(visit, taken)
+            if not watch.away:
+                visit = None
+    for one in days.values():
+        one.languages = Counter(visit.language for visit in one.visits if visit.language)
+    dates = sorted(one for one, day in days.items() if day.visits) or sorted(days)
+    chosen = wanted or (dates[-1] if dates else datetime.now().date())
+    found = days.get(chosen) or Day(chosen, [])
+    found.dates = dates
+    return found
+
+
+def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep) -> None:
+    """What was said, and whether it was understood."""
+    entry = taken.entry
+    if not isinstance(entry, JournalInput) or entry.redacted:
+        return
+    day.falls += entry.event.name == FALLEN
+    text = entry.event.data.get("result") if isinstance(entry.event.data, Mapping) else None
+    asked = entry.how == HEARD and isinstance(text, str) and text.strip()
+    if asked:
+        words = " ".join(str(text).lower().split())[:MAX_TEXT]
+        day.asked[words] += 1
+        missed = not understood(entry, taken)
+        if missed:
+            day.missed[words] += 1
+        if visit:
+            visit.asked += 1
+            visit.missed += missed
+    for command in entry.commands:
+        if (found := started(command)) and found[1] == "Say":
+            day.answers[str(found[2].get("text", ""))[:MAX_TEXT]] += 1
+            if visit:
+                visit.language = str(found[2].get("language") or visit.language)
+
+
+def understood(entry: JournalInput, taken: ReplayedStep) -> bool:
+    """Whether something came of what a visitor said, and not what comes of anything that nobody expected.
+
+    That is a transition without a guard, of a state that has another one for the same event with one.
+    """
+    if taken.step is None or taken.machine is None:
+        return bool(entry.entered or entry.exited or entry.commands)
+    transitions = taken.step.transitions
+    if not transitions:
+        return bool(entry.entered or entry.exited or entry.commands)
+    for one in transitions:
+        state = taken.machine.states.get(one.source)
+        others = state.transitions if state else ()
+        fallback = one.guard is None and any(o.event == one.event and o.guard is not None for o in others)
+        if one.event and not fallback:
+            return True
+    return False
+
+
+def _name(visit: DayVisit, taken: ReplayedStep) -> None:
+    snapshot = taken.after
+    name = snapshot.context.get(VISITOR_KEY) if snapshot else None
+    if isinstance(name, str) and name and not taken.entry.redacted:
+        visit.visitor = name[:MAX_TEXT]

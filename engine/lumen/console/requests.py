@@ -1,0 +1,99 @@
+"""What the paths of the console have in common: who asks, about which robot, and answers that say why not."""
+
+from typing import Any
+
+import orjson
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+
+from lumen.console.access import COOKIE, Access, TooFastError
+from lumen.console.gate import json_object, refused
+from lumen.console.known_robot import KnownRobot
+from lumen.console.people import Person, Role
+from lumen.console.ration import RequestRation
+from lumen.console.watch import Watch
+
+NO_STORE = {"Cache-Control": "no-store"}
+ALL = "*"
+"""Instead of a robot's name: all of them."""
+
+
+class DeniedError(Exception):
+    """Answered with a status and a sentence."""
+
+    def __init__(self, status: int, reason: str, **headers: str) -> None:
+        super().__init__(reason)
+        self.status, self.reason, self.headers = status, reason, headers
+
+
+class Reception:
+    """Says who asks and what about. Everything here raises DeniedError."""
+
+    def __init__(self, watch: Watch, access: Access) -> None:
+        self.watch, self.access, self.ration = watch, access, RequestRation()
+
+    def person(self, request: Request, needs: Role = Role.NOBODY) -> Person:
+        """Who asks, who has to be at least `needs`."""
+        address = address_of(request)
+        if not self.ration.take(address):
+            raise DeniedError(429, "too many requests: wait a second. Rest is always taken", **{"Retry-After": "1"})
+        try:
+            person = self._known(request, address)
+        except TooFastError as error:
+            raise DeniedError(429, str(error), **{"Retry-After": str(error.wait)}) from None
+        if person.role < needs:
+            raise DeniedError(403 if person.role else 401, f"that is for the role {needs.word}: sign in with its PIN")
+        return person
+
+    def resting(self, request: Request) -> Person:
+        """Who wants a robot to rest: nobody is refused, and nothing is counted."""
+        try:
+            return self._known(request, address_of(request), bearer=False)
+        except TooFastError:
+            return Person(Role.NOBODY)
+
+    def robot(self, name: object) -> KnownRobot:
+        """The robot of that name; where there is one only it need not be named."""
+        known = self.watch.robots
+        if not name and len(known) == 1:
+            return next(iter(known.values()))
+        if not isinstance(name, str) or name not in known:
+            reason = self.watch.link.trouble if not known else ""
+            raise DeniedError(404, reason or f"`robot` is one of {', '.join(sorted(known))}")
+        return known[name]
+
+    async def posted(self, request: Request) -> dict[str, Any]:
+        """The object that was posted."""
+        try:
+            return json_object(await request.body())
+        except ValueError as error:
+            raise DeniedError(400, str(error)) from None
+
+    def _known(self, request: Request, address: str, *, bearer: bool = True) -> Person:
+        scheme, _, pin = request.headers.get("authorization", "").partition(" ")
+        wanted = pin.strip() if bearer and scheme.lower() == "bearer" else ""
+        return self.access.person(address, wanted, request.cookies.get(COOKIE, ""))
+
+
+def address_of(request: Request) -> str:
+    return request.client.host if request.client else ""
+
+
+def as_json(data: Any, status: int = 200, **headers: str) -> Response:
+    return Response(orjson.dumps(data), status, headers={**NO_STORE, **headers}, media_type="application/json")
+
+
+async def say_why_not(request: Request, error: Exception) -> Response:
+    """A refusal, a path that is none, or a fault of ours, as JSON."""
+    match error:
+        case DeniedError():
+            return refused(error.status, error.reason, **error.headers)
+        case HTTPException(status_code=404):
+            return refused(404, "there is nothing under that path")
+        case HTTPException(status_code=405):
+            return refused(405, "that path does not take this method")
+        case HTTPException():
+            return refused(error.status_code, str(error.detail))
+        case _:
+            return refused(500, "the console failed on that; its terminal says more")

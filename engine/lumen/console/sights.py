@@ -1,0 +1,58 @@
+"""The paths of what is seen: the camera, and the robot's shape and poses."""
+
+import asyncio
+from pathlib import Path
+
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+from starlette.routing import Route
+
+from lumen.console.camera import MEDIA_TYPE, Cameras
+from lumen.console.known_robot import KnownRobot
+from lumen.console.people import Role
+from lumen.console.poses import Poses
+from lumen.console.requests import NO_STORE, DeniedError, Reception, as_json
+from lumen.errors import LumenError
+
+STREAM = "text/event-stream"
+
+
+class Sights:
+    """Shows robots to those who have a role."""
+
+    def __init__(self, reception: Reception, root: Path) -> None:
+        self._reception = reception
+        self.cameras, self.poses = Cameras(reception.watch), Poses(reception.watch, root)
+        self.routes = [
+            Route("/camera/{robot}", self._camera),
+            Route("/api/shape", self._shape),
+            Route("/api/poses", self._poses),
+        ]
+
+    def close(self) -> None:
+        self.cameras.close()
+        self.poses.closing = True
+
+    async def _camera(self, request: Request) -> Response:
+        self._reception.person(request, Role.SHOW)
+        view = self._reception.robot(request.path_params["robot"])
+        return StreamingResponse(self.cameras.stream(view.robot), media_type=MEDIA_TYPE, headers=NO_STORE)
+
+    async def _shape(self, request: Request) -> Response:
+        view = self._drawn(request)
+        try:
+            return as_json(await asyncio.to_thread(self.poses.shape, view.robot))
+        except LumenError as error:
+            raise DeniedError(404, f"the robot can't be drawn: {error}") from None
+
+    async def _poses(self, request: Request) -> Response:
+        view = self._drawn(request)
+        return StreamingResponse(self.poses.stream(view.robot), media_type=STREAM, headers=NO_STORE)
+
+    def _drawn(self, request: Request) -> KnownRobot:
+        self._reception.person(request, Role.SHOW)
+        view = self._reception.robot(request.query_params.get("robot"))
+        reached = self._reception.watch.link.reached
+        if reached is None or reached.robot != view.robot:
+            raise DeniedError(404, "only the robot of this console's own project can be drawn")
+        return view

@@ -1,0 +1,35 @@
+"""The console: nobody can use it from elsewhere without a PIN, and no PIN stands in a file."""
+
+import re
+from ipaddress import ip_address
+
+from lumen.language.diagnostics import ERROR, Code
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.routes import PASSWORD_IN_FILE
+
+OPEN_CONSOLE = Code("open-console", "robot", ERROR, "the console can be reached from elsewhere, and has no PINs")
+_VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report a console that anybody could steer the robot from."""
+    settings, report = draft.settings, draft.main
+    if settings is None or report is None or not settings.console.wanted:
+        return
+    console = settings.console
+    for role, pin in console.pins.items():
+        if not _VARIABLE.fullmatch(pin):
+            hint = f"write `{role}: $LUMEN_PIN_{role.upper()}`, and the PIN into that environment variable"
+            where = ("console", "pins", role)
+            report(PASSWORD_IN_FILE, where, "a PIN stands in a file that everybody reads", hint)
+    if not console.pins and not _loopback(console.host):
+        hint = "write `pins: {operator: $LUMEN_PIN_OPERATOR}`, or leave out `host`: then only this machine reaches it"
+        message = f"whoever reaches {console.host} could let the robot do anything"
+        report(OPEN_CONSOLE, ("console", "host"), message, hint)
+
+
+def _loopback(host: str) -> bool:
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,64 @@
+"""Days, entries, why and files, of an exhibition with visitors."""
+
+from datetime import date
+
+import pytest
+
+from tests.console.conftest import Hosted
+from tests.console.pages import Browser
+from tests.waiting import until
+
+
+@pytest.fixture
+def visited(hosted: Hosted, browser: Browser) -> Browser:
+    """A visitor called a name that a page had better not believe says something that nobody expects."""
+    position = browser.robots[0]["position"]
+    hosted.send("face", {"x": 160, "y": 120})
+    until(lambda: "greet" in hosted.exhibition.configuration)
+    hosted.send("heard", {"result": "<script>alert(1)</script>", "language": "en"})
+    hosted.send("heard", {"result": "=1+1", "language": "en"})
+    until(lambda: (browser.robots[0]["position"] or 0) > position + 2)
+    return browser
+
+
+def test_a_day_has_its_visits_and_numbers(visited: Browser) -> None:
+    until(lambda: len(visited.get("/api/day").data["numbers"]["asked"]) == 2)
+    day = visited.get("/api/day").data
+    assert day["date"] in day["dates"]
+    [visit] = day["visits"]
+    assert visit["n"] == 1
+    assert day["numbers"]["visits"] == 1
+    assert dict(day["numbers"]["asked"]) == {"<script>alert(1)</script>": 1, "=1+1": 1}
+    assert day["numbers"]["answers"]
+    entries = visited.get(f"/api/entries?from={visit['from']}&to={visit['to']}").data["entries"]
+    assert [entry["position"] for entry in entries] == list(range(visit["from"], visit["to"] + 1))
+    assert all(entry["at_time"].startswith(day["date"][:4]) for entry in entries)
+    answer = visited.get("/api/day.csv")
+    assert answer.headers["content-type"].startswith("text/csv")
+    assert "asked,'=1+1,1" in answer.body.decode()
+
+
+def test_what_is_asked_wrongly_is_said(browser: Browser) -> None:
+    for path in ("/api/day?date=yesterday", "/api/entries?from=a&to=2", "/api/entries"):
+        assert (browser.get(path).status, list(browser.get(path).data)) == (400, ["reason"])
+    assert browser.get("/api/day?robot=NAO7").status == 404
+    assert browser.get("/api/day?date=1999-01-01").data["visits"] == []
+    assert date.fromisoformat(browser.get("/api/day").data["date"])
+
+
+def test_it_says_why_and_why_not(visited: Browser) -> None:
+    why = visited.get("/api/why?what=greet").data
+    assert why["chain"][0]["text"]
+    assert visited.get("/api/why-not?what=dance").data["reasons"]
+    assert visited.get("/api/why?what=moonwalk").status == 404
+
+
+def test_files_are_as_the_exhibition_says(browser: Browser) -> None:
+    until(lambda: browser.robots[0]["files"])
+    assert browser.get("/api/files").data["mode"] == "manual"
+
+
+def test_the_robot_is_drawn_from_its_own_model(browser: Browser) -> None:
+    shape = browser.get("/api/shape").data
+    assert any(link["name"] == "Head" or "Head" in link["name"] for link in shape["links"])
+    assert shape["stage"]["x"] == [-0.4, 0.4]
