@@ -12,6 +12,8 @@ from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
 
 SILENT_AFTER = 2.5
 """How long an exhibition may say nothing until it counts as away [s]."""
+CLOCK_TOLERANCE = 0.7
+"""How far a clock may seem to have moved until it is believed [s]: an answer takes its time."""
 MAX_PROCESSES = 30
 SEEN_FOR = 1.5
 """How long a face that was seen counts [s]."""
@@ -54,8 +56,9 @@ class KnownRobot:
     def answered(self, said: Mapping[str, Any]) -> None:
         """Its exhibition has said how it is."""
         self._answered, self._heard = time.monotonic(), iso_now()
-        if not self.connected or {**said, "time": ""} != {**self.said, "time": ""}:  # it goes on by itself
-            self.said, self.connected = dict(said), True
+        told = {**said, "ahead": self._ahead(said.get("time"))}
+        if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # it goes on by itself
+            self.said, self.connected = told, True
             self.version += 1
 
     def look(self, up: bool) -> None:
@@ -137,6 +140,15 @@ class KnownRobot:
             return {"faces": []}
         known = self._known if now - self._knew <= SEEN_FOR and self._known not in NO_NAMES else ""
         return {"faces": [{**self._seen, "name": known}]}
+
+    def _ahead(self, told: object) -> float:
+        """How far the exhibition's clock, which a story sets, is ahead of ours [s]; it stays while it is near."""
+        before = float(self.said.get("ahead", 0.0))
+        try:
+            ahead = datetime.fromisoformat(str(told)).timestamp() - time.time()
+        except (ValueError, OverflowError):
+            return before
+        return before if abs(ahead - before) < CLOCK_TOLERANCE else round(ahead, 1)
 
     def _away(self, said: Mapping[str, Any]) -> bool:
         return time.monotonic() - float(said["at"]) > LOST_AFTER

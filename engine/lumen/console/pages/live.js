@@ -24,13 +24,11 @@ export async function get(path, values = {}, limit = 15000) {
   return data;
 }
 
-/** The state of the robot that is looked into, with `skew`: how far its clock is ahead of this one's [ms]. */
+/** What is known of a robot, with `skew`: how far the clock of its exhibition is ahead of this browser's [ms]. */
 export const robotOf = (name) => live.robots.get(name);
 
 function took(robot) {
-  const before = live.robots.get(robot.robot), told = Date.parse(robot.time ?? robot.heard ?? "");
-  const skew = Number.isNaN(told) ? 0 : told - Date.now();
-  live.robots.set(robot.robot, { ...robot, skew: before && Math.abs(before.skew - skew) < 700 ? before.skew : skew });
+  live.robots.set(robot.robot, { ...robot, skew: live.skew + 1000 * (robot.ahead ?? 0) });
   for (const button of document.querySelectorAll("rest-button")) button.heed?.([...live.robots.values()]);
 }
 
@@ -47,6 +45,7 @@ export async function connect() {
   try {
     const now = await get("/api/now", {}, ANSWER);
     live.role = now.role ?? "author";
+    live.skew = Date.parse(now.time) - Date.now();
     live.robots.clear();
     now.robots.forEach(took);
     if (live.role === "nobody" && lumen.page !== "subtitles") return become("live"), again(mine, 2000);

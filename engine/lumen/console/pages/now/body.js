@@ -27,7 +27,7 @@ function Senses({ robot }) {
       level=${(battery ?? 0) / 100} state=${battery !== null && battery < LOW ? "bad" : "well"} words=${battery !== null && battery < LOW ? t("battery.low") : ""} />
     <${Fact} name=${t("heat")} value=${heat === null ? t("unknown") : `${fixed(heat)} °C${Array.isArray(hot) ? ` ${hot[0]}` : ""}`}
       state=${heat > HOT ? "bad" : "well"} words=${heat > HOT ? t("heat.high") : ""} />
-    <${Fact} name=${t("sonar")} value=${`${t("left")} ${metres(sonar.leftSensor)} · ${t("right")} ${metres(sonar.rightSensor)}`} />
+    <${Fact} name=${t("sonar")} value=${sonar.leftSensor == null && sonar.rightSensor == null ? t("unknown") : `${t("left")} ${metres(sonar.leftSensor)} · ${t("right")} ${metres(sonar.rightSensor)}`} />
     <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : `${fixed(realtime * 100)} %`}
       state=${realtime < SLOW ? "bad" : "well"} words=${realtime < SLOW ? t("realtime.slow") : ""} />
     <${Fact} name=${t("queues")} value=${robot.queues ? t("queues.both", robot.queues) : t("unknown")} /></dl>`;
@@ -40,7 +40,7 @@ function Processes({ robot }) {
     return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}><span>${one.parts.join(", ")}</span>
       <span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>
       <span class="quiet">${one.word ? `${one.word} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} skew=${0} /></span></li>`;
-  })}</ul>` : html`<p class="quiet">${t("unknown")}</p>`}`;
+  })}</ul>` : html`<p class="quiet">${t("processes.none")}</p>`}`;
 }
 
 export function Body({ robot }) {

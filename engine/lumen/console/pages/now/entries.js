@@ -27,7 +27,7 @@ export function question(entry) {
 
 export function Entry({ entry, onOpen, current = false }) {
   return html`<li class="entry" data-kind=${entry.kind}><button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
-    <time datetime=${entry.at_time}>${clock(entry.at_time)}</time><span class="entry-kind">${t(`kind.${entry.kind}`)}</span><span class="entry-text">${entry.text}</span></button></li>`;
+    <span class="entry-when"><time datetime=${entry.at_time}>${clock(entry.at_time)}</time> <span class="entry-kind">${t(`kind.${entry.kind}`)}</span></span><span class="entry-text">${entry.text}</span></button></li>`;
 }
 
 export function Entries({ robot }) {

@@ -1,9 +1,10 @@
 // The ways out of the active states: which are open at this moment, and why not.
 import { Part, Place, html, t } from "../ui.js";
 
-function Guard({ guard }) {
+function Guard({ guard, open }) {
   const values = Object.entries(guard.values ?? {});
-  return html`<p class="guard" data-true=${guard.true}><span class="truth">${t(guard.true ? "guard.true" : "guard.false")}</span>
+  const truth = guard.true ? "true" : open ? "if" : "false"; // open: it is asked when the event comes
+  return html`<p class="guard" data-true=${truth}><span class="truth">${t(`guard.${truth}`)}</span>
     <code>${guard.text}</code></p>
     ${values.length > 0 && html`<p class="values">${values.map(([name, value]) => html`<span>${name} = <b>${JSON.stringify(value)}</b></span> `)}</p>`}`;
 }
@@ -13,7 +14,7 @@ function Way({ way }) {
     <p class="way-head"><span class="badge" data-state=${way.open ? "open" : "closed"}>${t(way.open ? "way.open" : "way.closed")}</span>
       <span><b>${way.event || t("way.always")}</b> → ${way.targets?.length ? way.targets.join(", ") : t("way.stays")}</span></p>
     ${way.why && html`<p class="why-text">${way.why}</p>`}
-    ${way.guard && html`<${Guard} guard=${way.guard} />`}
+    ${way.guard && html`<${Guard} guard=${way.guard} open=${way.open} />`}
     <p class="place">${t("way.from", { state: way.source })} <${Place} file=${way.file} line=${way.line} /></p></li>`;
 }
 
