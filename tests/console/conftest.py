@@ -21,16 +21,16 @@ __all__ = ["copy", "project"]
 
 
 class Hosted:
-    """An exhibition of a project on its own bus, with a recording robot, in real time, until closed."""
+    """An exhibition of a project on its own bus or a broker's, with a recording robot, in real time, until closed."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, bus: str = "memory://") -> None:
         self._ending = threading.Event()
         self.directory = RunDirectory(root)
         loaded = startup_project(root, self.directory, last_good=False, warn=print)
         self.exhibition = Exhibition(
-            loaded, set_up("recording", loaded, "1"), run_directory=self.directory, reload="manual"
+            loaded, set_up("recording", loaded, "1"), bus, run_directory=self.directory, reload="manual"
         )
-        self.directory.open(self.exhibition.node.bus, "memory://", loaded)
+        self.directory.open(self.exhibition.node.bus, bus, loaded)
         self.exhibition.start()
         self._thread = threading.Thread(target=self._live)
         self._thread.start()

@@ -9,18 +9,23 @@ import orjson
 
 from lumen.app.resting import STOP_TIMEOUT, no_robot, stop_behavior
 from lumen.console.exchanges import Exchange
+from lumen.console.known_robot import KnownRobot
 from lumen.console.orders import REST, Fields, Order, order_of
 from lumen.console.people import Person
 from lumen.console.requests import ALL
 from lumen.console.streams import Streams
 from lumen.console.watch import Watch
-from lumen.errors import BusError
+from lumen.errors import BusError, BusUnreachableError
 from lumen.runtime.presence import ROBOT_PART
 
 SENT_TIMEOUT = 0.8
 """How long a bus may take to have a message [s]; then it counts as not sent."""
 REST_TTL = 5.0
 """How long a wish to rest may be on its way [s], that of the route `stop`."""
+LOOK_PERIOD = 0.02
+"""How often it is looked whether the robot that is to rest is still there [s]."""
+PRESENCE_PATIENCE = 1.5
+"""How long after it was told to rest a robot that was not heard of may still turn out to be there [s]."""
 MAX_REMEMBERED = 1_000
 FINISHED, FAILED, UNSENT, SENT = "finished", "failed", "unsent", "sent"
 
@@ -107,8 +112,6 @@ class Commands:
         view = self._watch.robots.get(robot)
         try:
             with self._watch.exchanges.send(order.key, order.body, ttl=ttl, by=one.by, echo=True) as exchange:
-                if rests and view and view.lacks(ROBOT_PART):
-                    self._stop_behavior(robot)
                 if not await exchange.taken(SENT_TIMEOUT):
                     one.become(UNSENT, self._unsent(exchange, order.key))
                     if rests:
@@ -118,6 +121,8 @@ class Commands:
                 self._streams.tell(one.block())
                 timeout = STOP_TIMEOUT if rests else order.timeout
                 async with asyncio.timeout(timeout):
+                    if rests:
+                        await self._robot_answers(exchange, view)
                     while (reason := order.outcome(answer := await exchange.answer(timeout))) is None:
                         pass
                 one.become(FAILED if reason else FINISHED, reason)
@@ -130,6 +135,14 @@ class Commands:
                 one.become(FAILED, no_robot(order.key) if rests else f"nobody answered on `{order.key}`")
             if rests:
                 self._stop_behavior(robot)
+
+    async def _robot_answers(self, exchange: Exchange, view: KnownRobot | None) -> None:
+        """Return when there is an answer. Raises BusUnreachableError where the robot's process is gone."""
+        sent = time.monotonic()
+        while exchange.answers.empty():
+            if view and view.lacks(ROBOT_PART) and time.monotonic() - sent > PRESENCE_PATIENCE:
+                raise BusUnreachableError("the robot's process is gone")
+            await asyncio.sleep(LOOK_PERIOD)
 
     def _unsent(self, exchange: Exchange, key: str) -> str:
         if exchange.nobody.is_set():

@@ -1,6 +1,7 @@
 """The paths about what was, and what would be: why, why not, days, entries, files, and a fork."""
 
 import asyncio
+from collections.abc import Callable
 from datetime import date
 from pathlib import Path
 from time import monotonic
@@ -154,11 +155,14 @@ class Past:
             raise DeniedError(503, "the exhibition answers nothing that can be shown")
         return said
 
-    async def _computed(self, work: Any, *arguments: Any) -> Any:
-        """What is computed on a thread, two at a time."""
+    async def _computed(self, work: Callable[..., Any], *arguments: Any) -> Any:
+        """What is computed on a thread, two at a time; one that nobody waits for any more counts until it is done."""
         try:
-            async with asyncio.timeout(WORK_TIMEOUT), self._working:
-                return await asyncio.to_thread(work, *arguments)
+            async with asyncio.timeout(WORK_TIMEOUT):
+                await self._working.acquire()
+                thread = asyncio.get_running_loop().run_in_executor(None, work, *arguments)
+                thread.add_done_callback(lambda _: self._working.release())
+                return await asyncio.shield(thread)
         except TimeoutError:
             raise DeniedError(503, f"that takes longer than {WORK_TIMEOUT:g} s: ask `lumen` on the terminal") from None
         except LumenError as error:

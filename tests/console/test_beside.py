@@ -1,0 +1,69 @@
+"""The console beside an exhibition: begun with it, begun again where it dies, ended with it."""
+
+import os
+import signal
+import socket
+from pathlib import Path
+
+import pytest
+
+from lumen.app.parts import console
+from lumen.app.parts.console import ConsolePart
+from tests.console.pages import Browser
+from tests.waiting import until
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return int(listener.getsockname()[1])
+
+
+@pytest.mark.slow
+def test_it_is_begun_begun_again_and_ended(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(console, "FIRST_PAUSE", 0.1)
+    port, told = free_port(), list[str]()
+    main = copy / "lumen.yaml"
+    main.write_text(f"console: {{port: {port}}}\n" + main.read_text("utf-8"), "utf-8")
+    part, browser = ConsolePart(copy, "memory://", told.append), Browser(f"http://127.0.0.1:{port}/")
+
+    def serves() -> bool:
+        part.tick(0.0, ())
+        try:
+            return browser.get("/api/now").status == 200
+        except OSError:
+            return False
+
+    until(serves, 60.0)
+    assert f"The console is at http://127.0.0.1:{port}/ (Ctrl-C ends it)" in told
+    first = part.pid
+    assert first
+    os.kill(first, signal.SIGKILL)
+
+    def another() -> bool:
+        part.tick(0.0, ())
+        return part.pid not in (None, first)
+
+    until(another, 60.0)
+    until(serves, 60.0)
+    assert any(line.startswith("the console has ended (-9)") for line in told)
+    part.close()
+    with pytest.raises(OSError, match="refused"):
+        browser.get("/api/now")
+
+
+@pytest.mark.slow
+def test_why_it_cannot_begin_is_told(copy: Path) -> None:
+    told = list[str]()
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        main = copy / "lumen.yaml"
+        main.write_text(f"console: {{port: {port}}}\n" + main.read_text("utf-8"), "utf-8")
+        part = ConsolePart(copy, "memory://", told.append)
+
+        def ended() -> bool:
+            part.tick(0.0, ())
+            return any("is begun again in" in line for line in told)
+
+        until(ended, 60.0)
+        until(lambda: part.tick(0.0, ()) or any(f"port {port} of 127.0.0.1 can't be had" in line for line in told))
+        part.close()

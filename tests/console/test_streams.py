@@ -1,0 +1,65 @@
+"""Pages that listen: many of them, one that never reads, and one that was away for long."""
+
+import socket
+
+import pytest
+
+from lumen.console import gate
+from lumen.console.entry_ring import EntryRing
+from lumen.console.streams import positions_in
+from tests.console.conftest import Hosted
+from tests.console.pages import Browser, Served, Stream
+from tests.waiting import until
+
+
+def test_positions_are_read_from_what_a_browser_sends() -> None:
+    assert positions_in("12", "NAO") == {"NAO": 12}
+    assert positions_in("NAO:12,NAO2:5", "") == {"NAO": 12, "NAO2": 5}
+    assert positions_in("-1", "") == {"": -1}
+    for nonsense in ("", "x", "NAO:", "9" * 40, "NAO:1e5,;"):
+        assert positions_in(nonsense, "") == {}
+
+
+def test_a_ring_says_what_it_has_and_what_it_has_not() -> None:
+    ring = EntryRing("NAO")
+    ring.begin(9)
+    ring.add([{"position": 10 + number, "heard": "face", "at": number / 10} for number in range(3_000)])
+    ring.add([{"position": 3_009, "heard": "face", "at": 300.0}])
+    assert (ring.first, ring.last) == (1_009, 3_009)
+    assert ring.after(1_008) is None
+    found = ring.after(1_009)
+    assert found
+    assert [entry.position for entry in found] == list(range(1_010, 1_210))
+    assert [entry.position for entry in ring.after(3_007) or ()] == [3_008, 3_009]
+    assert ring.after(3_009) == []
+    assert ring.after(9_999) == []
+
+
+def test_many_pages_hear_the_same(browser: Browser, hosted: Hosted) -> None:
+    streams = [Stream(browser, "/api/events?after=-1") for _ in range(20)]
+    try:
+        browser.command("rest")
+        until(lambda: all("stop" in [e.data.get("heard") for e in stream.of("entry")] for stream in streams))
+        assert len({tuple(stream.positions()[:2]) for stream in streams}) == 1
+    finally:
+        for stream in streams:
+            stream.close()
+
+
+def test_who_never_reads_is_cut_off_and_nobody_else_hears_of_it(
+    served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gate, "READ_TIMEOUT", 0.5)
+    watch = served.console.site.watch
+    view = watch.robots["NAO"]
+    with socket.create_connection((served.browser.host, served.browser.port)) as lazy, Stream(served.browser) as keen:
+        lazy.sendall(b"GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        until(lambda: watch.lookers == 2)
+
+        def told() -> bool:
+            view.told({"padding": "x" * 1_000_000, "number": view.version})
+            return watch.lookers == 1
+
+        until(told, 60.0)
+        before = len(keen.of("now"))
+        until(lambda: len(keen.of("now")) > before)
