@@ -10,6 +10,7 @@ from lumen.app.answering import AnsweringThread
 from lumen.app.asking import operator_key
 from lumen.app.decisions import Decisions
 from lumen.app.doings import Doings
+from lumen.app.forking import forked
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.now import NowView, PresentMoment, moment
@@ -35,7 +36,8 @@ NOTHING_RECORDED = "nothing is being recorded: `record: {ring: 10min}` in lumen.
 REQUESTS = (
     '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "press", "button": …}`,'
     ' `{"ask": "approve", "id": …, "go": true}`, `{"ask": "autonomy", "level": "ask"}`,'
-    ' `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
+    ' `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, `{"ask": "fork", "position": …}`,'
+    ' or `{"ask": "why", "what": …}`'
 )
 
 
@@ -107,6 +109,9 @@ class OperatorPart(Part, Observer):
                     self._answering.ask(message)
                 case {"ask": "now"}:
                     self._pages.answer(message, partial(self._view.tell, self._moment()))
+                case {"ask": "fork"}:
+                    running = self._behavior.loop.runtime.project
+                    self._answering.answer(message, partial(forked, self._journal, running, message.body))
                 case {"ask": "event" | "press"}:
                     self._raising.happen(message, now)
                 case body:

@@ -66,19 +66,19 @@ def played_against(
     home = visit.home
     if home is None or not visit.inputs or visit.redacted:
         return None
-    play = _Play(new, takes)
+    play = OtherPlay(new, takes)
     play.attend(old, home, visit, hurry)
     if beside is None:
         then = [(entry.event.at, command) for entry in visit.inputs for command in entry.commands]
         if not visit.whole:  # nobody knows how it would have gone on
             del play.done[len(then) :]
         return _verdict(play, then, "", home_of(old.machine) if visit.whole else "")
-    other = _Play(beside, takes)
+    other = OtherPlay(beside, takes)
     other.attend(old, home, visit, hurry)
     return _verdict(play, other.done, other.trouble, other.home if visit.whole and other.is_home else "")
 
 
-def _verdict(play: "_Play", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
+def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
     """`home` is where it ended, empty for anywhere; `trouble` what ended it."""
     if play.trouble != trouble:
         return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "nothing of the kind")
@@ -111,7 +111,7 @@ def _words(said: Mapping[str, Any]) -> str:
     return ", ".join(str(value) for value in said.values())
 
 
-class _Play:
+class OtherPlay:
     """The behaviour of the other files, and the robot that answers it; `done` is what it asked for, and when.
 
     `trouble` is what ended it before the visit did.

@@ -1,0 +1,134 @@
+"""`{"ask": "fork"}`: what would have been from a moment on, with another event or with the saved files."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import takes
+from lumen.errors import JournalError, LumenError, ProjectError, UsageError
+from lumen.interpreters.changes import live
+from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
+from lumen.interpreters.replay.forking import fork
+from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from lumen.runtime.inputs.journal_file import entry_of, read_journal
+from lumen.runtime.inputs.journal_folder import headers
+from lumen.runtime.inputs.journal_writer import JournalWriter
+
+PATIENCE = 3.0
+"""How long an answer may take [s]."""
+MAX_NAME = 100
+
+
+def forked(journal: JournalWriter, running: Project, body: Mapping[str, Any]) -> dict[str, Any]:
+    """The answer: `was` and `would`, entries of a journal each; a refusal that says why where there is none."""
+    try:
+        return _forked(journal, running, body)
+    except LumenError as error:
+        return {"verdict": "refused", "reason": str(error)}
+
+
+def _forked(journal: JournalWriter, running: Project, body: Mapping[str, Any]) -> dict[str, Any]:
+    deadline, kept = monotonic() + PATIENCE, KeptBundles(Path(running.root))
+
+    def hurry() -> None:
+        if monotonic() > deadline:
+            raise LumenError(f"it would take longer than {PATIENCE:g} s")
+
+    def bundle(hash: str, behavior: str) -> Project | None:
+        return running if (hash, behavior) == (running.hash, running.behavior) else kept.project(hash, behavior)
+
+    journal.flush(PATIENCE / 2)
+    event, saved = _event(body.get("event")), _saved(running) if body.get("bundle") == "saved" else None
+    entries, position = _entries(journal, body)
+    found = fork(entries, position, bundle, takes, event=event, saved=saved, hurry=hurry)
+    said = {"trouble": found.trouble} if found.trouble else {}
+    return {"was": list(found.was), "would": list(found.would), **said}
+
+
+def _event(said: Any) -> Event | None:
+    match said:
+        case None:
+            return None
+        case {"name": str(name), **more} if name and len(name) <= MAX_NAME:
+            return Event(name, more.get("data"))
+    raise UsageError('`event` is one as in `{"name": "heard", "data": {…}}`')
+
+
+def _saved(running: Project) -> Project:
+    """The files as they are saved, with what can't change while it runs. Raises ProjectError."""
+    root = Path(running.root)
+    project, diagnostics = check_files(root, read_files(root))
+    if project is None:
+        raise ProjectError(diagnostics)
+    return live(running, project)
+
+
+def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[RecordedEntry], int]:
+    """The entries around where it is to fork, and the position of the first that may be otherwise."""
+    position, at = body.get("position"), body.get("at")
+    if type(position) is not int and not isinstance(at, str):
+        raise UsageError("say where: `position` is the position of an entry, `at` a time as in 2026-11-22T14:03:00Z")
+    remembered = _remembered(journal)
+    if type(position) is int:
+        return (remembered if _knows(remembered, position) else _kept(journal, position)), position
+    moment = _moment(str(at))
+    found = _after(remembered, moment)
+    if found is not None and _knows(remembered, found):
+        return remembered, found
+    for file, header in sorted(_files(journal), key=lambda row: row[1].first, reverse=True):
+        if header.began <= moment and (found := _after(entries := _read(file), moment)) is not None:
+            return entries, found
+    raise UsageError("nothing of that time is in the journal")
+
+
+def _remembered(journal: JournalWriter) -> list[RecordedEntry]:
+    found: list[RecordedEntry] = []
+    for position, line in journal.tail.since(journal.tail.first, journal.tail.next - journal.tail.first):
+        with suppress(JournalError):
+            found.append(entry_of(line, position))
+    return found
+
+
+def _knows(entries: Sequence[RecordedEntry], position: int) -> bool:
+    """Whether they say where the behaviour stood at that position."""
+    return any(
+        isinstance(one, JournalJump) and one.snapshot is not None and one.position <= position for one in entries
+    )
+
+
+def _kept(journal: JournalWriter, position: int) -> Sequence[RecordedEntry]:
+    """Those of the file in which that position is."""
+    files = sorted((header.first, file) for file, header in _files(journal) if header.first <= position)
+    if not files:
+        raise UsageError(f"{position} is not in the journal any more")
+    return _read(files[-1][1])
+
+
+def _files(journal: JournalWriter) -> list[Any]:
+    folder = journal.folder.folder if journal.folder else None
+    return [row for row in headers(folder) if row[0].parent == folder] if folder else []
+
+
+def _read(file: Path) -> Sequence[RecordedEntry]:
+    return list(read_journal(file).entries)
+
+
+def _moment(text: str) -> float:
+    try:
+        return datetime.fromisoformat(text).timestamp()
+    except (ValueError, OverflowError, OSError):
+        raise UsageError(f"`{text[:40]}` is no time: it is written as in 2026-11-22T14:03:00Z") from None
+
+
+def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:
+    """The position of the first entry at or after that moment [s since 1970]; None where there is none."""
+    clock = JournalClock()
+    return next((entry.position for entry in entries if clock.of(entry) >= moment), None)

@@ -1,0 +1,123 @@
+"""What would have been from a moment of a journal on, with another event there or with other files, beside what was.
+
+Everything that happened then happens again, when it did, as for a visit with other files.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from lumen.errors import LumenError
+from lumen.interpreters.migration import MigrationPlan, plan
+from lumen.interpreters.replay.against import Duration, OtherPlay
+from lumen.interpreters.replay.command_data import command_data
+from lumen.interpreters.replay.entries import HOWS, JournalInput, JournalJump, RecordedEntry, entry_data
+from lumen.interpreters.replay.replaying import Replayer
+from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.events import Event
+from lumen.language.projects import Project
+
+ProjectSource = Callable[[str, str], Project | None]
+"""The bundle of a hash with that behaviour, None where it was not kept."""
+MAX_STEPS = 200
+"""Inputs of then that are followed, and steps that are told."""
+
+
+class ForkedRun(NamedTuple):
+    """The entries from there on as they were, and as they would have been; `trouble` ended the latter early."""
+
+    was: tuple[dict[str, Any], ...]
+    would: tuple[dict[str, Any], ...]
+    trouble: str = ""
+
+
+def fork(
+    entries: Sequence[RecordedEntry],
+    position: int,
+    bundles: ProjectSource,
+    takes: Duration,
+    *,
+    event: Event | None = None,
+    saved: Project | None = None,
+    hurry: Callable[[], None] = lambda: None,
+) -> ForkedRun:
+    """The fork at the entry of that position, up to where something other than a step follows.
+
+    `event` happens in place of what happened there, `saved` are other files. `takes` is how long commands take where
+    nobody knows, `hurry` is called at each step, and may raise. Raises LumenError where it is not known where the
+    behaviour stood.
+    """
+    number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))
+    then = _inputs(entries[number:])
+    if not then:
+        raise LumenError(f"at {position} nothing happened that could have been otherwise")
+    old, stands = _before(entries[: entries.index(then[0])], bundles)
+    new = saved or old
+    play = _Forked(new, takes, hurry)
+    trouble = play.go_over(old, stands, then[0].event.at)
+    if not trouble:
+        first = then[0] if event is None else then[0]._replace(how="heard", event=event._replace(at=then[0].event.at))
+        try:
+            for entry in (first, *then[1:]):
+                play.hear(entry)
+        except LumenError as error:
+            trouble = str(error)
+    was = tuple({"position": entry.position, **entry_data(entry)} for entry in then)
+    return ForkedRun(was, tuple(play.told), trouble)
+
+
+def _inputs(entries: Sequence[RecordedEntry]) -> list[JournalInput]:
+    """What happened one after another, keyframes left out; `goto` is one, too."""
+    found: list[JournalInput] = []
+    for entry in entries:
+        if len(found) >= MAX_STEPS or (isinstance(entry, JournalJump) and found and entry.kind != "keyframe"):
+            break
+        if isinstance(entry, JournalInput) and not entry.redacted:
+            found.append(entry)
+    return found
+
+
+def _before(entries: Sequence[RecordedEntry], bundles: ProjectSource) -> tuple[Project, Snapshot]:
+    """The files that ran, and where the behaviour stood after these entries. Raises LumenError."""
+    jumps = [n for n, entry in enumerate(entries) if isinstance(entry, JournalJump) and entry.snapshot is not None]
+    if not jumps:
+        raise LumenError("where the behaviour stood then is not in the journal any more")
+    jump = entries[jumps[-1]]
+    assert isinstance(jump, JournalJump)
+    old = bundles(jump.bundle, jump.behavior)
+    if old is None:
+        raise LumenError(f"the files of the bundle {jump.bundle[:16]} were not kept")
+    replayer, stands, why = Replayer(lambda _hash, _behavior: old.machine), None, ""
+    for entry in entries[jumps[-1] :]:
+        row = replayer.take(entry)
+        stands, why = row.after, row.unknown
+    if stands is None:
+        raise LumenError(why or "where the behaviour stood then is not known")
+    return old, stands
+
+
+class _Forked(OtherPlay):
+    """Goes on from a snapshot, and tells each step."""
+
+    def __init__(self, project: Project, takes: Duration, hurry: Callable[[], None]) -> None:
+        super().__init__(project, takes)
+        self._hurry = hurry
+        self.told: list[dict[str, Any]] = []
+
+    def go_over(self, old: Project, stands: Snapshot, at: float) -> str:
+        """Stand there with these files; why that can't be, empty where it can."""
+        if self._project is old:
+            self._stands = stands
+            return ""
+        planned = plan(old, self._project, stands, at=at, now=True)
+        if not isinstance(planned, MigrationPlan):
+            return f"these files can't go on from there: {planned.reason}"
+        self._stands = planned.snapshot
+        return ""
+
+    def _take(self, taken: Step) -> None:
+        self._hurry()
+        super()._take(taken)
+        if taken.event and len(self.told) < MAX_STEPS:
+            how = "timer" if taken.event.sendid else "goto" if taken.event.name == "operator.goto" else HOWS[0]
+            commands = tuple(map(command_data, taken.commands))
+            self.told.append(entry_data(JournalInput(0, how, taken.event, taken.exited, taken.entered, commands)))

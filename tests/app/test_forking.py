@@ -1,0 +1,112 @@
+"""Fork from here: what was, and what would have been with another event or with the saved files."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.bus import connect
+from lumen.language.events import Event
+from tests.app.test_now import Asker, asker
+
+MINE = """
+context: {n: 0}
+events: {left: {}, right: {}, more: {}}
+states:
+  hall:
+    on: {left: red, right: blue}
+  red:
+    do: {say: Red}
+    on: {more: {actions: {assign: {n: context.n + 1}}}}
+    after: {10s: hall}
+  blue:
+    do: {say: Blue}
+    on: {more: {actions: {assign: {n: context.n + 2}}}}
+    after: {4s: hall}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / "behaviors" / "mine.yaml").write_text(MINE)
+    (tmp_path / "lumen.yaml").write_text(
+        "name: Mine\nbehavior: mine\nlanguages: [en]\nrobot: {name: NAO, model: nao}\nhall: hall.xml\n"
+    )
+    return tmp_path
+
+
+@pytest.fixture
+def ask(folder: Path) -> Iterator[Asker]:
+    bus = connect("memory://")
+    with lumen.open(folder, bus=bus) as exhibition:
+        raised(exhibition, "left")
+        raised(exhibition, "more")
+        exhibition.run(12.0)
+        yield asker(exhibition, bus)
+
+
+def raised(exhibition: Exhibition, event: str) -> None:
+    exhibition.node.loop.happen(Event(event))
+    exhibition.run(1.0)
+
+
+def position_of(ask: Asker, event: str) -> int:
+    entries = ask("journal", **{"from": 0})["entries"]
+    return next(int(entry["position"]) for entry in entries if entry.get("heard") == event)
+
+
+def entered(entries: list[dict[str, Any]]) -> list[tuple[str, ...]]:
+    return [tuple(entry["entered"]) for entry in entries if entry.get("entered")]
+
+
+def test_nothing_else_is_what_was(ask: Asker) -> None:
+    forked = ask("fork", position=position_of(ask, "left"))
+    assert entered(forked["was"]) == entered(forked["would"]) == [("red",), ("hall",)]
+    assert [entry["at"] for entry in forked["was"]] == [entry["at"] for entry in forked["would"]]
+    assert "trouble" not in forked
+
+
+def test_another_event_leads_elsewhere_and_all_else_happens_as_it_did(ask: Asker) -> None:
+    forked = ask("fork", position=position_of(ask, "left"), event={"name": "right"})
+    assert entered(forked["was"]) == [("red",), ("hall",)]
+    assert entered(forked["would"]) == [("blue",), ("hall",)]
+    heard = [entry.get("heard") for entry in forked["would"]]
+    assert heard[0] == "right"
+    assert "more" in heard
+    later = [entry["at"] for entry in forked["would"] if entry.get("timer")]
+    assert later[0] < next(entry["at"] for entry in forked["was"] if entry.get("timer"))
+
+
+def test_the_saved_files_are_tried(ask: Asker, folder: Path) -> None:
+    (folder / "behaviors" / "mine.yaml").write_text(MINE.replace("left: red", "left: blue"))
+    position = position_of(ask, "left")
+    assert entered(ask("fork", position=position, bundle="saved")["would"]) == [("blue",), ("hall",)]
+    (folder / "behaviors" / "mine.yaml").write_text(MINE.replace("left: red", "left: rad"))
+    refused = ask("fork", position=position, bundle="saved")
+    assert refused["verdict"] == "refused"
+    assert "mine.yaml:6" in refused["reason"]
+
+
+def test_a_moment_says_where_too(ask: Asker) -> None:
+    since = ask("now")["states"][0]["since"]
+    assert ask("fork", at="2001-01-01T00:00:00Z")["was"] == ask("fork", position=0)["was"]
+    assert ask("fork", at=since)["was"][0]["entered"] == ["hall"]
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ({}, "say where"),
+        ({"at": "noon"}, "`noon` is no time"),
+        ({"position": 100_000}, "nothing happened"),
+        ({"position": 1, "event": "left"}, "`event` is one as in"),
+    ],
+)
+def test_what_can_not_be_asked_is_said(ask: Asker, body: dict[str, Any], reason: str) -> None:
+    answer = ask("fork", **body)
+    assert answer["verdict"] == "refused"
+    assert reason in answer["reason"]
