@@ -58,13 +58,13 @@ def installed(name: str) -> str:
 class Chromium:
     """A browser with a profile of its own until `close`; in English, `size` is its windows' [px]."""
 
-    def __init__(self, *, size: tuple[int, int] = (1200, 900), language: str = "en") -> None:
+    def __init__(self, *switches: str, size: tuple[int, int] = (1200, 900), language: str = "en") -> None:
         self.folder = temporary_folder("lumen-chromium-")
         options = webdriver.ChromeOptions()
         options.binary_location = installed(BROWSER)
         options.page_load_strategy = "none"
-        switches = (*SWITCHES, f"user-data-dir={self.folder}", f"lang={language}", f"window-size={size[0]},{size[1]}")
-        for switch in switches:
+        own = (f"user-data-dir={self.folder}", f"lang={language}", f"window-size={size[0]},{size[1]}")
+        for switch in (*SWITCHES, *own, *switches):
             options.add_argument(f"--{switch}")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(options, Service(installed(DRIVER)))

@@ -154,13 +154,13 @@ def pressed(house: House, draw: Random, troubles: tuple[Trouble, ...], presses: 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
-def test_rest_at_120_moments_on_the_local_bus(house: House, draw: Random) -> None:
+def test_rest_at_60_moments_on_the_local_bus(house: House, draw: Random) -> None:
     pressed(house, draw, WITHOUT_BROKER, int(os.environ.get("N", "120")))
 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest on a broker")
-def test_rest_at_180_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
+def test_rest_at_60_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
     pressed(house_on_a_broker, draw, WITH_BROKER, int(os.environ.get("N", "180")))
 
 
