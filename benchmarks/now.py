@@ -18,6 +18,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.now import NowView, moment
 from lumen.interpreters.statechart import initial
 from lumen.language.projects import Project
+from lumen.runtime.approvals import Approvals
 from lumen.statechart import Machine
 
 RUNS, SIZE = 31, 1500
@@ -57,7 +58,7 @@ def line(name: str, project: Project, snapshot: Any, doings: Doings, status: Any
     view = NowView()
 
     def take() -> Any:
-        return moment(project, snapshot, 1.0, doings, position=1, events=0, status=status)
+        return moment(project, snapshot, 1.0, doings, position=1, approvals=Approvals(), events=0, status=status)
 
     taken, told = milliseconds(take), milliseconds(lambda: view.tell(take()))
     size = len(json.dumps(view.tell(take()))) / 1000
