@@ -18,9 +18,9 @@ from tests.waiting import until
 pytestmark = pytest.mark.slow
 PAGES = {
     "now": ("robot/NAO", ".leaf"),
-    "day": ("robot/NAO/day", "main h1"),
-    "files": ("robot/NAO/files", "main h1"),
-    "see": ("robot/NAO/see", "main h1"),
+    "day": ("robot/NAO/day", ".totals"),
+    "files": ("robot/NAO/files", ".saved"),
+    "see": ("robot/NAO/see", ".picture"),
     "subtitles": ("robot/NAO/subtitles", ".subtitles"),
 }
 """Where they are, and what is there once they are drawn."""
@@ -41,7 +41,7 @@ def rests(hosted: Hosted) -> bool:
     return hosted.exhibition.node.robot.server.hold.stopped
 
 
-@pytest.mark.parametrize("page", ["now", "subtitles"])
+@pytest.mark.parametrize("page", PAGES)
 def test_a_page_loads_from_here_alone_and_complains_of_nothing(viewer: Viewer, served: Served, page: str) -> None:
     path, ready = PAGES[page]
     viewer.open(served.console.address, path, ready=ready)

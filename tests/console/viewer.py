@@ -1,5 +1,6 @@
 """Looks at the console's pages in Debian's Chromium, driven by selenium, without a window."""
 
+import json
 import shutil
 import socket
 from contextlib import suppress
@@ -44,13 +45,20 @@ class Viewer:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = Remote(f"http://127.0.0.1:{port}", options=options)
         self.driver.set_script_timeout(WAIT)
+        self._before = ""
 
     def open(self, address: str, path: str = "", *, ready: str = "main h1", width: int = 1400, **kept: str) -> None:
         """Open a page and wait until it shows `ready`; `kept` is what it remembers from before, as `theme="dark"`."""
+        self.driver.get("about:blank")  # the page before may still ask its console
         self.size(width)
-        self.driver.get(address + "pages/look/icon.svg")  # of the same origin, and does nothing
-        self.run("localStorage.clear(); for (const [k, v] of arguments[0]) localStorage.setItem(`lumen.${k}`, v)",
-                 list(kept.items()))  # fmt: skip
+        where = {"origin": address.rstrip("/"), "storageTypes": "local_storage,session_storage,cookies"}
+        self.command("Storage.clearDataForOrigin", where)
+        if self._before:
+            self.command("Page.removeScriptToEvaluateOnNewDocument", {"identifier": self._before})
+        script = (
+            f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value)"
+        )
+        self._before = self.command("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
         self.log("browser"), self.log("performance")
         self.driver.get(address + path)
         until(lambda: self.all(ready), WAIT)

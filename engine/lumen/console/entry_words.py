@@ -9,7 +9,8 @@ from lumen.interpreters.replay.entries import HOWS
 MAX_TEXT = 300
 SAYS, DOES, STATE = "says", "does", "state"
 PERSON = "person"
-FACE = "face"
+FACE, DONE = "face", "done.command."
+"""What comes many times a second, and after each command: told where something comes of it."""
 JUMPS = {
     "start": "the behaviour begins",
     "reload": "other files run from here on",
@@ -46,6 +47,8 @@ def text_of(entry: Mapping[str, Any]) -> str:
     if "jump" in entry:
         return JUMPS.get(str(entry["jump"]), str(entry["jump"]))
     came, did = _came(entry), [*_did(entry)]
+    if came.startswith(DONE):
+        return ", ".join(did)[:MAX_TEXT]
     if not did and came == FACE:
         return ""
     return f"{came}: {', '.join(did)}"[:MAX_TEXT] if did else came[:MAX_TEXT]

@@ -2,10 +2,10 @@
 // Entries come once, in order, by the journal's position; a page that was away goes on where it was.
 import { redraw } from "./ui.js";
 
-const SILENCE = 3000, AGAIN = 500, ANSWER = 2500, BEFORE = 60, MOST = 300; // [ms], [ms], [ms], entries, entries
+const SILENCE = 3000, AGAIN = 500, ANSWER = 2500, BEFORE = 600, MOST = 300; // [ms], [ms], [ms], entries, entries
 
 export const live = {
-  state: "connecting", since: Date.now(), role: null, robots: new Map(), entries: [], commands: [], skew: 0,
+  state: "connecting", since: Date.now(), role: null, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
 };
 const seen = new Map(), heard = new Set();
 let stream = null, timer = 0;
@@ -93,6 +93,8 @@ async function read(mine, robots) {
   } finally { clearTimeout(silent); }
 }
 
+const add = (list, entry) => { list.push(entry); if (list.length > MOST) list.shift(); };
+
 function take(block) {
   let kind = "message", data = "";
   for (const line of block.split("\n")) {
@@ -105,8 +107,8 @@ function take(block) {
     const [last, when] = seen.get(body.robot) ?? [-1, ""]; // a journal that begins anew counts anew, later
     if (body.position <= last && body.at_time <= when) return;
     seen.set(body.robot, [body.position, body.at_time]);
-    live.entries.push(body);
-    if (live.entries.length > MOST) live.entries.splice(0, live.entries.length - MOST);
+    add(live.entries, body);
+    if (body.text) add(live.told, body); // of those that people read as many are kept, however many faces come between
   } else if (kind === "now") took(body);
   else if (kind === "command") live.commands = [body, ...live.commands].slice(0, 20);
   for (const handler of heard) handler(kind, body);

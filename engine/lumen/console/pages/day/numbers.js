@@ -6,7 +6,7 @@ const MOST = 8;
 function Chart({ title, rows, all = false }) {
   const shown = all ? rows : rows.slice(0, MOST), most = Math.max(1, ...rows.map(([, count]) => count));
   return html`<div class="chart"><table><caption>${title}</caption><thead class="hidden"><tr><th scope="col">${t("day.what")}</th><th scope="col">${t("day.times")}</th></tr></thead>
-    <tbody>${shown.map(([name, count]) => html`<tr><th scope="row">${name}</th><td><svg aria-hidden="true" viewBox="0 0 100 10" preserveAspectRatio="none"><rect width=${(count / most) * 100} height="10" rx="1" /></svg><span>${fixed(count)}</span></td></tr>`)}</tbody></table>
+    <tbody>${shown.map(([name, count]) => html`<tr><th scope="row"><span>${name}</span></th><td><svg aria-hidden="true" viewBox="0 0 100 10" preserveAspectRatio="none"><rect width=${(count / most) * 100} height="10" rx="1" /></svg><span>${fixed(count)}</span></td></tr>`)}</tbody></table>
     ${rows.length === 0 && html`<p class="quiet">${t("day.none.numbers")}</p>`}</div>`;
 }
 

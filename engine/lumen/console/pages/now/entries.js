@@ -32,7 +32,7 @@ export function Entry({ entry, onOpen, current = false }) {
 
 export function Entries({ robot }) {
   const [opened, open] = useState(null);
-  const mine = live.entries.filter((entry) => entry.robot === robot.robot && entry.text).slice(-SHOWN).reverse();
+  const mine = live.told.filter((entry) => entry.robot === robot.robot).slice(-SHOWN).reverse();
   return html`<${Part} title=${t("entries")} kind="entries">
     ${mine.length ? html`<ol class="entry-list bounded" reversed tabindex="0" aria-label=${t("entries")}>${mine.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`
       : html`<p class="quiet">${t("entries.none")}</p>`}

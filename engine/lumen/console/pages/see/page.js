@@ -4,6 +4,7 @@ import { Part, html, kept, keep, t, useEffect, useRedraw, useState } from "../ui
 import { Hall } from "./hall.js";
 
 const WIDTH = 320, HEIGHT = 240, BOX = 56; // [px]: what places in the image are given in, and about a face
+const PATIENCE = 4000; // [ms] for a first picture
 
 function Camera({ name }) {
   const [state, set] = useState("waiting"), [tries, again] = useState(0), [hidden, hide] = useState(document.hidden);
@@ -13,10 +14,10 @@ function Camera({ name }) {
     return () => document.removeEventListener("visibilitychange", look);
   }, []);
   useEffect(() => {
-    if (state !== "gone") return undefined;
-    const timer = setTimeout(() => { set("waiting"); again((n) => n + 1); }, 2000);
+    if (state === "seen") return undefined;
+    const timer = setTimeout(() => { set("gone"); if (state === "gone") again((n) => n + 1); }, PATIENCE);
     return () => clearTimeout(timer);
-  }, [state]);
+  }, [state, tries]);
   const faces = robotOf(name)?.seen?.faces ?? [];
   return html`<${Part} title=${t("see.camera")} kind="camera"><div class="picture">
       ${hidden ? null : html`<img key=${tries} src="/camera/${encodeURIComponent(name)}?${tries}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT}
