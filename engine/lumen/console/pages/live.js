@@ -13,7 +13,7 @@ let stream = null, timer = 0;
 /** Have `handler(kind, data)` told of each `entry`, `now` and `command`; what it returns ends that. */
 export function listen(handler) { heard.add(handler); return () => heard.delete(handler); }
 
-const params = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value)).toString();
+const params = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value != null && value !== "")).toString();
 
 /** JSON of one of the console's paths; the error has what it says. */
 export async function get(path, values = {}, limit = 15000) {

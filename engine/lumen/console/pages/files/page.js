@@ -49,11 +49,11 @@ export default function FilesPage({ name }) {
   useEffect(() => listen((kind) => kind === "command" && look()), []);
   if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;
   if (!files) return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert">${failed}</p>`;
-  const report = files.last ?? files, verdict = report.verdict ?? files.verdict;
+  const report = files.last ?? files, verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
-        ${" "}${report.reason ?? files.reason ?? ""} ${report.hint ?? ""}</p>
-      ${report.lines?.length > 0 && html`<ul class="lines">${report.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
+        ${" "}${files.last?.reason ?? ""} ${report.hint ?? ""}</p>
+      ${files.last?.lines?.length > 0 && html`<ul class="lines">${files.last.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
       <p class="quiet">${files.reason ?? ""}</p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
     <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report.changes ? report : files} /><${Replay} replay=${files.replay} /></div>`;
 }
