@@ -68,7 +68,8 @@ WISHES = {
 MOMENTS = ("idle", "greet", "ask_name", "how_are_you", "offer", "explain", "any_question", "answer", "dance", "goodbye")
 BACK = {
     "idle": ("idle", "greet"), "greet": ("greet", "ask_name"), "explain": ("explain", "any_question"),
-    "answer": ("answer", "any_question"), "dance": ("dance", "offer"), "goodbye": ("goodbye", "idle", "greet", "ask_name"),
+    "answer": ("answer", "any_question"), "dance": ("dance", "offer"),
+    "goodbye": ("goodbye", "idle", "greet", "ask_name"),
 }  # fmt: skip
 """Where a moment is taken up, or leads to by itself meanwhile; else it is taken up as it was."""
 APOLOGIES = ("lost my thoughts", "not hear", "I fell", "on my feet", "cannot", "have stopped")

@@ -62,3 +62,17 @@ def test_the_robot_is_drawn_from_its_own_model(browser: Browser) -> None:
     shape = browser.get("/api/shape").data
     assert any(link["name"] == "Head" or "Head" in link["name"] for link in shape["links"])
     assert shape["stage"]["x"] == [-0.4, 0.4]
+
+
+def test_who_marked_and_who_spoke_is_in_the_journal(browser: Browser) -> None:
+    browser.command("mark", text="he waved")
+    browser.command("say", text="Welcome back")
+    until(lambda: "says “Welcome back”, by author" in texts(browser))
+    assert "mark: he waved, by author" in texts(browser)
+    [mark] = browser.get("/api/day").data["marks"]
+    assert (mark["text"], mark["by"]) == ("he waved", "author")
+
+
+def texts(browser: Browser) -> list[str]:
+    position = browser.robots[0]["position"] or 0
+    return [entry["text"] for entry in browser.get(f"/api/entries?from=0&to={position}").data["entries"]]

@@ -3,6 +3,7 @@
 import asyncio
 import time
 from collections import OrderedDict
+from contextlib import suppress
 from typing import Any
 
 import orjson
@@ -119,6 +120,8 @@ class Commands:
                     return
                 one.become(SENT)
                 self._streams.tell(one.block())
+                if order.note:
+                    self._note(robot, order.note, one.by)
                 timeout = STOP_TIMEOUT if rests else order.timeout
                 async with asyncio.timeout(timeout):
                     if rests:
@@ -148,6 +151,12 @@ class Commands:
         if exchange.nobody.is_set():
             return f"nobody is there who takes it (`{key}`)"
         return self._watch.link.trouble or "the bus does not take it: the broker is away, or the exhibition hangs"
+
+    def _note(self, robot: str, text: str, by: str) -> None:
+        """Have it in the journal who did that, where the behaviour does not hear of it."""
+        if bus := self._watch.link.bus:
+            with suppress(BusError):
+                bus.publish(self._watch.keys.of(robot).operator, {"ask": "note", "text": text, "by": by})
 
     def _stop_behavior(self, robot: str) -> None:
         """The behaviour hears of it where the robot can't say so."""

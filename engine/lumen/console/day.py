@@ -4,10 +4,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import date, datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.app.recording.happenings import FALLEN
 from lumen.app.replaying.replay_report import iso
+from lumen.console.entry_words import MARK
 from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.journal_clock import JournalClock
@@ -44,6 +45,18 @@ class DayVisit:
         }  # fmt: skip
 
 
+class DayMark(NamedTuple):
+    """What somebody marked: at which position, when [s since 1970], in which words."""
+
+    position: int
+    at: float
+    text: str
+    by: str
+
+    def to_json(self) -> dict[str, Any]:
+        return {"position": self.position, "at": iso(self.at), "text": self.text, "by": self.by}
+
+
 @dataclass
 class Day:
     """What happened on a day, and on which `dates` something did."""
@@ -57,6 +70,7 @@ class Day:
     languages: Counter[str] = field(default_factory=Counter)
     hours: Counter[int] = field(default_factory=Counter)
     falls: int = 0
+    marks: list[DayMark] = field(default_factory=list)
 
     def to_json(self) -> dict[str, Any]:
         """For the page: `numbers` are of the whole day, rows of a text and how often, the most frequent first."""
@@ -71,7 +85,8 @@ class Day:
         rows = {name: getattr(self, name).most_common(MAX_ROWS) for name in COUNTED}
         return {
             "date": self.day.isoformat(), "dates": [one.isoformat() for one in self.dates],
-            "visits": [visit.to_json() for visit in self.visits], "marks": [], "numbers": numbers | rows,
+            "visits": [visit.to_json() for visit in self.visits], "marks": [mark.to_json() for mark in self.marks],
+            "numbers": numbers | rows,
         }  # fmt: skip
 
 
@@ -90,6 +105,11 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
         machine = taken.machine
         part = watch.take(entry, machine)
         today = days.setdefault(here.date(), Day(here.date(), []))
+        if isinstance(entry, JournalJump) and MARK in entry.said:
+            said = entry.said
+            today.marks.append(
+                DayMark(entry.position, at, str(said[MARK])[:MAX_TEXT], str(said.get("by", ""))[:MAX_TEXT])
+            )
         if visit and (not part or (isinstance(entry, JournalJump) and entry.kind in ("start", "gap"))):
             visit = None
         if part and visit is None:

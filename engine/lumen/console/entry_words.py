@@ -9,6 +9,7 @@ from lumen.interpreters.replay.entries import HOWS
 MAX_TEXT = 300
 SAYS, DOES, STATE = "says", "does", "state"
 PERSON = "person"
+MARK, NOTE = "mark", "note"
 FACE, DONE = "face", "done.command."
 """What comes many times a second, and after each command: told where something comes of it."""
 JUMPS = {
@@ -29,8 +30,11 @@ def kind_of(entry: Mapping[str, Any]) -> str:
 
     That is `heard`, `timer`, `goto`, or the kind of a jump: `start`, `reload`, `resume` and the like.
     """
+    said = _said(entry)
+    if MARK in said:
+        return MARK
     if "jump" in entry:
-        return str(entry["jump"])
+        return PERSON if NOTE in said else str(entry["jump"])
     cause = entry.get("cause")
     if "goto" in entry or (isinstance(cause, list) and cause and cause[0] == PERSON):
         return PERSON
@@ -44,6 +48,8 @@ def kind_of(entry: Mapping[str, Any]) -> str:
 
 def text_of(entry: Mapping[str, Any]) -> str:
     """What happened and what came of it; empty where nothing did that anybody would miss, as for another face."""
+    if words := _words(_said(entry)):
+        return words
     if "jump" in entry:
         return JUMPS.get(str(entry["jump"]), str(entry["jump"]))
     came, did = _came(entry), [*_did(entry)]
@@ -52,6 +58,20 @@ def text_of(entry: Mapping[str, Any]) -> str:
     if not did and came == FACE:
         return ""
     return f"{came}: {', '.join(did)}"[:MAX_TEXT] if did else came[:MAX_TEXT]
+
+
+def _said(entry: Mapping[str, Any]) -> Mapping[str, Any]:
+    said = entry.get("said")
+    return said if isinstance(said, Mapping) and "jump" in entry else {}
+
+
+def _words(said: Mapping[str, Any]) -> str:
+    """What somebody marked, or did to the robot themselves; empty where nobody did."""
+    what = next((key for key in (MARK, NOTE) if key in said), "")
+    if not what:
+        return ""
+    text = f"{what}: {said[what]}".removesuffix(": ") if what == MARK else str(said[what])
+    return f"{text}, by {said.get('by', '')}"[:MAX_TEXT]
 
 
 def _came(entry: Mapping[str, Any]) -> str:

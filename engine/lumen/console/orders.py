@@ -16,12 +16,16 @@ LONG, SHORT = 300.0, 15.0
 
 
 class Order(NamedTuple):
-    """A command as a message: its key and body, how long its last answer may take [s], and what that says."""
+    """A command as a message: its key and body, how long its last answer may take [s], and what that says.
+
+    `note` is what the journal keeps of it besides, where the behaviour does not hear of it.
+    """
 
     key: str
     body: dict[str, Any]
     timeout: float
     outcome: Callable[[Any], str | None]
+    note: str = ""
 
 
 Fields = Mapping[str, Any]
@@ -90,16 +94,19 @@ def _motion(body: dict[str, Any], key: str, timeout: float = LONG) -> Order:
 
 def _say(fields: Fields, keys: RobotKeys, by: str) -> Order:
     parameter = {"text": text_in(fields, "text", MAX_TEXT), "language": text_in(fields, "language", 40, needed=False)}
-    return _motion({"type": "texttospeech", "method": "say", "parameter": parameter}, keys.command)
+    order = _motion({"type": "texttospeech", "method": "say", "parameter": parameter}, keys.command)
+    return order._replace(note=f"says “{parameter['text']}”")
 
 
 def _play(fields: Fields, keys: RobotKeys, by: str) -> Order:
-    return _motion({"type": "motion", "method": text_in(fields, "name"), "parameter": {}}, keys.command)
+    name = text_in(fields, "name")
+    return _motion({"type": "motion", "method": name, "parameter": {}}, keys.command)._replace(note=f"plays {name}")
 
 
 def _posture(fields: Fields, keys: RobotKeys, by: str) -> Order:
     parameter = {"postureName": text_in(fields, "name"), "speed": 0.8}
-    return _motion({"type": "posture", "method": "goToPosture", "parameter": parameter}, keys.command)
+    order = _motion({"type": "posture", "method": "goToPosture", "parameter": parameter}, keys.command)
+    return order._replace(note=f"takes the posture {parameter['postureName']}")
 
 
 def _question(**body: Any) -> Callable[[RobotKeys], Order]:

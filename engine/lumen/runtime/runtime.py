@@ -121,6 +121,10 @@ class Runtime:
         self.approvals.use(project.machine, planned)
         self._record(kind, commands)
 
+    def note(self, **said: Any) -> None:
+        """Have words kept beside what happened, at this moment: the behaviour hears nothing of them."""
+        self._record("keyframe", **said)
+
     def take(self, taken: Step) -> list[Command]:
         """Go on with the step by which somebody enters a state; its commands."""
         return self._take(taken, "goto")

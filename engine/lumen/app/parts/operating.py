@@ -32,7 +32,9 @@ from lumen.runtime.loop import Observer
 GOTO = "operator.goto"
 """The event of a step that an operator wanted."""
 MAX_PENDING_REQUESTS = 100
-NOTHING_RECORDED = "nothing is being recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
+NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
+MAX_NOTE = 300
+"""Characters of a mark, or a note."""
 REQUESTS = (
     '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "press", "button": …}`,'
     ' `{"ask": "approve", "id": …, "go": true}`, `{"ask": "autonomy", "level": "ask"}`,'
@@ -172,7 +174,11 @@ class OperatorPart(Part, Observer):
                 return self.status()
             case {"ask": "mark"}:
                 kept = self.marking()
-                return {"verdict": "done", "text": kept} if kept else refusal(NOTHING_RECORDED)
+                self._note(body, "mark")
+                return {"verdict": "done", "text": kept or f"in the journal; {NOTHING_RECORDED}"}
+            case {"ask": "note", "text": str()}:
+                self._note(body, "note")
+                return {"verdict": "done"}
             case {"ask": "approve", "id": str(id), "go": bool(go)}:
                 return self._decisions.approve(id, person_in(body), go=go)
             case {"ask": "autonomy", "level": "ask" | "alone" as level}:
@@ -181,6 +187,12 @@ class OperatorPart(Part, Observer):
                 return self._goto(state[:200], person_in(body), now, only=body.get("only") == "check")
             case _:
                 return refusal(f"{REQUESTS} is expected")
+
+    def _note(self, body: Mapping[str, Any], what: str) -> None:
+        """Keep somebody's words in the journal."""
+        text = body.get("text")
+        words = text[:MAX_NOTE] if isinstance(text, str) else ""
+        self._behavior.loop.runtime.note(**{what: words, "by": person_in(body)})
 
     def _goto(self, state: str, by: str, now: float, *, only: bool) -> dict[str, Any]:
         """Enter a state; with `only` say what that would leave and enter."""

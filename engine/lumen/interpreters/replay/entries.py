@@ -15,7 +15,8 @@ JumpKind = Literal[
 ]
 """Where a behaviour went on from, by no step: begun, under other files, under those before again, after a crash,
 without somebody's name, without a timer or an event that it could not bear, after entries that were lost. A `keyframe`
-changes nothing.
+changes nothing; what it `said` is the `mark` of somebody, or the `note` of what they did to the robot themselves, and
+`by` whom.
 """
 
 HOWS: tuple[How, ...] = get_args(How)
