@@ -10,7 +10,7 @@ MAX_TEXT = 300
 SAYS, DOES, STATE = "says", "does", "state"
 PERSON = "person"
 MARK, NOTE = "mark", "note"
-FACE, DONE = "face", "done.command."
+FACE, ENDS = "face", ("done.command.", "cancelled.command.")
 """What comes many times a second, and after each command: told where something comes of it."""
 JUMPS = {
     "start": "the behaviour begins",
@@ -53,7 +53,7 @@ def text_of(entry: Mapping[str, Any]) -> str:
     if "jump" in entry:
         return JUMPS.get(str(entry["jump"]), str(entry["jump"]))
     came, did = _came(entry), [*_did(entry)]
-    if came.startswith(DONE):
+    if came.startswith(ENDS):
         return ", ".join(did)[:MAX_TEXT]
     if not did and came == FACE:
         return ""

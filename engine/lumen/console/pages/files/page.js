@@ -16,7 +16,7 @@ function Findings({ findings }) {
 function Changes({ report }) {
   const changes = report.changes ?? [];
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: report.risk })}</span>`}>
-    ${changes.length ? html`<ul class="diff">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t("files.nothing")}</p>`}
+    ${changes.length ? html`<ul class="diff">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(report.verdict === "refused" ? "files.unread" : "files.nothing")}</p>`}
     ${report.restart?.length > 0 && html`<ul class="diff">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
 }
 

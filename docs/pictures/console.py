@@ -1,0 +1,143 @@
+"""The pictures in docs/console.md: a tour, a why, a refused reload, a day, and a phone by which the robot rests.
+
+    python docs/pictures/console.py
+
+`lumen run` and `lumen console` in a copy of the project, a visitor who says what stands below, and Chromium.
+"""
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+import uuid
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+
+ROOT = Path(__file__).parents[2]
+PARTS = ("behaviors", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
+PORT = 8765
+PAGE = f"http://127.0.0.1:{PORT}/"
+WAIT = 90.0
+WIDE, PHONE = (1400, 900), (360, 740)
+"""Of a window [px]."""
+LUMEN = [sys.executable, "-m", "lumen"]
+
+
+def ask(path: str, data: Any = None) -> Any:
+    """What the console answers."""
+    body = None if data is None else json.dumps(data).encode()
+    with urllib.request.urlopen(urllib.request.Request(PAGE + path, body, {"Content-Type": "application/json"})) as got:
+        return json.loads(got.read())
+
+
+def command(name: str, **fields: Any) -> Any:
+    return ask("api/commands", {"id": uuid.uuid4().hex, "robot": "NAO", "command": name, **fields})
+
+
+def hear(words: str) -> None:
+    """A visitor says something."""
+    command("event", event="heard", data={"result": words})
+
+
+def until(state: str) -> None:
+    """Wait until that state is active."""
+    deadline = time.monotonic() + WAIT
+    while state not in robot().get("configuration", ()):
+        assert time.monotonic() < deadline, f"never in {state}: {robot().get('configuration')}"
+        time.sleep(0.2)
+
+
+def robot() -> dict[str, Any]:
+    try:
+        return next(iter(ask("api/now")["robots"]), {})
+    except OSError:
+        return {}
+
+
+def visit(name: str, mood: str) -> None:
+    """Somebody who stands there gets as far as the offer."""
+    until("ask_name")
+    hear(f"my name is {name}")
+    until("how_are_you")
+    hear(mood)
+    if mood != "fine":
+        until("not_understood")
+        until("how_are_you")
+        hear("I am fine")
+    until("offer")
+
+
+class Camera:
+    """Chromium, which takes pictures."""
+
+    def __init__(self) -> None:
+        options = webdriver.ChromeOptions()
+        for argument in ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--lang=en-GB", "--disable-gpu"):
+            options.add_argument(argument)
+        self.driver = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
+
+    def look(self, path: str, size: tuple[int, int] = WIDE, *, dark: bool = False) -> None:
+        metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+        scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme})
+        self.driver.get(PAGE + path)
+        time.sleep(3)
+
+    def press(self, selector: str) -> None:
+        self.driver.find_element(By.CSS_SELECTOR, selector).click()
+        time.sleep(3)
+
+    def take(self, name: str) -> None:
+        self.driver.save_screenshot(str(ROOT / f"docs/pictures/console_{name}.png"))
+
+
+@contextmanager
+def running(folder: Path, *words: str) -> Iterator[None]:
+    process = subprocess.Popen([*LUMEN, *words], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def main() -> None:
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        for part in PARTS:
+            (shutil.copytree if (ROOT / part).is_dir() else shutil.copy)(ROOT / part, folder / part)
+        stack.enter_context(running(folder, "run", "--robot", "recording", "--speed", "1"))
+        stack.enter_context(running(folder, "console", "--port", str(PORT)))
+        camera = Camera()
+        stack.callback(camera.driver.quit)
+        visit("Budi", "Splendid, thank you")
+        hear("dance")
+        until("dance")
+        camera.look("")
+        camera.take("now")
+        camera.press(".entry:nth-child(2) button")
+        camera.take("why")
+        tour = folder / "behaviors/tour.yaml"
+        tour.write_text(tour.read_text("utf-8").replace("onDone: any_question", "onDone: any_qestion"), "utf-8")
+        time.sleep(8)
+        camera.look("robot/NAO/files")
+        camera.take("files")
+        camera.look("robot/NAO/day", (1400, 1250), dark=True)
+        camera.take("day")
+        camera.look("", PHONE, dark=True)
+        camera.press(".rest")
+        camera.take("phone")
+
+
+if __name__ == "__main__":
+    main()
