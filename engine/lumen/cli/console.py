@@ -12,6 +12,7 @@ from lumen.extras import demand
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
+from lumen.upkeep.heap import give_back
 from lumen.upkeep.threads import WatchedThread
 
 
@@ -30,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 once it was ended. It goes on without the exhibition, and with the next one."""
     demand("console", "`lumen console`", "starlette", "uvicorn")
+    give_back()
     from lumen.console.access import pins_from
     from lumen.console.serving import Console
 

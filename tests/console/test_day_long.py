@@ -1,0 +1,145 @@
+"""A long day, compressed: pages come and go while much happens; the console grows neither in memory nor in handles."""
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from random import Random
+from threading import Event, Thread
+
+import pytest
+
+from tests.console.chromium import Chromium
+from tests.console.house import CONSOLE, House
+from tests.console.pages import Stream
+from tests.waiting import until
+
+ROW = "  gender: {"
+HEARD = "lumen.NAO.audio.gender.identification"
+BATCH, EACH = 20, 0.05
+"""So many events at a time, and how often [s]: 400 a second."""
+OPEN = 12
+"""Pages that are there at a time."""
+WARM = 0.3
+"""The part of the day after which everything is as large as it gets: the latest 2,000 entries are kept."""
+MORE = 12.0
+"""What it may have more at the end than then [MB]."""
+HANDLES = 6
+"""Connections that are just ending, and what asks for images."""
+PAGES = ("", "robot/NAO", "robot/NAO/day", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
+WAIT = 120.0
+
+
+class Crowd:
+    """Lets events happen, `count` in all; `left` are those to come."""
+
+    def __init__(self, house: House, count: int) -> None:
+        self.left, self._house, self._pause = count, house, Event()
+        self._thread = Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self) -> None:
+        while self.left > 0 and not self._pause.wait(EACH):
+            for _ in range(BATCH):
+                self._house.send(HEARD, {"gender": "male"})
+            self.left -= BATCH
+
+    def close(self) -> None:
+        self.left = 0
+        self._thread.join()
+
+
+@pytest.fixture
+def eager(copy: Path) -> Path:
+    """A project that takes more voices a second than anybody has."""
+    main = copy / "lumen.yaml"
+    text = main.read_text("utf-8")
+    assert ROW in text
+    main.write_text(text.replace(ROW, f"{ROW}most: 2000/s, "), "utf-8")
+    return copy
+
+
+@pytest.fixture
+def busy_house(eager: Path) -> Iterator[House]:
+    one = House(eager)
+    try:
+        one.start()
+        yield one
+    finally:
+        one.close()
+
+
+def size(house: House) -> tuple[float, int, int]:
+    """Memory [MB], threads and handles of the console."""
+    process = Path(f"/proc/{house.processes[CONSOLE].pid}")
+    status = dict(line.split(":\t", 1) for line in (process / "status").read_text().splitlines() if ":\t" in line)
+    return int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), len(os.listdir(process / "fd"))
+
+
+def lived(house: House, events: int, tabs: int, looks: int) -> None:
+    """Let so much happen, with so many tabs, of which a few are Chromium's, and tell how large the console was."""
+    draw, begin = Random(18), house.ask_brain({"ask": "now"})["position"]
+    chromium, crowd, opened = Chromium(), Crowd(house, events), list[Stream]()
+    sizes, seen, tab = list[tuple[float, int, int]](), 0, 0
+    try:
+        while crowd.left > 0:
+            done = 1 - crowd.left / events
+            while tab < tabs * done:
+                opened.append(Stream(house.browser, f"/api/events?after={position(house) - draw.randrange(3_000)}"))
+                seen += leave(opened.pop(draw.randrange(len(opened)))) if len(opened) > OPEN else 0
+                tab += 1
+                if tab % max(1, tabs // looks) == 0:
+                    chromium.open(house.address + draw.choice(PAGES))
+            if done >= WARM and not sizes:
+                looked_at(house)
+                sizes.append(size(house))
+            Event().wait(0.1)
+        until(lambda: position(house) >= begin + events * 0.99, WAIT)  # some that came at once count as one
+        until(
+            lambda: all(
+                page.of("entry") and page.of("entry")[-1].data["position"] >= position(house) for page in opened
+            ),
+            WAIT,
+        )
+    finally:
+        crowd.close()
+        chromium.close()
+        seen += sum(leave(one) for one in opened)
+    looked_at(house)
+    until(lambda: size(house)[2] <= sizes[0][2] + HANDLES, WAIT)
+    sizes.append(size(house))
+    (mb, threads, handles), (mb_then, threads_then, handles_then) = sizes
+    sys.stdout.write(
+        f"{position(house) - begin:,} entries, {tabs} tabs that took {seen:,}: warm {mb:.1f} MB, {threads} threads "
+        f"and {handles} handles, at the end {mb_then:.1f} MB, {threads_then} and {handles_then}\n"
+    )
+    assert mb_then <= mb + MORE
+    assert threads_then <= threads + 2
+
+
+def looked_at(house: House) -> None:
+    """Ask for what is computed: a day, and why."""
+    for path in ("/api/day", "/api/day.csv", "/api/why?what=idle", "/api/files", "/api/shape"):
+        house.browser.get(path)
+
+
+def position(house: House) -> int:
+    return int(house.browser.robots[0]["position"])
+
+
+def leave(page: Stream) -> int:
+    """Close a page, which has to have had entries once and in order; how many."""
+    page.close()
+    positions = [event.data["position"] for event in page.of("entry")]
+    assert positions == list(range(positions[0], positions[0] + len(positions))) if positions else True
+    return len(positions)
+
+
+@pytest.mark.slow
+def test_an_hour_of_it(busy_house: House) -> None:
+    lived(busy_house, 10_000, 40, 3)
+
+
+@pytest.mark.soak
+def test_a_whole_day(busy_house: House) -> None:
+    lived(busy_house, 100_000, 200, 20)
