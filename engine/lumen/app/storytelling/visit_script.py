@@ -11,11 +11,14 @@ from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, Visitor, VisitorAction
+from lumen.language.verbs import VERBS
 from lumen.runtime.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
 
 FACE_ROUTE = "face"
 GONE = 3.0
 """Who has not been seen for so long has left [s]."""
+COMMANDED = frozenset(("say", *(verb.name for verb in VERBS)))
+"""The verbs that a story may let fail; a walk to a place is made of others."""
 OF_ITSELF = ("arrived", "left", CLOCK_SET)
 """What a robot notices again by itself, where it does what it did."""
 
@@ -64,7 +67,7 @@ def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, s
             found[kind] = min(took)  # what waits for another one ends later
     if hanging:
         found |= {kind: "hangs" for kind, _ in begun.values() if kind not in kinds}
-    return found
+    return {kind: how for kind, how in found.items() if kind in COMMANDED}
 
 
 def _done(entry: JournalInput, project: Project, *, faces: bool) -> Iterator[TimedAction]:

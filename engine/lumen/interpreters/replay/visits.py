@@ -21,8 +21,9 @@ class RecordedVisit(NamedTuple):
     """A visit, and when it was [s since 1970, in UTC]; `first` and `last` are the positions of its entries.
 
     `whole` is whether the behaviour came back home, with nothing missing between; `redacted` whether somebody was named
-    in it who is forgotten. `home` says where the behaviour stood before, None where that is not in the journal, and
-    `inputs` are what happened from then on.
+    in it who is forgotten. `home` says where the behaviour stood before: at home, or where a run began that does not
+    begin there, as that of a museum which is open already. It is None where that is not in the journal, and `inputs`
+    are what happened from then on.
     """
 
     number: int
@@ -94,7 +95,7 @@ def visits(entries: Iterable[tuple[RecordedEntry, MachineDefinition | None]]) ->
             yield current._replace(home=home, inputs=tuple(inputs))
             current = None
         if jump and (jump.kind in BROKEN or not watch.away):
-            home, inputs = (None if watch.away else jump), []
+            home, inputs = (jump if jump.kind == "start" or not watch.away else None), []
         elif isinstance(entry, JournalInput):
             inputs.append(entry)
         if part and current is None:
