@@ -10,7 +10,7 @@ MAX_TEXT = 300
 SAYS, DOES, STATE = "says", "does", "state"
 PERSON = "person"
 MARK, NOTE = "mark", "note"
-FACE, ENDS = "face", ("done.command.", "cancelled.command.")
+FACE, ENDS = "face", ("done.command.", "cancelled.command.", "lost.command.")
 """What comes many times a second, and after each command: told where something comes of it."""
 JUMPS = {
     "start": "the behaviour begins",

@@ -19,7 +19,7 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.runtime.home import home_of
-from lumen.runtime.inputs.journal_file import read_journal
+from lumen.runtime.inputs.journal_file import each_entry
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 
 MAX_REMOTE = 40_000
@@ -91,7 +91,7 @@ class JournalSource:
 def _entries(files: list[Path]) -> Iterator[RecordedEntry]:
     for file in files:
         try:
-            yield from read_journal(file).entries
+            yield from each_entry(file)
         except JournalError:
             continue
 

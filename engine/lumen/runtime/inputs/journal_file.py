@@ -1,6 +1,8 @@
 """One file of the journal of inputs: a line that says what it is, then frames of entries, a line of JSON each."""
 
 import json
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -100,6 +102,21 @@ def read_content(data: bytes, name: str) -> JournalContent:
     except JournalError:
         return JournalContent(header, tuple(entries), whole=False)
     return JournalContent(header, tuple(entries), whole=read == len(data))
+
+
+def each_entry(file: Path) -> Iterator[RecordedEntry]:
+    """What `read_journal` reads, one after another: a file of a busy day is large once it is unpacked.
+
+    Raises JournalError where it is none.
+    """
+    data = _bytes(file)
+    end = _header_end(data)
+    position = read_header(data[:end], file.name).first
+    with suppress(JournalError):
+        for text, _ in unpack(data, end):
+            for line in text.split(b"\n")[:-1]:
+                yield entry_of(line, position)
+                position += 1
 
 
 def line_of(entry: RecordedEntry) -> bytes:
