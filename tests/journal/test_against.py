@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 
 from lumen.errors import LumenError
-from lumen.interpreters.replay.against import ENDS, SAME, SAYS, played_against
+from lumen.interpreters.replay.against import ENDS, MORE_STEPS, MOST_TIMES, SAME, SAYS, played_against
 from lumen.interpreters.replay.visits import RecordedVisit, home_of, visits
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine
@@ -92,6 +92,19 @@ def test_what_other_files_would_have_done(visit: RecordedVisit, change: str) -> 
     verdict = played_against(old, new, visit, lambda *_: 1.0)
     assert verdict
     assert (verdict.how, verdict.was, verdict.now) == (how, was, now)
+
+
+def test_files_that_never_come_to_rest_end_a_visit(visit: RecordedVisit) -> None:
+    data = deepcopy(GUIDE)
+    data["states"]["greet"] = {"after": {"1ms": "greeted"}}
+    data["states"]["greeted"] = {"after": {"1ms": "greet"}}
+    restless = Machine.from_dict(data)
+    verdict = played_against(bundle(Machine.from_dict(GUIDE)), bundle(restless), visit, lambda *_: 1.0)
+    assert verdict
+    assert verdict.how == ENDS
+    assert (
+        verdict.now == f"these files take more than {MORE_STEPS + MOST_TIMES * len(visit.inputs):,} steps in one visit"
+    )
 
 
 @settings(PATIENT, max_examples=8)

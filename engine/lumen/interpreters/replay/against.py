@@ -9,7 +9,7 @@ import heapq
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.errors import LumenError
+from lumen.errors import JournalError, LumenError
 from lumen.interpreters.explaining.history import RecordedStep
 from lumen.interpreters.explaining.tracing import retaken
 from lumen.interpreters.migration import MigrationPlan, plan
@@ -29,6 +29,8 @@ Duration = Callable[[Project, BodyCommand], float]
 
 GRACE = 120.0
 """How much longer than then a visit may take to come home [s]."""
+MORE_STEPS, MOST_TIMES = 20_000, 10
+"""How many more steps than then a visit may take, and how many times as many: other files may never come to rest."""
 
 
 class VisitVerdict(NamedTuple):
@@ -60,7 +62,7 @@ def played_against(
 ) -> VisitVerdict | None:
     """What becomes of a visit with other files; None where too little of it is in the journal to say.
 
-    It is compared with what was done then, or with what the files `beside` would do. `hurry` is called at each input,
+    It is compared with what was done then, or with what the files `beside` would do. `hurry` is called at each step,
     and may raise what ends it.
     """
     home = visit.home
@@ -129,6 +131,8 @@ class OtherPlay:
         self._answers: list[tuple[float, str]] = []
         self._began = 0.0
         self._stands: Snapshot | None = None
+        self._most = MORE_STEPS
+        self._hurry: Callable[[], None] = lambda: None
 
     @property
     def snapshot(self) -> Snapshot:
@@ -147,7 +151,8 @@ class OtherPlay:
 
     def attend(self, old: Project, home: JournalJump, visit: RecordedVisit, hurry: Callable[[], None]) -> None:
         """Go over to these files where the behaviour was at home, and live through the visit."""
-        self._began = home.at
+        self._began, self._hurry = home.at, hurry
+        self._most = MORE_STEPS + MOST_TIMES * len(visit.inputs)
         try:
             planned = plan(old, self._project, deserialize(old.machine, home.snapshot or {}), at=home.at, now=True)
             if not isinstance(planned, MigrationPlan):
@@ -155,7 +160,6 @@ class OtherPlay:
                 return
             self._stands = planned.snapshot
             for entry in visit.inputs:
-                hurry()
                 self.hear(entry)
             if visit.whole:
                 self.come_home(visit.inputs[-1].event.at)
@@ -216,6 +220,9 @@ class OtherPlay:
 
     def _take(self, taken: Any) -> None:
         before, self._stands, self.steps = self.snapshot, taken.snapshot, self.steps + 1
+        self._hurry()
+        if self.steps > self._most:
+            raise JournalError(f"these files take more than {self._most:,} steps in one visit")
         for command in taken.commands:
             self._asked.append((before, taken.event, command))
             self._begin(command)
