@@ -1,5 +1,6 @@
 """What only the embedded bus promises: no thread, and done when `publish` returns."""
 
+import re
 import threading
 
 import pytest
@@ -97,9 +98,9 @@ def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixt
     bus.subscribe("lumen.a", seen)
     flooded(bus, 100_025)
     assert seen.bodies == list(range(25, 100_025))
-    assert [r.getMessage() for r in caplog.records] == [
+    assert [re.sub(r"in \d+ s", "in N s", r.getMessage()) for r in caplog.records] == [
         "messages on `lumen.a` are dropped: 100,000 messages wait for a subscriber already",
-        "24 more messages on `lumen.a` were dropped in 0 s: 100,000 messages wait for a subscriber already",
+        "24 more messages on `lumen.a` were dropped in N s: 100,000 messages wait for a subscriber already",
     ]
     bus.publish("lumen.a", "after")
     assert seen.bodies[-1] == "after"

@@ -80,7 +80,8 @@ def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
     assert first["change"]["event.data.result"].endswith("Ani")
     dance = greeted.why_not("dance")["reasons"][0]
     assert (dance["because"], dance["change"]["state"]) == ("inactive", "offer")
-    waits = greeted.why_not("goodbye")["reasons"][0]
+    pressed, waits = greeted.why_not("goodbye")["reasons"][:2]
+    assert (pressed["because"], pressed["change"]) == ("no-event", {"event": "operator.end"})
     assert (waits["because"], set(waits["change"])) == ("no-event", {"wait"})
 
 
