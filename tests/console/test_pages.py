@@ -7,6 +7,7 @@ from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
+from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from tests.console.conftest import Hosted
@@ -212,3 +213,15 @@ def test_the_language_is_switched_and_kept(viewer: Viewer, served: Served) -> No
     viewer.shows("Istirahat", ".rest")
     viewer.shows("Percakapan", "main")
     assert viewer.run("return document.documentElement.lang") == "id"
+
+
+def test_a_button_that_is_held_does_it_and_one_that_is_only_pressed_does_not(viewer: Viewer, served: Served) -> None:
+    viewer.open(served.console.address, ready=".leaf")
+    until(lambda: served.browser.command("event", event="face", data={"x": 160, "y": 120}).data["state"] == "finished")
+    viewer.shows("End the visit", ".declared")
+    viewer.click(".declared")
+    assert "End the visit" not in viewer.text(".told")
+    ActionChains(viewer.driver).click_and_hold(viewer.all(".declared")[0]).perform()
+    viewer.shows("End the visit: done", ".told")
+    viewer.shows("goodbye", ".leaf")
+    assert viewer.complaints() == []

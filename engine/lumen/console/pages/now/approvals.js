@@ -13,7 +13,7 @@ function Waiting({ robot, one }) {
 
 export function Approvals({ robot }) {
   const waiting = robot.waiting ?? [];
-  return html`<div role="status">${waiting.length > 0 && html`<span class="hidden">${t("approvals.count", { count: waiting.length })}</span>`}</div>
+  return html`<div role="status" class="hidden">${waiting.length > 0 && t("approvals.count", { count: waiting.length })}</div>
     ${waiting.length > 0 && html`<${Part} title=${t("approvals")} kind="approvals">
       <ul class="plain-list">${waiting.map((one) => html`<${Waiting} key=${one.id} robot=${robot} one=${one} />`)}</ul></${Part}>`}`;
 }

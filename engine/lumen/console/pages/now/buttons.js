@@ -12,6 +12,7 @@ function Button({ robot, button }) {
     if (button.confirm !== "hold" || !button.enabled || timer.current) return;
     if (event.type === "keydown" && (event.repeat || !["Enter", " "].includes(event.key))) return;
     if (event.type === "keydown") event.preventDefault();
+    if (event.pointerId !== undefined) event.currentTarget.setPointerCapture(event.pointerId); // held, wherever it moves
     hold(true);
     timer.current = setTimeout(() => { end(); press(); }, HELD);
   };

@@ -11,13 +11,13 @@ import { States } from "./states.js";
 import { Talk } from "./talk.js";
 import { Ways } from "./ways.js";
 
+/** Buttons come first: what is pressed does not move when somebody speaks. */
 export function NowPage({ name }) {
   useRedraw();
   const robot = robotOf(name);
   return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
     ${robot.connected === false && html`<p class="notice bad" role="alert">${t("robot.away", { name })}</p>`}
-    <${Approvals} robot=${robot} />
-    <div class="now"><div class="column"><${Talk} robot=${robot} /><${Buttons} robot=${robot} />
+    <div class="now"><div class="column"><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} />
         ${may("author") && html`<${Cues} robot=${robot} />`}</div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
       <div class="column"><${Body} robot=${robot} /><${Entries} robot=${robot} /></div></div>`;
