@@ -10,7 +10,9 @@ import pytest
 from lumen.bus import connect
 from lumen.buses.consumer import Consumer
 from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.commands import Say
+from lumen.language.events import Event
 from lumen.runtime.loop import Observer
 from tests.live.conftest import PATIENT
 from tests.live.shows import Live
@@ -28,6 +30,15 @@ class Ears(Observer):
 
     def stepped(self, step: Step) -> None:
         self.heard.append(step.event.name if step.event else "")
+
+
+def leave(live: Live) -> None:
+    """The visit is over."""
+    loop = live.show.loop
+    assert live.show.visitor
+    live.show.visitor.actor.leave()
+    over = Event("operator.goto", None, loop.clock.now())
+    loop.take(entered_directly(loop.project.machine, loop.runtime.snapshot, "idle", over))
 
 
 @pytest.fixture
@@ -61,6 +72,44 @@ def test_by_hand_it_is_staged_until_somebody_applies_it(manual: Live) -> None:
     assert manual.ask("apply")["verdict"] == "applied"
     assert manual.show.loop.project.hash != before.hash
     assert manual.ask("apply")["verdict"] == "refused"
+
+
+@pytest.mark.slow
+def test_what_is_staged_is_tried_for_one_visitor_and_waits_again(manual: Live) -> None:
+    before = manual.show.loop.project.hash
+    assert manual.ask("try")["verdict"] == manual.ask("refuse")["verdict"] == "refused"
+    manual.edit(SORRY, PARDON)
+    manual.until_told("staged: ")
+    answer = manual.ask("try")
+    assert (answer["verdict"], answer["reason"].split(":")[0]) == ("applied", "for one visitor")
+    tried = manual.show.loop.project.hash
+    assert tried != before
+    manual.live(30.0)  # nobody has come: it is still being tried
+    assert manual.show.loop.project.hash == tried
+    manual.greet()
+    assert manual.show.loop.project.hash == tried
+    leave(manual)
+    manual.until(lambda: manual.show.loop.project.hash == before)
+    assert "the visit for which they were tried is over" in manual.transcript
+    assert manual.ask("status")["staged"]
+    assert manual.ask("apply")["verdict"] == "applied"
+    assert manual.show.loop.project.hash == tried
+    manual.greet()
+    leave(manual)
+    manual.live(5.0)
+    assert manual.show.loop.project.hash == tried
+
+
+@pytest.mark.slow
+def test_what_is_staged_can_be_refused(manual: Live) -> None:
+    before = manual.show.loop.project
+    manual.edit(SORRY, PARDON)
+    manual.until_told("staged: ")
+    answer = manual.ask("refuse")
+    assert (answer["verdict"], answer["reason"]) == ("refused", "somebody refused them")
+    assert manual.show.loop.project is before
+    assert not manual.ask("status")["staged"]
+    assert "nothing staged" in manual.ask("apply")["reason"]
 
 
 @pytest.mark.slow

@@ -11,6 +11,8 @@ from lumen.cli.reach import configure_reach, reach
 REQUESTS = {
     "status": "say which files run, what is staged, and what happened to the last ones",
     "apply": "activate what is staged",
+    "try": "activate what is staged for one visitor, then go back",
+    "refuse": "drop what is staged",
     "rollback": "go back to the files that ran before",
     "dry-run": "only say what the saved files would change",
 }

@@ -153,6 +153,8 @@ NEEDS = {
     "goto": Role.OPERATOR,
     "autonomy": Role.OPERATOR,
     "apply": Role.AUTHOR,
+    "try": Role.AUTHOR,
+    "refuse": Role.AUTHOR,
     "rollback": Role.AUTHOR,
     "reload": Role.AUTHOR,
     "dry-run": Role.AUTHOR,
@@ -172,5 +174,5 @@ _MAKERS: dict[str, Callable[[Fields, RobotKeys, str], Order]] = {
     ),
     "approve": _approve,
     "autonomy": _autonomy,
-    **{verb: _files(verb) for verb in ("apply", "rollback", "reload", "dry-run")},
+    **{verb: _files(verb) for verb in ("apply", "try", "refuse", "rollback", "reload", "dry-run")},
 }

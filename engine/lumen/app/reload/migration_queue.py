@@ -11,14 +11,18 @@ from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import ReloadReport, reason_of, what_for
 from lumen.app.reload.requests import ReloadRequest
 from lumen.app.reload.rollback_guard import RollbackGuard
+from lumen.app.reload.trial import Trial
 from lumen.app.reload.validator import Validation, fault_of
 from lumen.errors import BusError
-from lumen.interpreters.changes import Change, changes
+from lumen.interpreters.changes import Change, changes, live
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
 from lumen.language.projects import Project
 
 OTHER_VISITS = "recorded visits would be others with these files"
 APPLY = "`lumen reload --apply` takes them all the same"
+ONE_VISITOR = "for one visitor: when that visit is over the files before come back"
+VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` takes them for good"
+BY_A_PERSON = "somebody refused them"
 
 _log = logging.getLogger(__name__)
 
@@ -28,7 +32,8 @@ class StagedBundle:
     """A good bundle on its way: `going` is whether it is to be made active, `since` when that was asked [s].
 
     `asked` is the snapshot from which it could not go on; `told` what it was said to wait for; `objected` whether
-    it was refused for what it would change in recorded visits.
+    it was refused for what it would change in recorded visits. With `trial` it is made active for one visitor;
+    `kept` is what waits again once this one is active.
     """
 
     project: Project
@@ -42,6 +47,8 @@ class StagedBundle:
     asked: object = None
     told: str = ""
     objected: bool = False
+    trial: bool = False
+    kept: "StagedBundle | None" = None
     orders: list[ReloadRequest] = field(default_factory=list)
 
 
@@ -58,6 +65,8 @@ class MigrationQueue:
         self._behavior, self._notifier, self._records, self._applied = behavior, notifier, records, applied
         self.revision = 0
         self.staged: StagedBundle | None = None
+        self._trial: Trial | None = None
+        self._tried: StagedBundle | None = None
         self.rollback_guard = RollbackGuard(behavior, self._rolled_back)
 
     @property
@@ -78,6 +87,16 @@ class MigrationQueue:
         """Keep a bundle until somebody has it made active."""
         self.staged = staged
         self._notifier.tell(self._about(staged, "staged"))
+
+    def attempt(self, staged: StagedBundle, order: ReloadRequest) -> None:
+        """Have a bundle made active until a visit is over; then it waits as before."""
+        staged.trial = True
+        self.stage(staged, order)
+
+    def refuse(self, staged: StagedBundle, order: ReloadRequest) -> None:
+        """A person does not want a bundle."""
+        staged.orders.append(order)
+        self._refuse(staged, BY_A_PERSON)
 
     def object(self, staged: StagedBundle, order: ReloadRequest | None) -> None:
         """Keep a bundle under which recorded visits would be others: a person may have it made active all the same."""
@@ -110,8 +129,19 @@ class MigrationQueue:
     def tick(self, now: float) -> None:
         if self.rollback_guard.over(now):
             self._records.approve(self.running.hash)
+        if self._trial and self._trial.over(self._behavior.loop.runtime.snapshot):
+            self._end_trial()
         if self.staged and self.staged.going:
             self._go(self.staged, now)
+
+    def _end_trial(self) -> None:
+        """The visitor for whom a bundle was tried is gone: what ran before comes back, and the bundle waits again."""
+        tried, before = self._tried, self.rollback_guard.before
+        self._trial = None
+        if before and not (self.staged and self.staged.going):
+            back = live(self.running, before)
+            found = changes(self.running, back)
+            self.stage(StagedBundle(back, found, who="trial", now=True, back=True, kept=tried))
 
     def _go(self, staged: StagedBundle, now: float) -> None:
         """Apply it, wait for what it has to wait for, or refuse it."""
@@ -144,9 +174,12 @@ class MigrationQueue:
 
         def begun() -> None:
             self.rollback_guard.begin(before, now)
-            self.staged = None
+            self.staged, staged.going = staged.kept, False
             self.revision += 1
+            self._trial, self._tried = (Trial(self.running), staged) if staged.trial else (None, None)
             report = self._about(staged, "applied")
+            report.reason = ONE_VISITOR if staged.trial else VISIT_OVER if staged.kept else ""
+            staged.trial = False
             report.before, report.notes, report.back = before.hash, plan.notes, staged.back
             report.told_visits = bool(staged.told) or staged.objected
             report.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
@@ -186,7 +219,7 @@ class MigrationQueue:
 
     def _rolled_back(self, reason: str, bad: Project, took: float) -> None:
         """The probation has brought back the bundle before, in so much time [s]."""
-        self.staged = None
+        self.staged = self._trial = self._tried = None
         self.revision += 1
         found = changes(bad, self.running)
         report = ReloadReport("rolled back", "probation", bad.hash, self.running.hash, self.revision, found)

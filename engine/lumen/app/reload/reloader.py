@@ -182,6 +182,10 @@ class Reloader:
             queue.stage(StagedBundle(back, changes(self._running, back), who="command", back=True), order)
         elif order.verb == "apply" and queue.staged:
             queue.stage(queue.staged, order)
+        elif order.verb == "try" and queue.staged:
+            queue.attempt(queue.staged, order)
+        elif order.verb == "refuse" and queue.staged:
+            queue.refuse(queue.staged, order)
         else:
             nothing = "to go back to" if order.verb == "rollback" else "staged"
             self._notifier.tell(self._answer("refused", f"there is nothing {nothing}"), [order])

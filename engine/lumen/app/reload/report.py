@@ -21,9 +21,10 @@ START = "start"
 class ReloadReport:
     """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
 
-    `who` asked for it: `files`, `command`, `probation`, or the `start` of a run on other files than those before.
-    `before` and `after` are hashes of bundles, `restart` sentences about what becomes active only then, `took` times
-    [s] by what took them. `back`: the files ran before. `told_visits`: what came of recorded visits was told already.
+    `who` asked for it: `files`, `command`, `trial`, `probation`, or the `start` of a run on other files than those
+    before. `before` and `after` are hashes of bundles, `restart` sentences about what becomes active only then, `took`
+    times [s] by what took them. `back`: the files ran before. `told_visits`: what came of recorded visits was told
+    already.
     """
 
     verdict: str
@@ -73,7 +74,7 @@ class ReloadReport:
     def _verdict(self) -> Iterator[str]:
         match self.verdict:
             case "applied":
-                yield f"{self._taken()}: {self._what()}"
+                yield f"{self._taken()}{', ' + self.reason if self.reason else ''}: {self._what()}"
             case "rolled back":
                 yield f"{self.reason}: back to the files before, revision {self.revision}"
             case "refused":

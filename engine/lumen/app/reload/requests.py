@@ -11,7 +11,7 @@ from lumen.ports import Bus, Message
 
 COMMAND, STATUS = INTERNAL_ALIASES[CONFIG_COMMAND], INTERNAL_ALIASES[CONFIG_STATUS]
 """Where orders come, and what becomes of them is told, while one robot is on the bus."""
-REQUESTS = ("reload", "apply", "rollback", "dry-run", "status", "stop")
+REQUESTS = ("reload", "apply", "try", "refuse", "rollback", "dry-run", "status", "stop")
 WAITING = 100
 
 

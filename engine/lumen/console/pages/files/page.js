@@ -31,9 +31,11 @@ function Actions({ name, files }) {
   const [asking, ask] = useState(null);
   const waits = Boolean(files.staged?.length || files.waiting);
   const go = () => { command(name, asking); ask(null); };
-  return html`<div class="actions"><button type="button" onClick=${() => command(name, "dry-run")}>${t("files.try")}</button>
+  return html`<div class="actions"><button type="button" onClick=${() => command(name, "dry-run")}>${t("files.look")}</button>
     <button type="button" onClick=${() => command(name, "reload")}>${t("files.read")}</button>
     <button type="button" class="strong" aria-disabled=${waits ? null : "true"} onClick=${() => waits && ask("apply")}>${t("files.apply")}</button>
+    <button type="button" aria-disabled=${waits ? null : "true"} onClick=${() => waits && command(name, "try")}>${t("files.try")}</button>
+    <button type="button" aria-disabled=${waits ? null : "true"} onClick=${() => waits && command(name, "refuse")}>${t("files.refuse")}</button>
     <button type="button" onClick=${() => ask("rollback")}>${t("files.back")}</button></div>
     ${asking && html`<${Dialog} title=${t(asking === "apply" ? "files.apply.ask" : "files.back.ask")} onClose=${() => ask(null)}
       actions=${html`<button type="button" class="strong" onClick=${go}>${t(asking === "apply" ? "files.apply" : "files.back")}</button>`}>

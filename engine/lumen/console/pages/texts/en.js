@@ -20,7 +20,7 @@ export default {
   "told.unsent": "NOT SENT", "told.unknown": "sent, but no answer came",
   "command.rest": "Rest", "command.resume": "Resume", "command.say": "Say", "command.event": "Event", "command.motion": "Motion", "command.posture": "Posture",
   "command.goto": "Go to", "command.approve": "GO", "command.autonomy": "Autonomy", "command.apply": "Apply", "command.rollback": "Roll back",
-  "command.reload": "Read the files", "command.dry-run": "Try", "command.mark": "Mark",
+  "command.reload": "Read the files", "command.dry-run": "What would change", "command.try": "Try for one visitor", "command.refuse": "Refuse", "command.mark": "Mark",
   "talk": "Conversation", "visitor": "Visitor", "nobody.here": "no name yet", "robot.says": "The robot says", "visitor.said": "The visitor said",
   "says.nothing": "says nothing", "heard.nothing": "nothing heard yet", "moves.nothing": "No motion", "say": "Say", "say.text": "Text to say",
   "where": "Where it is", "since": "active for", "timers": "Timers",
@@ -46,7 +46,7 @@ export default {
   "day.missed": "Not understood", "day.answers": "Answers given", "day.hours": "Visits by the hour", "day.length": "Length of the visits", "day.what": "What", "day.times": "How often", "day.mark": "Set a mark now", "day.none.numbers": "none",
   "fork": "Fork from here", "fork.more": "What would have been from this moment on? The robot does nothing of it.", "fork.event": "With another event", "fork.files": "With the saved files", "fork.name": "Event", "fork.go": "Show it", "fork.was": "was", "fork.would": "would have been", "fork.same": "the same", "fork.choose": "Choose a moment first: an entry, or a time above.",
   "files.saved": "Saved files", "files.nothing": "The saved files are those that run.", "files.unread": "Not known: the files could not be taken.", "files.findings": "Findings", "files.findings.none": "No findings.", "files.diff": "What changes", "files.risk": "Risk: {risk}", "files.replay": "What it would have changed in the last visits",
-  "files.apply": "Apply", "files.apply.ask": "Make the saved files active?", "files.try": "Try", "files.refuse": "Refuse", "files.back": "Roll back", "files.back.ask": "Go back to the files that ran before?", "files.read": "Read them again", "files.visits": "{visits} visits, {steps} steps: {same} the same", "files.history": "Before", "files.was": "was", "files.here": "here", "files.unknown": "The robot has not said how its files are.",
+  "files.apply": "Apply", "files.apply.ask": "Make the saved files active?", "files.look": "What would change", "files.try": "Try for one visitor", "files.refuse": "Refuse", "files.back": "Roll back", "files.back.ask": "Go back to the files that ran before?", "files.read": "Read them again", "files.visits": "{visits} visits, {steps} steps: {same} the same", "files.history": "Before", "files.was": "was", "files.here": "here", "files.unknown": "The robot has not said how its files are.",
   "see.camera": "Camera", "see.hall": "In its hall", "see.face": "face", "see.none": "No picture comes from the camera.", "see.nogl": "This browser draws no 3-D view: the camera stands in for it.", "see.noshape": "What the robot looks like is not known here: the camera stands in for it.", "see.alt": "What {name} sees", "see.alt.hall": "{name} in its hall, drawn from the poses of its links", "see.waiting": "Waiting for the first pose …", "see.found": "What the eyes found", "see.found.none": "Nothing just now.",
   "subtitles.away": "Not connected. One moment, please.",
 };
