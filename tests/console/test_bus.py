@@ -89,7 +89,8 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: 
             assert browser.command("say", text="Hello").data["state"] == "unsent"
             own_broker.start()
             until(lambda: browser.robots[0]["connected"], 60.0)
-            assert browser.command("rest").data["state"] == "finished"
+            answer = browser.command("rest")
+            assert answer.data["state"] == "finished", answer.data
             until(lambda: "stop" in [event.data.get("heard") for event in stream.of("entry")])
         assert whole(stream.positions())
     finally:

@@ -63,6 +63,7 @@ class Consumer(BrokerConnection):
         self.unreadable = DropLog(_log, "properties of messages")
 
     def begin(self) -> None:
+        self._turned = self._since = time.monotonic()  # what comes now came after the outage
         self._epoch += 1
         self._acknowledged = 0
         self.intake.forget()
