@@ -154,14 +154,14 @@ def pressed(house: House, draw: Random, troubles: tuple[Trouble, ...], presses: 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
-def test_rest_at_60_moments_on_the_local_bus(house: House, draw: Random) -> None:
-    pressed(house, draw, WITHOUT_BROKER, int(os.environ.get("N", "120")))
+def test_rest_at_15_moments_on_the_local_bus(house: House, draw: Random) -> None:
+    pressed(house, draw, WITHOUT_BROKER, 15)
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("rest on a broker")
-def test_rest_at_60_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
-    pressed(house_on_a_broker, draw, WITH_BROKER, int(os.environ.get("N", "180")))
+@pytest.mark.xdist_group("rest")
+def test_rest_at_20_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
+    pressed(house_on_a_broker, draw, WITH_BROKER, 20)
 
 
 @pytest.mark.soak
