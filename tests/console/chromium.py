@@ -4,19 +4,16 @@ import shutil
 from collections.abc import Sequence
 from typing import Any
 
-import pytest
 from selenium import webdriver
 from selenium.common.exceptions import WebDriverException
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
+from tests.console.browser import DrivenBrowser
 from tests.guarded import temporary_folder
-from tests.rabbitmq import ROOTS, UNPACKED
 from tests.waiting import until
 
-BROWSER, DRIVER = "usr/lib/chromium/chromium", "usr/bin/chromedriver"
 SWITCHES = (
     "headless=new",
     "no-sandbox",  # root has none
@@ -44,30 +41,18 @@ document.activeElement?.blur();
 """
 
 
-def installed(name: str) -> str:
-    """Where one of Debian's files is; the test is skipped in words where packages could not be had."""
-    for root in ROOTS:
-        if (root / name).exists():
-            return str(root / name)
-    told = UNPACKED.with_suffix(".missing")
-    if told.exists() and "chromium" in told.read_text():
-        pytest.skip(told.read_text().strip())
-    pytest.fail("Chromium is not installed: `make packages` installs it, or unpacks it for you", pytrace=False)
-
-
 class Chromium:
     """A browser with a profile of its own until `close`; in English, `size` is its windows' [px]."""
 
     def __init__(self, *switches: str, size: tuple[int, int] = (1200, 900), language: str = "en") -> None:
         self.folder = temporary_folder("lumen-chromium-")
         options = webdriver.ChromeOptions()
-        options.binary_location = installed(BROWSER)
         options.page_load_strategy = "none"
         own = (f"user-data-dir={self.folder}", f"lang={language}", f"window-size={size[0]},{size[1]}")
         for switch in (*SWITCHES, *own, *switches):
             options.add_argument(f"--{switch}")
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(options, Service(installed(DRIVER)))
+        self._browser = DrivenBrowser(options)
+        self.driver = self._browser.driver
 
     def run(self, script: str, *arguments: Any) -> Any:
         """What a script in the page returns."""
@@ -133,5 +118,5 @@ class Chromium:
         self.run(QUIET)
 
     def close(self) -> None:
-        self.driver.quit()
+        self._browser.close()
         shutil.rmtree(self.folder, ignore_errors=True)

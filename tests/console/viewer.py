@@ -1,31 +1,24 @@
 """Looks at the console's pages in Debian's Chromium, driven by selenium, without a window."""
 
 import json
-import shutil
-import socket
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
-import pytest
 from selenium.common.exceptions import WebDriverException
-from selenium.webdriver import ActionChains, ChromeOptions, Remote
+from selenium.webdriver import ActionChains, ChromeOptions
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
-from tests.fetched import ROOT, not_provided
-from tests.guarded import DEVNULL, Guarded
+from tests.console.browser import DrivenBrowser
 from tests.waiting import until
 
-UNPACKED = ROOT / ".cache/debian/root"
-"""Where scripts/packages.sh unpacks for who is not root."""
 ARGUMENTS = (
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars", "--lang=en-GB",
-    "--disable-background-networking", "--disable-component-update", "--no-first-run", "--remote-debugging-pipe",
+    "--disable-background-networking", "--disable-component-update", "--no-first-run",
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )  # fmt: skip
-"""It reaches nothing but this machine, and ends with its driver, whose pipe it reads."""
+"""It reaches nothing but this machine."""
 WAIT = 60.0
 """How long a page may take on a crowded machine [s]."""
 
@@ -34,16 +27,11 @@ class Viewer:
     """A browser; `open` begins a page as somebody who was never here sees it."""
 
     def __init__(self) -> None:
-        program, driver = _program("usr/lib/chromium/chromium", "chromium"), _program("usr/bin/chromedriver")
-        port = _free_port()
-        self._process: Guarded[bytes] = Guarded([driver, f"--port={port}"], stdout=DEVNULL, stderr=DEVNULL)
-        until(lambda: _listens(port), WAIT)
         options = ChromeOptions()
-        options.binary_location = str(program)
         for argument in ARGUMENTS:
             options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = Remote(f"http://127.0.0.1:{port}", options=options)
+        self._browser = DrivenBrowser(options)
+        self.driver = self._browser.driver
         self.driver.set_script_timeout(WAIT)
         self._before = ""
 
@@ -113,28 +101,4 @@ class Viewer:
         return list(self.driver.execute("getLog", {"type": kind})["value"])
 
     def close(self) -> None:
-        with suppress(WebDriverException):
-            self.driver.quit()
-        self._process.kill()
-        self._process.wait()
-
-
-def _program(unpacked: str, name: str = "") -> Path:
-    """The program; leaves the test out where this machine has none and could not be given one."""
-    found = UNPACKED / unpacked if (UNPACKED / unpacked).exists() else shutil.which(name or Path(unpacked).name)
-    if found is None:
-        if "chromium" in (told := not_provided()):
-            pytest.skip(told)
-        pytest.fail("Chromium is not installed: `make setup` installs it", pytrace=False)
-    return Path(found)
-
-
-def _free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return int(server.getsockname()[1])
-
-
-def _listens(port: int) -> bool:
-    with suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
-        return True
-    return False
+        self._browser.close()
