@@ -11,7 +11,7 @@ from lumen.cli.main import VERBS, command_line, main
 from lumen.cli.pages import page
 from lumen.cli.suggesting import parse
 
-NO_REPORT = {"completion": "prints a script", "lsp": "speaks the protocol of editors"}
+NO_REPORT = {"completion": "prints a script", "lsp": "speaks the protocol of editors", "console": "shows pages"}
 """Verbs without `--format json`, and what they do instead of reporting."""
 
 

@@ -71,7 +71,8 @@ def explored(
 def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
     """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
-    return {**controller_events(project.controllers.values()), **ROBOT_EVENTS, **routes, **machine.events}
+    pressed = {button.event: None for state in machine.states.values() for button in state.buttons}
+    return {**controller_events(project.controllers.values()), **ROBOT_EVENTS, **routes, **pressed, **machine.events}
 
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:

@@ -126,9 +126,9 @@ def _replay_check(data: Mapping[str, Any], journal: JournalRetention, report: Do
         report(BAD_DURATION, ("reload", "budget"), f"{budget:g} s are too long for a check", hint=hint)
         budget = None
     if "budget" in said and not mode:
-        report(IDLE_CHECK, ("reload", "budget"), "there is no `replay` that it could be the budget of", hint=HOW)
+        report(IDLE_CHECK, ("reload", "budget"), "`budget` is of `replay`, which is not there", hint=HOW)
     if mode and not journal.wanted:
-        where, what = ("reload", "replay"), "no visit is kept that could be played: `journal` keeps nothing"
+        where, what = ("reload", "replay"), "`replay` has no visits to play: `journal` keeps nothing"
         report(IDLE_CHECK, where, what, hint="let `journal` keep visits, or take `replay` out")
     return ReplayCheck(mode, budget or DEFAULT_BUDGET)
 
