@@ -34,7 +34,7 @@ def test_it_is_begun_begun_again_and_ended(copy: Path, monkeypatch: pytest.Monke
             return False
 
     until(serves, 60.0)
-    assert f"The console is at http://127.0.0.1:{port}/ (Ctrl-C ends it)" in told
+    until(lambda: serves() and f"The console is at http://127.0.0.1:{port}/ (Ctrl-C ends it)" in told)
     first = part.pid
     assert first
     os.kill(first, signal.SIGKILL)
