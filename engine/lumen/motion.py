@@ -11,15 +11,14 @@ from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
 from lumen.language.diagnostics import has_errors
-from lumen.language.robots import Body
 from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
+from lumen.loading.draft import ProjectDraft, body_of
 from lumen.loading.files import MAX_FILE_BYTES, read_files
 from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
-from lumen.loading.project import draft
+from lumen.loading.project import motion_parts
 from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
@@ -45,18 +44,18 @@ class Motion(motions.MotionDefinition):
         document, diagnostics = parse(str(path), content)
         if document is None or has_errors(diagnostics):
             raise ProjectError(diagnostics)
-        return cls._build(document, path.stem, _surroundings(_home(path)))
+        return cls._build(document, path.stem, motion_parts(read_files(_home(path))))
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:
         """The motion in a dict with the structure of a file, for the shipped robot; raises ProjectError."""
         need_text(name, "the name of a motion")
         need_map(data, "the data of a motion")
-        return cls._build(Document(name, data), name, _surroundings(shipped_root()))
+        return cls._build(Document(name, data), name, motion_parts(read_files(shipped_root())))
 
     @classmethod
     def _build(cls, document: Document, name: str, around: ProjectDraft) -> Self:
-        report, body = DocumentReport(document), _body(around)
+        report, body = DocumentReport(document), body_of(around)
         if not countable(document.data, report):
             raise ProjectError(report.diagnostics)
         data = check_schema(document, "motion", report)
@@ -88,16 +87,3 @@ def _home(path: Path) -> Path:
     folder = path.absolute().parent
     beside = any((folder.parent / name).exists() for name in (MAIN_FILE, "models"))
     return folder.parent if folder.name == "motions" and beside else find_project()
-
-
-def _surroundings(root: Path) -> ProjectDraft:
-    """The parts of a project that a motion needs: the robot and the other motions."""
-    wanted = ("models/", "motions/")
-    return draft({file: c for file, c in read_files(root).items() if file.startswith(wanted) or file == MAIN_FILE})
-
-
-def _body(around: ProjectDraft) -> Body:
-    body = around.body or next(iter(around.bodies.values()), None)
-    if body is None:
-        raise ProjectError(around.diagnostics)
-    return body

@@ -218,7 +218,7 @@ def test_what_only_a_run_would_tell_is_listed() -> None:
     ("file", "text", "message"),
     [
         ("a.motion", "", "does not begin with"),
-        ("a.motion", "#WEBOTS_MOTION,V1.1,HeadYaw%HeadPitch\nplay%1%2%0.1\n", "only version V1.0 is known"),
+        ("a.motion", "#WEBOTS_MOTION,V2.0,HeadYaw\n", "only V1.0 and V1.1 are known"),
         ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw,HeadYaw\n", "named twice"),
         ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n", "nothing in it moves a joint of NAO"),
         ("a.motion", "#WEBOTS_MOTION,V1.0\n00:00:100,a,1\n", "names no joint"),

@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import lumen
 from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
@@ -25,14 +24,20 @@ from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
 from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
 from lumen.formats.yaml_document import document_yaml
-from lumen.language.diagnostics import Diagnostic, Severity, has_errors
+from lumen.interpreters.limits import Excess, overspeed
+from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
 from lumen.loading.controllers import build_controller
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import body_of
+from lumen.loading.files import read_files
 from lumen.loading.motions import build_motion
+from lumen.loading.packaged import find_project
+from lumen.loading.project import motion_parts
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from lumen.rules.motions import TOO_FAST
 
 Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 
@@ -58,6 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
     add("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
+    add("--retime", action="store_true", help="give a motion the time that its joints need, where they are too fast")
     add("--project", metavar="DIR", help="whose robot a motion is for; default: here or above, else the shipped one")
     add("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
 
@@ -66,10 +72,10 @@ def run(options: argparse.Namespace) -> int:
     """0 where everything was carried over, 1 where something is left out, 2 where nothing can be written."""
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
-    body = lumen.load(options.project).body if options.file.suffix.lower() in GESTURE_ENDINGS else None
+    body = _body(options.project) if options.file.suffix.lower() in GESTURE_ENDINGS else None
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"
-    read = partial(_gesture, body, options.timeline) if body else fuzzy or _chart(options.file, content)
+    read = partial(_gesture, body, options) if body else fuzzy or _chart(options.file, content)
     with progress() as tell, gc_paused():  # else it looks through a large chart again and again
         tell(0, 100, f"% of {options.file}: reading")
         try:
@@ -92,8 +98,15 @@ def run(options: argparse.Namespace) -> int:
     return int(has_errors(diagnostics))
 
 
-def _gesture(body: Body, timeline: str, file: str, content: bytes, _: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    return read_gesture(file, content, body, timeline=timeline)
+def _body(project: str | None) -> Body:
+    """The robot of a project, whatever is wrong with its other files: who imports may be mending them."""
+    return body_of(motion_parts(read_files(find_project(project))))
+
+
+def _gesture(
+    body: Body, options: argparse.Namespace, file: str, content: bytes, _: str
+) -> tuple[dict[str, Any], list[Diagnostic]]:
+    return read_gesture(file, content, body, timeline=options.timeline, retime=options.retime)
 
 
 def _title(path: Path) -> str:
@@ -129,9 +142,21 @@ def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnost
     report = DocumentReport(document)
     data = check_schema(document, kind, report)
     if body:
-        build_motion(data, report, name="imported", body=body)
+        motion = build_motion(data, report, name="imported", body=body)
+        if motion and (fast := overspeed(motion, body)):
+            found.append(_too_fast(file, fast))
     elif kind == "controller":
         build_controller(data, report, name="imported")
     else:
         build_machine(data, report, name="imported")
     return [*found, *report.diagnostics]
+
+
+def _too_fast(file: str, fast: list[Excess]) -> Diagnostic:
+    """The warning that a motion is one which lint refuses, and what would mend it."""
+    worst = max(fast, key=lambda excess: excess.value / excess.limit)
+    others = len({excess.joint for excess in fast}) - 1
+    joints = f"`{worst.joint}`" + (f" and {others} other joint{'s' if others > 1 else ''}" if others else "")
+    message = f"{joints} would have to move up to {worst.value / worst.limit:.1f} times too fast"
+    hint = "--retime gives the motion the time that it needs"
+    return Diagnostic(TOO_FAST, message, Place(file), hint, Severity.WARNING)

@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import lumen
 from lumen.app.setup import SPEEDS, set_up
 from lumen.cli.film_path import film_path
 from lumen.cli.foreign import foreign_content, one_line
@@ -24,7 +23,10 @@ from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft, body_of
+from lumen.loading.files import read_files
 from lumen.loading.motions import build_motion
+from lumen.loading.project import assemble, motion_parts
 from lumen.loading.schema import check_schema
 from lumen.ports import Perform, RobotCommand
 from lumen.runtime.loop import TICK_PERIOD
@@ -33,6 +35,9 @@ from lumen.runtime.loop import TICK_PERIOD
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("motion", metavar="MOTION", help="a name in motions/, or a file: .yaml, .motion, .xar, .py")
     parser.add_argument("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
+    parser.add_argument(
+        "--retime", action="store_true", help="give a .motion, .xar or .py the time that its joints need"
+    )
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
     parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
@@ -40,8 +45,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    project = lumen.load(shown_project(options.project))
-    motion = _motion(project, options.motion, options.timeline)
+    found = motion_parts(read_files(root := shown_project(options.project)))
+    motion = _motion(found, options.motion, options)
+    if found.settings is None or found.body is None:
+        raise ProjectError(found.diagnostics)
+    project = assemble(found, str(root.absolute()))
     video = film_path(options.video, "simulation")
     with one_object(options.format) as say:
         say(_played(project, motion, options.speed, video))
@@ -117,10 +125,11 @@ def _reason(event: Event) -> str:
     return "the robot fell" if event.name == "fallen" else str(event.data["reason"])
 
 
-def _motion(project: Project, name: str, timeline: str) -> MotionDefinition:
+def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> MotionDefinition:
+    """The motion of that name or in that file, whatever is wrong with other files of the project."""
     path = Path(name)
     if path.suffix.lower() in GESTURE_ENDINGS:
-        return _foreign(project, path, timeline)
+        return _foreign(body_of(found), path, options)
     if path.suffix in (".yaml", ".yml"):
         from lumen.motion import Motion as MotionFile
 
@@ -131,21 +140,26 @@ def _motion(project: Project, name: str, timeline: str) -> MotionDefinition:
         raise UsageError(
             f"{path} is no motion: a file ends in .yaml, {', '.join(GESTURE_ENDINGS[:-1])} or {GESTURE_ENDINGS[-1]}"
         )
-    if name not in project.motions:
-        raise UsageError(f"no motion `{name}`: {did_you_mean(name, project.motions, 'motions/ has')}")
-    return project.motions[name]
+    report = found.reports.get(f"motions/{name}.yaml")
+    if report and has_errors(report.diagnostics):
+        raise ProjectError(report.diagnostics)
+    if name not in found.motions:
+        raise UsageError(f"no motion `{name}`: {did_you_mean(name, found.motions, 'motions/ has')}")
+    return found.motions[name]
 
 
-def _foreign(project: Project, path: Path, timeline: str) -> MotionDefinition:
+def _foreign(body: Body, path: Path, options: argparse.Namespace) -> MotionDefinition:
     """The motion in another tool's file; what of it is left out is told."""
     try:
-        data, diagnostics = read_gesture(str(path), foreign_content(path), project.body, timeline=timeline)
+        data, diagnostics = read_gesture(
+            str(path), foreign_content(path), body, timeline=options.timeline, retime=options.retime
+        )
     except ForeignFileError as error:
         raise UsageError(one_line(error.diagnostic)) from None
     for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
     report = DocumentReport(Document(str(path), data))
-    motion = build_motion(check_schema(report.document, "motion", report), report, name=path.stem, body=project.body)
+    motion = build_motion(check_schema(report.document, "motion", report), report, name=path.stem, body=body)
     if motion is None or has_errors(report.diagnostics):
         raise ProjectError(report.diagnostics)
     return motion

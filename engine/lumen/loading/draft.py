@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from lumen.errors import ProjectError
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.machines import MachineDefinition
@@ -68,3 +69,11 @@ class ProjectDraft:
     def say(self, code: Code, file: str, message: str, hint: str) -> None:
         """Report something of a file as a whole."""
         self.loose.append(code.at(Place(file), message, hint))
+
+
+def body_of(found: ProjectDraft) -> Body:
+    """The robot of a project whose other files may have errors; raises ProjectError where none can be built."""
+    body = found.body or next(iter(found.bodies.values()), None)
+    if body is None:
+        raise ProjectError(found.diagnostics)
+    return body

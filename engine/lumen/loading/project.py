@@ -74,6 +74,12 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     return found
 
 
+def motion_parts(files: Mapping[str, bytes]) -> ProjectDraft:
+    """What of a project a motion needs: its robot and the other motions, whatever is wrong with anything else."""
+    wanted = ("models/", "motions/")
+    return draft({file: content for file, content in files.items() if file.startswith(wanted) or file == MAIN_FILE})
+
+
 def main_settings(root: Path) -> Settings | None:
     """What lumen.yaml says, however many errors it has, and without any other file; None where it can't be read."""
     found, content = ProjectDraft({}), read_main_file(root)

@@ -4,7 +4,8 @@ from typing import Any
 
 from lumen.formats.conversion_findings import LOST, ConversionFindings, broken, decoded
 from lumen.formats.gestures.choregraphe import read_choregraphe
-from lumen.formats.gestures.joint_curves import JointCurves, MotionWriter
+from lumen.formats.gestures.joint_curves import JointCurves
+from lumen.formats.gestures.motion_writer import MotionWriter
 from lumen.formats.gestures.naoqi import read_naoqi
 from lumen.formats.gestures.webots import read_webots
 from lumen.language.diagnostics import Diagnostic, Place
@@ -16,15 +17,16 @@ __all__ = ["GESTURE_ENDINGS", "read_gesture"]
 
 
 def read_gesture(
-    file: str, content: bytes, body: Body, *, timeline: str = ""
+    file: str, content: bytes, body: Body, *, timeline: str = "", retime: bool = False
 ) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a motion file for that body, and what could not be carried over; by the file's ending.
 
+    `timeline` is the one of a .xar to read; with `retime` the motion takes as long as its joints need.
     Raises ForeignFileError where the file holds no motion.
     """
     findings = ConversionFindings()
     curves = _curves(file, content, findings, timeline)
-    data = MotionWriter(body, findings).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
+    data = MotionWriter(body, findings, retime).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
     if not data["keyframes"]:
         message = f"nothing in it moves a joint of {body.name}"
         lost = [finding for finding in findings.diagnostics if finding.code == LOST]

@@ -28,7 +28,7 @@ def read_choregraphe(file: str, content: bytes, findings: ConversionFindings, ti
         raise broken(root.place, "not-a-motion", f"this is no behaviour of Choregraphe: it begins with `{_tag(root)}`")
     timelines = dict(_timelines(root))
     chosen = _chosen(root, timelines, timeline)
-    _others(root, chosen, findings)
+    _others(root, chosen, findings, asked=bool(timeline))
     fps = _pace(chosen, findings)
     curves: dict[str, list[CurvePoint]] = {}
     for curve in _under(chosen, "ActuatorCurve"):
@@ -86,13 +86,14 @@ def _all_timelines(element: XmlElement, box: str) -> Iterator[tuple[str, XmlElem
         waiting.extend((child, box) for child in reversed(here.children))
 
 
-def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
-    """List the boxes that do something else."""
+def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, *, asked: bool) -> None:
+    """List the boxes that do something else; beside a timeline that was asked for they are nothing to be missed."""
     inside = {id(element) for element in chosen.walk()}
     for box in root.walk():
         around = any(element is chosen or _tag(element) == "Box" for element in list(box.walk())[1:])
         if _tag(box) == "Box" and (id(box) in inside or not around):
-            findings.lost(box.place, f"box `{box.get('name')}` is left out: only joints of a timeline are read")
+            say = findings.changed if asked and id(box) not in inside else findings.lost
+            say(box.place, f"box `{box.get('name')}` is left out: only joints of a timeline are read")
 
 
 def _points(curve: XmlElement, fps: float, findings: ConversionFindings) -> Iterator[CurvePoint]:

@@ -13,6 +13,7 @@ from typing import Any
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves
 from lumen.formats.gestures.literals import MAX_NUMBER, NotWrittenOutError, value_of, written
+from lumen.formats.gestures.statements import Branch, changed_names, functions_of, statements
 from lumen.language.diagnostics import Place
 
 ALMOTION_CALLS = {
@@ -32,8 +33,9 @@ def read_naoqi(file: str, text: str, findings: ConversionFindings) -> JointCurve
     """The curves that the file hands to ALMotion. Raises ForeignFileError where it hands it none."""
     tree = _tree(file, text)
     reading = _Reading(file, findings, tree)
-    for node in _in_order(tree):
-        reading.take(node)
+    for statement, branch in statements(tree):
+        reading.take(statement, branch)
+    reading.tell_changes()
     if not reading.called and {"names", "times", "keys"} <= reading.values.keys():
         reading.play(tree.body[-1], *(reading.values[name] for name in ("names", "times", "keys")))
     if not reading.called:
@@ -56,12 +58,6 @@ def _tree(file: str, text: str) -> ast.Module:
         raise broken(Place(file), "not-a-motion", "this is not Python that can be read") from None
 
 
-def _in_order(tree: ast.AST) -> Iterator[ast.stmt | ast.Call]:
-    """Assignments and calls, as they stand."""
-    nodes = [node for node in ast.walk(tree) if isinstance(node, ast.Assign | ast.Call)]
-    return iter(sorted(nodes, key=lambda node: (node.lineno, node.col_offset)))
-
-
 class _Reading:
     """The variables so far, and the curves of the calls."""
 
@@ -69,23 +65,72 @@ class _Reading:
         self.file, self.findings = file, findings
         texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
         self.named = {node.value: node for node in reversed(texts)}
+        self.functions = functions_of(tree)
         self.values: dict[str, Any] = {}
+        self.sources: dict[str, set[str]] = {}
+        self.used: set[str] = {"names", "times", "keys"}
+        self.changes: list[tuple[frozenset[str], ast.stmt, Branch]] = []
         self.curves: dict[str, list[CurvePoint]] = {}
         self.begin = 0.0
         self.called = False
 
-    def take(self, node: ast.stmt | ast.Call) -> None:
-        """Follow an assignment or a call."""
-        match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                self._assign(name, value)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="append"), args=[item]):
-                if isinstance(self.values.get(name), list):
-                    self._append(name, item)
-            case ast.Call(func=ast.Attribute(attr=method), args=arguments) if (
-                method in ALMOTION_CALLS and len(arguments) >= 3
+    def take(self, statement: ast.stmt, branch: Branch) -> None:
+        """Follow what is written out; remember what changes a variable in another way."""
+        changed = changed_names(statement, self.functions)
+        for name in changed:
+            self.sources.setdefault(name, set()).update(_names(statement))
+        calls = sorted(
+            (node for node in ast.walk(statement) if isinstance(node, ast.Call)),
+            key=lambda node: (node.lineno, node.col_offset),
+        )
+        followed = branch in (Branch.ALWAYS, Branch.IF) and self._followed(statement)
+        if changed and not (followed and branch is Branch.ALWAYS):
+            self.changes.append((changed, statement, branch if followed else Branch.LOOP))
+        for call in calls:
+            match call:
+                case ast.Call(func=ast.Attribute(attr=method), args=arguments) if (
+                    method in ALMOTION_CALLS and len(arguments) >= 3
+                ):
+                    self.used.update(name for argument in arguments for name in _names(argument))
+                    self._call(call, method, arguments, branch)
+
+    def tell_changes(self) -> None:
+        """Report what changes a variable that a call uses, and can't be known without running the file."""
+        used, waiting = set(), list(self.used)
+        while waiting:
+            name = waiting.pop()
+            if name not in used:
+                used.add(name)
+                waiting += self.sources.get(name, ())
+        for names, statement, branch in self.changes:
+            if found := sorted(names & used):
+                shown = written(statement).partition("\n")[0][:60]
+                told = f"`{shown}` changes `{found[0]}`"
+                if branch is Branch.IF:
+                    self.findings.changed(self._place(statement), f"{told} in an `if`: here it always does")
+                else:
+                    message = f"{told} in a way that is known only when the file runs: it is left out"
+                    self.findings.lost(self._place(statement), message, "write the numbers out")
+
+    def _followed(self, statement: ast.stmt) -> bool:
+        """Carry out an assignment or an `append` of what is written out; whether the statement is no more than that."""
+        match statement:
+            case ast.Assign(targets=targets, value=value) if all(isinstance(t, ast.Name) for t in targets):
+                for target in targets:
+                    self._assign(target.id, value)  # type: ignore[attr-defined]
+                return True
+            case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)) if len(names) == len(
+                values
+            ) and all(isinstance(name, ast.Name) for name in names):
+                for name, value in zip(names, values, strict=True):
+                    self._assign(name.id, value)  # type: ignore[attr-defined]
+                return True
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="append"), args=[item])) if (
+                isinstance(self.values.get(name), list)
             ):
-                self._call(node, method, arguments)
+                self._append(name, item)
+                return True
+        return False
 
     def play(self, node: ast.AST, names: Any, times: Any, keys: Any) -> None:
         """Add the curves of one call, which begins when those before it have ended."""
@@ -116,7 +161,14 @@ class _Reading:
             self.findings.lost(self._place(error.node), f"`{error}` is known only when the file runs", "write a number")
             self.values[name].append([])
 
-    def _call(self, node: ast.Call, method: str, arguments: list[ast.expr]) -> None:
+    def _call(self, node: ast.Call, method: str, arguments: list[ast.expr], branch: Branch) -> None:
+        if branch is Branch.ELSE:
+            self.findings.lost(self._place(node), "what an `else` does is left out")
+            return
+        if branch is Branch.LOOP:
+            self.findings.lost(self._place(node), "this is in a loop: here the robot does it once")
+        elif branch is Branch.IF:
+            self.findings.changed(self._place(node), "this is in an `if`: here the robot always does it")
         try:
             values = dict(zip(ALMOTION_CALLS[method], (value_of(a, self.values) for a in arguments), strict=False))
             absolute = value_of(arguments[3], self.values) if len(arguments) > 3 else True
@@ -153,6 +205,11 @@ def _handle(handle: Any) -> tuple[int, BezierHandle]:
     if isinstance(handle, list) and len(handle) == 3 and all(_is_number(part) for part in handle):
         return int(handle[0]), ((float(handle[1]), float(handle[2])) if handle[0] == BEZIER else (0.0, 0.0))
     return LINEAR, (0.0, 0.0)
+
+
+def _names(node: ast.AST) -> set[str]:
+    """The variables that stand in it."""
+    return {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
 
 
 def _is_number(value: Any) -> bool:

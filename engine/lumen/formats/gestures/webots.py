@@ -1,14 +1,15 @@
 """Webots' `.motion` files: a line of joint names, then a pose a line.
 
 Webots' reference manual, "Motion": `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], where `*`
-leaves a joint alone.
+leaves a joint alone. Teams of RoboCup's 3D league write V1.1 (`soccer.py`), which Webots does not know.
 """
 
 import re
-from collections.abc import Iterator
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.gestures.cells import Cell, cells_of
 from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
+from lumen.formats.gestures.soccer import SOCCER_VERSION, read_soccer
 from lumen.language.diagnostics import Place
 
 FIRST_CELL = "#WEBOTS_MOTION"
@@ -19,12 +20,12 @@ WEBOTS_VERSION = "V1.0"
 _TIME = re.compile(r"(\d{1,6}):(\d\d?):(\d{1,3})")
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
-Cell = tuple[str, Place]
-
 
 def read_webots(file: str, text: str, findings: ConversionFindings) -> JointCurves:
     """The curves of a motion, joined by lines. Raises ForeignFileError where it is none."""
-    lines = list(_lines(file, text))
+    lines = list(cells_of(file, text, ","))
+    if lines and [word for word, _ in lines[0][:2]] == [FIRST_CELL, SOCCER_VERSION]:
+        return read_soccer(file, text, findings)
     joints = _joints(file, lines)
     curves: dict[str, list[CurvePoint]] = {joint: [] for joint, _ in joints}
     renamed = False
@@ -53,7 +54,9 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
         raise broken(Place(file), "not-a-motion", f"this is no motion of Webots: it does not begin with {FIRST_CELL}")
     if len(head) < 2 or head[1][0] != WEBOTS_VERSION:
         said = head[1][0] if len(head) > 1 else "nothing"
-        raise broken(head[-1][1], "not-a-motion", f"only version {WEBOTS_VERSION} is known, and this says {said}")
+        raise broken(
+            head[-1][1], "not-a-motion", f"only {WEBOTS_VERSION} and {SOCCER_VERSION} are known, and this says {said}"
+        )
     joints = [cell for cell in head[2:] if cell[0]]
     if not joints and lines and _time(lines[0][0][0]) is None:
         joints = [cell for cell in lines.pop(0) if cell[0]]
@@ -68,19 +71,3 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
 def _time(text: str) -> float | None:
     match = _TIME.fullmatch(text)
     return int(match[1]) * 60.0 + int(match[2]) + int(match[3].ljust(3, "0")) / 1000.0 if match else None
-
-
-def _lines(file: str, text: str) -> Iterator[list[Cell]]:
-    """The cells of every line that holds something, with their places."""
-    for i, line in enumerate(text.splitlines(), 1):
-        if line.strip():
-            yield list(_cells(file, i, line))
-
-
-def _cells(file: str, row: int, line: str) -> Iterator[Cell]:
-    column = 1
-    for cell in line.split(","):
-        begin = column + len(cell) - len(cell.lstrip())
-        word = cell.strip()
-        yield word, Place(file, row, begin, row, begin + max(len(word), 1))
-        column += len(cell) + 1

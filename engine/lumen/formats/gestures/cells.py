@@ -1,0 +1,23 @@
+"""Lines of cells with their places, as both dialects of `.motion` have them."""
+
+from collections.abc import Iterator
+
+from lumen.language.diagnostics import Place
+
+Cell = tuple[str, Place]
+
+
+def cells_of(file: str, text: str, separator: str) -> Iterator[list[Cell]]:
+    """The cells of every line that holds something, without the blanks around them."""
+    for i, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            yield list(_cells(file, i, line, separator))
+
+
+def _cells(file: str, row: int, line: str, separator: str) -> Iterator[Cell]:
+    column = 1
+    for cell in line.split(separator):
+        begin = column + len(cell) - len(cell.lstrip())
+        word = cell.strip()
+        yield word, Place(file, row, begin, row, begin + max(len(word), 1))
+        column += len(cell) + 1

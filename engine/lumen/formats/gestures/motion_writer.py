@@ -1,0 +1,148 @@
+"""The motion file with the movement of joint curves, as far as a body can do it."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from math import degrees
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.gestures.fitting import slowed, too_fast, within_limits
+from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves
+from lumen.language.robots import Body
+
+TIME_TO_FIRST_POSE = 1.0
+"""How long the robot takes to come to a pose that stands at 0 s [s]."""
+
+MIN_KEY_DISTANCE = 1e-3
+"""Two times closer than this are one [s]."""
+
+
+@dataclass(frozen=True)
+class MotionWriter:
+    """Curves as the data of a motion file for a body; what that body can't do is reported to `findings`.
+
+    With `retime` a joint that would have to move faster than it can gets the time that it needs.
+    """
+
+    body: Body
+    findings: ConversionFindings
+    retime: bool = False
+
+    def data(self, curves: JointCurves, description: str) -> dict[str, Any]:
+        """The file's data. Nothing is added to the motion: it begins where the robot is, and stays where it ends."""
+        possible = {joint: self._possible(joint, points) for joint, points in self._known(curves).items()}
+        known = self._later({joint: points for joint, points in possible.items() if points})
+        lines = all(point.straight for points in known.values() for point in points)
+        ways = known if lines else {joint: _bent(points) for joint, points in known.items()}
+        frames: dict[float, dict[str, Any]] = {}
+        for joint, points in self._fitted(ways).items():
+            for point in points:
+                frame = frames.setdefault(round(point.time, 4), {"joints": {}, "handles": {}})
+                frame["joints"][joint] = self._angle(joint, point.angle)
+                if handles := self._handles(joint, point):
+                    frame["handles"][joint] = handles
+        keyframes = [
+            {"at": _length(time), **{key: part for key, part in frames[time].items() if part}}
+            for time in sorted(frames)
+        ]
+        return {
+            "description": description,
+            "units": {"angle": "deg"},
+            "start": None,
+            "end": None,
+            "interpolation": "linear" if lines else "bezier",
+            "keyframes": keyframes,
+        }
+
+    def _known(self, curves: JointCurves) -> JointCurves:
+        """The curves of joints that the body has, one for each drive."""
+        found: dict[str, list[CurvePoint]] = {}
+        for joint, points in curves.items():
+            leader = self.body.shared.get(joint, "")
+            if joint not in self.body.joints:
+                self.findings.lost(points[0].place, f"{self.body.name} has no joint `{joint}`")
+            elif leader in curves:
+                if [p[:2] for p in points] != [p[:2] for p in curves[leader]]:
+                    message = f"`{joint}` shares its motor with `{leader}` and goes where that goes"
+                    self.findings.changed(points[0].place, message)
+            else:
+                found[joint] = points
+        return found
+
+    def _possible(self, joint: str, points: list[CurvePoint]) -> list[CurvePoint]:
+        """The points in the order of time, each within the joint's limits."""
+        kept: list[CurvePoint] = []
+        for point in points:
+            if point.time < 0:
+                self.findings.lost(point.place, f"`{joint}` is somewhere {-point.time:g} s before the motion begins")
+            elif kept and point.time < kept[-1].time + MIN_KEY_DISTANCE:
+                message = f"at {point.time:g} s `{joint}` has a key too late: it has one at {kept[-1].time:g} s already"
+                self.findings.lost(point.place, message, "times have to increase")
+            else:
+                kept.append(point._replace(angle=self._inside(joint, point)))
+        return kept
+
+    def _inside(self, joint: str, point: CurvePoint) -> float:
+        limits = self.body.joints[joint]
+        angle = min(max(point.angle, limits.minimum), limits.maximum)
+        if angle != point.angle:
+            wanted, limit = self._angle(joint, point.angle), self._angle(joint, angle)
+            unit = "" if joint in self.body.hands else " deg"
+            message = f"`{joint}` can't go to {wanted:g}{unit}: it goes to {limit:g}{unit}"
+            self.findings.changed(point.place, message)
+        return angle
+
+    def _later(self, curves: JointCurves) -> JointCurves:
+        """The curves, put off where they want the robot to be somewhere at once."""
+        first = min((points[0] for points in curves.values()), key=lambda p: p.time, default=None)
+        if first is None or first.time >= MIN_KEY_DISTANCE:
+            return curves
+        takes = f"the robot takes {TIME_TO_FIRST_POSE:g} s to come to it"
+        message = f"the first pose stands at 0 s: {takes}, and all else comes later"
+        self.findings.changed(first.place, message)
+        return {
+            joint: [p._replace(time=p.time + TIME_TO_FIRST_POSE) for p in points] for joint, points in curves.items()
+        }
+
+    def _fitted(self, curves: JointCurves) -> JointCurves:
+        """The curves within the body's limits, and with `retime` within its speeds."""
+        curves = within_limits(curves, self.body, self.findings)
+        fast = too_fast(curves, self.body) if self.retime else []
+        if not fast:
+            return curves
+        later = slowed(curves, self.body)
+        joints = list(dict.fromkeys(excess.joint for excess in sorted(fast, key=lambda e: -e.value / e.limit)))
+        names = ", ".join(f"`{joint}`" for joint in joints[:3]) + (" and others" if len(joints) > 3 else "")
+        took, takes = (max(points[-1].time for points in each.values()) for each in (curves, later))
+        message = f"{names} would be too fast: the motion takes {takes:.2f} s instead of {took:.2f} s"
+        self.findings.changed(min(curves[joint][0].place for joint in joints), message)
+        return later
+
+    def _handles(self, joint: str, point: CurvePoint) -> dict[str, dict[str, Any]]:
+        found: dict[str, dict[str, Any]] = {}
+        if point.handle_in[0] < 0:
+            found["in"] = {"before": _length(-point.handle_in[0]), "angle": self._angle(joint, point.handle_in[1])}
+        if point.handle_out[0] > 0:
+            found["out"] = {"after": _length(point.handle_out[0]), "angle": self._angle(joint, point.handle_out[1])}
+        return found
+
+    def _angle(self, joint: str, value: float) -> float:
+        """In the file's unit: degrees, a hand from 0 to 1."""
+        shown = round(value if joint in self.body.hands else degrees(value), 4)
+        return int(shown) if shown == int(shown) else shown
+
+
+def _bent(points: Iterable[CurvePoint]) -> list[CurvePoint]:
+    """The points with handles on the chord, a third of it long, wherever the way to a point is straight."""
+    bent = list(points)
+    for i, (one, two) in enumerate(pairwise(bent)):
+        if two.straight:
+            third = ((two.time - one.time) / 3, (two.angle - one.angle) / 3)
+            bent[i] = bent[i]._replace(handle_out=third)
+            bent[i + 1] = two._replace(handle_in=(-third[0], -third[1]))
+    return [point._replace(straight=False) for point in bent]
+
+
+def _length(seconds: float) -> str:
+    return f"{seconds:.4f}".rstrip("0").rstrip(".") + "s"

@@ -1,0 +1,51 @@
+"""The `.motion` files of teams in RoboCup's 3D simulation league, which call themselves V1.1.
+
+`#WEBOTS_MOTION,V1.1`, behind it or in the second line the joints' names joined by `%`, then a pose a line:
+`play%ANGLE%…%DURATION`, in [rad], with what the way to the pose takes [s]. Nobody has specified it: this is what the
+files hold.
+"""
+
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.gestures.cells import Cell, cells_of
+from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
+from lumen.language.diagnostics import Place
+
+SOCCER_VERSION = "V1.1"
+POSE = "play"
+
+
+def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurves:
+    """The curves of a motion, joined by lines. Raises ForeignFileError where it names no joint, or one twice."""
+    (first, *rest), *lines = cells_of(file, text, "%")
+    behind = first[0].partition(SOCCER_VERSION)[2].lstrip(", ")
+    row = [(behind, first[1]), *rest] if behind else lines.pop(0) if lines else []
+    joints = [cell for cell in row if cell[0]]
+    if not joints:
+        raise broken(Place(file), "not-a-motion", "the first two lines name no joint")
+    names = [name for name, _ in joints]
+    if twice := next((cell for i, cell in enumerate(joints) if cell[0] in names[:i]), None):
+        raise broken(twice[1], "not-a-motion", f"`{twice[0]}` is named twice")
+    curves: dict[str, list[CurvePoint]] = {name: [] for name in names}
+    time = 0.0
+    for cells in lines:
+        takes = _takes(cells, len(joints))
+        if takes is None:
+            wanted = f"`{POSE}%`, {len(joints)} angles and a time above 0 s, joined by `%`"
+            findings.lost(cells[0][1], f"this line can't be read: {wanted} should stand here")
+            continue
+        time += takes
+        for name, (word, place) in zip(names, cells[1:-1], strict=True):
+            angle = number(word)
+            if angle is None:
+                findings.lost(place, f"`{word}` is no angle", "write a number in rad")
+            else:
+                curves[name].append(CurvePoint(time, angle, place, straight=True))
+    return {joint: points for joint, points in curves.items() if points}
+
+
+def _takes(cells: list[Cell], joints: int) -> float | None:
+    """What the way to the pose of a line takes [s]; None where the line is no pose."""
+    if cells[0][0] != POSE or len(cells) != joints + 2:
+        return None
+    takes = number(cells[-1][0])
+    return takes if takes is not None and takes > 0 else None
