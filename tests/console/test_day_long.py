@@ -26,8 +26,7 @@ MORE = 12.0
 """What it may have more at the end than then [MB]."""
 HANDLES = 6
 """Connections that are just ending, and what asks for images."""
-PAGES = ("", "robot/NAO", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
-"""Not the day: it is computed from all that happened, and takes memory as that grows."""
+PAGES = ("", "robot/NAO", "robot/NAO/day", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
 WAIT = 120.0
 
 

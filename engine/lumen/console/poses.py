@@ -1,118 +1,102 @@
-"""Where a robot's links are and what they look like, for who draws it: from its joints, by its own model."""
+"""Where a robot's links are and what they look like, for who draws it; from processes that end when nobody looks."""
 
 import asyncio
-import math
-import threading
-from collections.abc import AsyncIterator, Iterator, Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from asyncio.subprocess import Process
+from collections.abc import AsyncIterator
 
-import numpy as np
 import orjson
 
-import lumen
+from lumen.console.jobs import Jobs, ended, why_none
+from lumen.console.known_robot import KnownRobot
+from lumen.console.requests import DeniedError
 from lumen.console.watch import Watch
-from lumen.extras import demand
-from lumen.loading.lending import model_files
-from lumen.ports import Joints, Sense
-from lumen.robots.sense_codec import decode_reading
-
-if TYPE_CHECKING:
-    from lumen.language.projects import Project
-    from lumen.robots.simulation.link_frames import LinkFrames
 
 PERIOD = 1 / 15
 """How long after a pose the next is sent at the earliest [s]."""
 HEARTBEAT = 1.0
-DIGITS = 4
+POSE_TIME = 20.0
+"""How long a pose may take [s]: the first one loads the model."""
+LINGER, RETRY = 5.0, 5.0
+"""How long the process stays after the last looker, and until it is begun anew where it has died [s]."""
 
 
 class Poses:
-    """Poses of the robot of the project in `root`; other robots have models that nobody here knows.
+    """Poses of the robot of this console's own project; other robots have models that nobody here knows.
 
-    Raises LumenError where its files have errors, or MuJoCo is not installed.
+    Everything raises DeniedError where that has errors, or MuJoCo is not installed.
     """
 
-    def __init__(self, watch: Watch, root: Path) -> None:
-        self._watch, self._root = watch, root
-        self._links: LinkFrames | None = None
-        self._project: Project | None = None
-        self._making = threading.Lock()
+    def __init__(self, watch: Watch, jobs: Jobs) -> None:
+        self._watch, self._jobs = watch, jobs
+        self._shape: tuple[object, bytes] | None = None
+        self._child: Process | None = None
+        self._turn, self._lookers = asyncio.Lock(), 0
+        self._pose: tuple[int, bytes] = -1, b""
         self.closing = False
 
-    def shape(self, robot: str) -> dict[str, Any]:
-        """The links with their shapes, and the stage [m]; on a thread, for it takes a second."""
-        with self._making:
-            links, project = self._made()
-            found: dict[str, list[dict[str, Any]]] = {}
-            for one in links.shapes():
-                found.setdefault(one.link, []).append(
-                    {
-                        "kind": one.kind, "position": _row(one.position), "rotation": _row(one.rotation),
-                        "size": _row(one.size), "colour": _row(one.colour),
-                        "vertices": np.round(one.vertices, DIGITS).tolist(), "faces": one.faces.tolist(),
-                    }
-                )  # fmt: skip
-        stage = project.stage
-        told = {"x": list(stage.x), "y": list(stage.y)} if stage else None
-        return {
-            "robot": robot,
-            "links": [{"name": name, "shapes": rows} for name, rows in found.items()],
-            "stage": told,
-        }
+    async def shape(self, robot: str) -> bytes:
+        """The links with their shapes, and the stage [m], as JSON; made once for a bundle of files."""
+        bundle = self._watch.robots[robot].said.get("bundle")
+        if self._shape is None or self._shape[0] != bundle:
+            self._shape = bundle, await self._jobs.do("shape")
+        return self._shape[1]
 
     async def stream(self, robot: str) -> AsyncIterator[bytes]:
-        """Server-sent events `pose` as it moves."""
-        seen, view = -1, self._watch.robots[robot]
-        waited = 0.0
-        while not self.closing:
-            if view.moved != seen:
-                seen, waited = view.moved, 0.0
-                if (links := await asyncio.to_thread(self._pose, view.joints)) is not None:
-                    yield b"event: pose\ndata: " + orjson.dumps({"robot": robot, "links": links}) + b"\n\n"
-            elif (waited := waited + PERIOD) >= HEARTBEAT:
-                waited = 0.0
-                yield b":\n\n"
-            await asyncio.sleep(PERIOD)
+        """Server-sent events `pose` as it moves, only the newest; `trouble` where there is none, with the reason."""
+        seen, waited, view = -1, 0.0, self._watch.robots[robot]
+        self._lookers += 1
+        try:
+            while not self.closing:
+                if view.moved != seen:
+                    seen, waited = view.moved, 0.0
+                    try:
+                        yield await self._placed(view)
+                    except DeniedError as error:
+                        yield b"event: trouble\ndata: " + orjson.dumps({"reason": error.reason}) + b"\n\n"
+                        await asyncio.sleep(RETRY)
+                elif (waited := waited + PERIOD) >= HEARTBEAT:
+                    waited = 0.0
+                    yield b":\n\n"
+                await asyncio.sleep(PERIOD)
+        finally:
+            self._lookers -= 1
+            asyncio.get_running_loop().call_later(0.0 if self.closing else LINGER, self._leave)
 
-    def _made(self) -> "tuple[LinkFrames, Project]":
-        if self._links is None or self._project is None:
-            demand("simulation", "the view of the robot in its hall", "mujoco", "dm_control")
-            from lumen.robots.simulation.link_frames import LinkFrames
+    async def _placed(self, view: KnownRobot) -> bytes:
+        """The event of where it is now, computed once for all that look."""
+        async with self._turn:
+            moved = view.moved
+            if self._pose[0] != moved:
+                links = await self._asked(orjson.dumps(dict(view.joints)))
+                told = b'event: pose\ndata: {"robot":%b,"links":%b}\n\n' % (orjson.dumps(view.robot), links)
+                self._pose = moved, b":\n\n" if links == b"null" else told
+            return self._pose[1]
 
-            self._project = lumen.load(self._root)
-            self._links = LinkFrames(self._project.body, model_files(self._project)[0])
-        return self._links, self._project
+    async def _asked(self, joints: bytes) -> bytes:
+        """A line for a line, from the process, which is begun where there is none."""
+        if self._child is None:
+            self._child = await self._jobs.begin("poses")
+        child, line = self._child, b""
+        assert child.stdin
+        assert child.stdout
+        try:
+            async with asyncio.timeout(POSE_TIME):
+                child.stdin.write(joints + b"\n")
+                await child.stdin.drain()
+                line = await child.stdout.readline()
+        except (TimeoutError, ConnectionError, ValueError):
+            pass
+        if line.endswith(b"\n"):
+            return line.rstrip()
+        self._child = None
+        if child.returncode is None and not line:
+            await asyncio.wait({asyncio.ensure_future(child.wait())}, timeout=1.0)
+        code = child.returncode
+        await ended(child)
+        raise DeniedError(503, f"the robot can't be drawn: {why_none(code or 0, line)}")
 
-    def _pose(self, body: Mapping[str, Any]) -> dict[str, list[float]] | None:
-        with self._making:
-            links, project = self._made()
-            joints = decode_reading(Sense.JOINT, body, tuple(project.body.joints))
-            if not isinstance(joints, Joints) or not all(map(math.isfinite, joints.angles)):
-                return None
-            return dict(_placed(links, joints))
-
-
-def _placed(links: "LinkFrames", joints: Joints) -> Iterator[tuple[str, list[float]]]:
-    """Each link as x, y, z [m] and a rotation w, i, j, k in the hall; parents come before their children."""
-    known: dict[str, tuple[Any, Any]] = {}
-    for frame in links.frames(joints):
-        position, rotation = np.asarray(frame.position), np.asarray(frame.rotation)
-        if frame.parent in known:
-            before, turned = known[frame.parent]
-            position, rotation = before + _turn(turned, position), _product(turned, rotation)
-        known[frame.name] = position, rotation
-        yield frame.name, [*_row(position), *_row(rotation)]
-
-
-def _turn(q: Any, v: Any) -> Any:
-    return v + 2.0 * np.cross(q[1:], np.cross(q[1:], v) + q[0] * v)
-
-
-def _product(a: Any, b: Any) -> Any:
-    w = a[0] * b[0] - a[1:] @ b[1:]
-    return np.concatenate(([w], a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])))
-
-
-def _row(values: Any) -> list[float]:
-    return [round(float(value), DIGITS) for value in values]
+    def _leave(self) -> None:
+        """End the process where nobody looks any more: it ends where there is nothing more to read."""
+        if not self._lookers and self._child and self._child.stdin:
+            self._child.stdin.close()
+            self._child = None

@@ -1,18 +1,15 @@
 """The paths of what is seen: the camera, and the robot's shape and poses."""
 
-import asyncio
-from pathlib import Path
-
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from lumen.console.camera import MEDIA_TYPE, Cameras
+from lumen.console.jobs import Jobs
 from lumen.console.known_robot import KnownRobot
 from lumen.console.people import Role
 from lumen.console.poses import Poses
-from lumen.console.requests import NO_STORE, DeniedError, Reception, as_json
-from lumen.errors import LumenError
+from lumen.console.requests import NO_STORE, DeniedError, Reception
 
 STREAM = "text/event-stream"
 
@@ -20,9 +17,9 @@ STREAM = "text/event-stream"
 class Sights:
     """Shows robots to those who have a role."""
 
-    def __init__(self, reception: Reception, root: Path) -> None:
+    def __init__(self, reception: Reception, jobs: Jobs) -> None:
         self._reception = reception
-        self.cameras, self.poses = Cameras(reception.watch), Poses(reception.watch, root)
+        self.cameras, self.poses = Cameras(reception.watch), Poses(reception.watch, jobs)
         self.routes = [
             Route("/camera/{robot}", self._camera),
             Route("/api/shape", self._shape),
@@ -41,9 +38,10 @@ class Sights:
     async def _shape(self, request: Request) -> Response:
         view = self._drawn(request)
         try:
-            return as_json(await asyncio.to_thread(self.poses.shape, view.robot))
-        except LumenError as error:
-            raise DeniedError(404, f"the robot can't be drawn: {error}") from None
+            data = await self.poses.shape(view.robot)
+        except DeniedError as error:
+            raise DeniedError(error.status, f"the robot can't be drawn: {error.reason}") from None
+        return Response(data, headers=NO_STORE, media_type="application/json")
 
     async def _poses(self, request: Request) -> Response:
         view = self._drawn(request)

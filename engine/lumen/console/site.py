@@ -15,6 +15,7 @@ from starlette.staticfiles import StaticFiles
 
 from lumen.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFastError
 from lumen.console.commands import Commands, PageCommand
+from lumen.console.jobs import Jobs
 from lumen.console.known_robot import KnownRobot, iso_now
 from lumen.console.orders import NEEDS, REST
 from lumen.console.past import Past
@@ -37,7 +38,8 @@ class Site:
         self.watch, self.access = watch, access
         self.streams, self.reception = Streams(watch), Reception(watch, access)
         self.commands = Commands(watch, self.streams)
-        self.sights, past = Sights(self.reception, root), Past(self.reception, root)
+        jobs = Jobs(root)
+        self.sights, past = Sights(self.reception, jobs), Past(self.reception, jobs)
         self.app = Starlette(
             routes=[
                 Route("/", self._shell),

@@ -83,15 +83,16 @@ def _serve(question: Sequence[Any], project: Project | None, sender: DeltaEncode
     return None, project
 
 
-def _limit_memory() -> None:
+def limit_memory(most: int) -> None:
+    """Let this process take at most so much [bytes], where the system keeps to that."""
     with suppress(ImportError, OSError, ValueError):  # not everywhere, and nobody may raise what is lower already
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))
 
 
-def _limit_time(seconds: float) -> None:
+def limit_time(seconds: float) -> None:
     """End this process after so long, also where nobody is left who would."""
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_REAL, seconds)
@@ -101,7 +102,7 @@ def main() -> None:
     """Answer until the pipe ends; what anybody prints goes to the terminal, not into the pipe."""
     if hasattr(os, "nice"):
         os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
-    _limit_memory()
+    limit_memory(MAX_MEMORY)
     give_back()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
@@ -116,9 +117,9 @@ def _answer(answers: IO[bytes]) -> None:
     """Answer each question, with an exception where that is what comes of it; raises EOFError at the end."""
     project, sender = None, DeltaEncoder()
     while True:
-        _limit_time(0.0)
+        limit_time(0.0)
         question = receive(sys.stdin.buffer)
-        _limit_time(ANSWER_TIMEOUT + 1.0)
+        limit_time(ANSWER_TIMEOUT + 1.0)
         answer: Any
         try:
             answer, project = _serve(question, project, sender)

@@ -1,0 +1,77 @@
+"""Days of an exhibition, from the journal of this machine or from entries that somebody tells."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import date, datetime
+from pathlib import Path
+from typing import Any
+
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.console.day import Day, day_of
+from lumen.errors import JournalError
+from lumen.interpreters.replay.entries import RecordedEntry, read_entry
+from lumen.language.machines import MachineDefinition
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from lumen.runtime.home import home_of
+from lumen.runtime.inputs.journal_file import each_entry
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
+
+WINDOW = 86_400.0 * 1.5
+"""How long before the end of a day a file may have begun that holds something of it [s]."""
+
+
+class KeptDays:
+    """Days of the project in `root`."""
+
+    def __init__(self, root: Path) -> None:
+        self._root, self._kept = root, KeptBundles(root)
+        self._here = list[Project | None]()
+
+    def day(self, wanted: date | None) -> Day | None:
+        """A day from the files of this machine, the last where none is wanted; None where there are no files."""
+        files = sorted(self._files(), key=lambda row: row[1])
+        if not files:
+            return None
+        dates = sorted({datetime.fromtimestamp(began).date() for _, _, began in files})
+        chosen = wanted or dates[-1]
+        end = datetime.combine(chosen, datetime.max.time()).timestamp()
+        wanted_files = [file for file, _, began in files if end - WINDOW <= began <= end]
+        found = day_of(_entries(wanted_files), self._machine, chosen)
+        found.dates = sorted({*dates, *found.dates})
+        return found
+
+    def told(self, pages: Iterable[Any], wanted: date | None) -> Day:
+        """A day from pages of entries with their positions, as an exhibition tells them."""
+        return day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted)
+
+    def _machine(self, hash: str, behavior: str) -> MachineDefinition | None:
+        """What ran then; where that was not kept, what is here now."""
+        if kept := self._kept.machine(hash, behavior):
+            return kept
+        if not self._here:
+            self._here = [check_files(self._root, read_files(self._root))[0]]
+        project = self._here[0]
+        return project.behaviors.get(behavior) if project else None
+
+    def _files(self) -> Iterator[tuple[Path, int, float]]:
+        folder = home_of(self._root) / JOURNAL_FOLDER
+        for file, header in headers(folder) if folder.is_dir() else ():
+            if file.parent == folder:
+                yield file, header.first, header.began
+
+
+def _entries(files: list[Path]) -> Iterator[RecordedEntry]:
+    for file in files:
+        try:
+            yield from each_entry(file)
+        except JournalError:
+            continue
+
+
+def _recorded(page: Iterable[Mapping[str, Any]]) -> Iterator[RecordedEntry]:
+    for one in page:
+        try:
+            yield read_entry(one, int(one["position"]))
+        except JournalError:
+            continue

@@ -1,0 +1,141 @@
+"""What takes much memory is computed by processes that end, and whatever becomes of them is a line for the page."""
+
+import asyncio
+import json
+import math
+import sys
+from collections.abc import AsyncIterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.console import jobs
+from lumen.console.jobs import MAX_WAITING, Jobs
+from lumen.console.requests import DeniedError
+from lumen.errors import BusError
+from tests.console.conftest import Hosted
+from tests.console.pages import Browser, Served, Stream
+from tests.guarded import PIPE, Guarded
+from tests.waiting import until
+
+JOINTS = "avatar.NAO.data.joint"
+
+
+@pytest.fixture(name="gone_wrong")
+def _gone_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jobs, "PROGRAM", "tests.console.gone_wrong")
+
+
+def done(*jobs_: str, told: AsyncIterator[bytes] | None = None) -> list[Any]:
+    """What comes of these jobs, all asked for at once."""
+
+    async def ask() -> list[Any]:
+        here = Jobs(Path())
+        return await asyncio.gather(*(here.do(one, told=told) for one in jobs_), return_exceptions=True)
+
+    return asyncio.run(ask())
+
+
+def reasons(found: list[Any]) -> list[tuple[int, str]]:
+    assert all(isinstance(one, DeniedError) for one in found), found
+    return [(one.status, one.reason) for one in found]
+
+
+@pytest.mark.usefixtures("gone_wrong")
+def test_what_ends_a_job_is_said() -> None:
+    [(status, killed), refused, (_, large)] = reasons(done("killed", "refused", "too large"))
+    assert (status, refused) == (503, (404, "there is no such file"))
+    assert "SIGKILL" in killed
+    assert "memory" in large
+
+
+@pytest.mark.usefixtures("gone_wrong")
+def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jobs, "JOB_TIME", 0.5)
+    told = reasons(done(*["slow"] * (MAX_WAITING + 1)))
+    late = "that takes longer than 0.5 s: ask `lumen` on the terminal"
+    assert [reason for _, reason in told].count(late) == MAX_WAITING
+    assert "ask again in a moment" in told[-1][1]
+
+
+@pytest.mark.usefixtures("gone_wrong")
+def test_what_tells_a_job_may_fail() -> None:
+    async def told() -> AsyncIterator[bytes]:
+        yield b"one"
+        raise BusError("nobody answers")
+
+    assert [str(one) for one in done("echo", told=told())] == ["nobody answers"]
+
+
+def test_entries_that_are_told_make_the_same_day(copy: Path) -> None:
+    async def told() -> AsyncIterator[bytes]:
+        yield json.dumps([{"position": 3, "at": 1.0, "heard": "heard", "data": {"result": "dance"}}]).encode()
+        yield b"{nonsense"
+
+    day = json.loads(asyncio.run(Jobs(copy).do("day", "2026-11-23", "page", "told", told=told())))
+    assert (day["date"], day["visits"]) == ("2026-11-23", [])
+
+
+def test_the_console_itself_has_neither_the_simulator_nor_numbers_in_it() -> None:
+    script = "import sys, lumen.console.serving; print(*{'mujoco', 'dm_control', 'numpy', 'scipy'} & set(sys.modules))"
+    with Guarded([sys.executable, "-c", script], stdout=PIPE, text=True) as process:
+        assert process.communicate()[0].split() == []
+
+
+def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
+    copy: Path, served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The head is turned by as much as its joint on the bus says; what is about no joint is passed over."""
+    monkeypatch.setattr("lumen.console.poses.LINGER", 0.1)
+    poses, bus = served.console.site.sights.poses, hosted.exhibition.node.bus
+    names = list(lumen.load(copy).body.joints)
+
+    def turned(angle: float) -> bool:
+        """Whether the last pose has the head at that angle [rad] about z, by its quaternion w, i, j, k."""
+        bus.publish(JOINTS, {"name": [], "angle": [], "stiffness": []})
+        angles = [angle if name == "HeadYaw" else 0.0 for name in names]
+        bus.publish(JOINTS, {"name": names, "angle": angles, "stiffness": [1.0] * len(names)})
+        if not (found := stream.of("pose")):
+            return False
+        w, _, _, k = found[-1].data["links"]["HeadPitch"][3:]
+        return abs(2 * math.atan2(k, w) - angle) < 1e-3
+
+    with Stream(browser, "/api/poses?robot=NAO") as stream:
+        for angle in (0.5, -0.25):
+            until(partial(turned, angle), 60.0)
+        child = poses._child
+        assert child
+    until(lambda: child.returncode is not None)
+
+
+def test_a_model_that_is_gone_is_said_and_what_draws_is_begun_anew(
+    served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("lumen.console.poses.RETRY", 0.1)
+    monkeypatch.setattr(jobs, "PROGRAM", "tests.console.gone_wrong")
+    with Stream(browser, "/api/poses?robot=NAO") as stream:
+        until(lambda: len(stream.of("trouble")) > 1)
+    assert "the robot can't be drawn: " in stream.of("trouble")[0].data["reason"]
+
+
+def test_who_does_not_read_poses_is_given_the_newest_only(served: Served, hosted: Hosted) -> None:
+    """However often the robot moves, of what it was not sent nothing is kept."""
+    poses = served.console.site.sights.poses
+    view = served.console.site.watch.robots["NAO"]
+
+    async def read() -> tuple[bytes, bytes]:
+        stream = poses.stream("NAO")
+        first = await anext(stream)
+        for _ in range(1_000):
+            view.feel("joint", {"name": []})
+        return first, await anext(stream)
+
+    async def placed(of: object) -> bytes:
+        return b"%d" % view.moved
+
+    poses._placed = placed  # type: ignore[method-assign]
+    first, second = asyncio.run(read())
+    assert int(second) == view.moved > int(first) + 900
