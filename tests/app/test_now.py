@@ -99,7 +99,10 @@ def test_a_motion_says_how_far_it_is(copy: Path) -> None:
 
 MINE = """
 context: {n: 0, who: ""}
-events: {next: {}, named: {}, back: {}}
+events:
+  next: {}
+  named: {type: object, properties: {name: {type: string}, age: {type: integer}}, required: [name]}
+  back: {}
 states:
   waiting:
     on:
@@ -142,6 +145,35 @@ def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path
         assert exhibition.context["who"] == "Budi"
         last = exhibition.why("shown")["chain"][-1]
         assert (last["kind"], last["text"]) == ("person", "Aisyah")
+
+
+def test_the_data_of_an_event_is_as_declared_or_refused_with_what_would_be_right(mine: Path) -> None:
+    """By `events:` of the behaviour, by what robots raise, and by the messages of routes."""
+    bus = connect("memory://")
+    with lumen.open(mine, bus=bus) as exhibition:
+        ask = asker(exhibition, bus)
+        right = ". It has `name` (string); `age` (integer), which may be left out"
+        for data, wrong in (
+            ({"name": 3}, "name: 3 is not of type 'string'"),
+            ({}, "'name' is a required property"),
+            (None, "'name' is a required property"),
+            ({"name": "Budi", "age": "old"}, "age: 'old' is not of type 'integer'"),
+        ):
+            reason = f"the data of `named` is not as declared: {wrong}{right}"
+            assert ask("event", event="named", data=data) == {"verdict": "refused", "reason": reason}
+        assert exhibition.context["who"] == ""
+        assert "'sensor' is a required property" in ask("event", event="touched", data={})["reason"]
+        assert ask("event", event="touched", data={"sensor": "head"})["verdict"] == "done"
+        assert ask("event", event="nobody.declares.this", data=[1])["verdict"] == "done"
+        assert ask("event", event="named", data={"name": "Budi"})["taken"]
+
+
+def test_an_event_of_a_route_has_the_data_of_its_message(copy: Path) -> None:
+    bus = connect("memory://")
+    with lumen.open(copy, bus=bus) as exhibition:
+        ask = asker(exhibition, bus)
+        assert ask("event", event="face", data={"x": "left", "y": 120})["verdict"] == "refused"
+        assert ask("event", event="face", data={"x": 160, "y": 120})["verdict"] == "done"
 
 
 def test_what_can_be_no_event_is_refused(mine: Path) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from lumen.app.event_data import EventData
 from lumen.interpreters.explaining.pressing import pressed, takes
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause
@@ -43,6 +44,7 @@ class RaisedEvents(Observer):
     def __init__(self, loop: BehaviorLoop, reply: Reply) -> None:
         self._loop, self._reply = loop, reply
         self._open: list[_Raised] = []
+        self._data = EventData(loop.project)
 
     def happen(self, message: Message, now: float) -> None:
         """Let the event in that message, or of the button that it names, happen in this tick, or refuse it."""
@@ -60,7 +62,8 @@ class RaisedEvents(Observer):
                     self._reply(message, refusal(f"`{name}` is not for people: only the robot says what is done"))
                     return
                 cause = Cause("person", message.id, sender=person_in(message.body))
-                self._let(message, Event(name, more.get("data"), now, cause=cause))
+                data = more.get("data")
+                self._let(message, Event(name, {} if data is None else data, now, cause=cause))
             case {"ask": "press"}:
                 self._reply(message, refusal("`button` is what stands on it"))
             case _:
@@ -68,6 +71,11 @@ class RaisedEvents(Observer):
 
     def _let(self, message: Message, event: Event) -> None:
         assert event.cause
+        if self._data.project is not self._loop.project:
+            self._data = EventData(self._loop.project)
+        if wrong := self._data.wrong(event.name, event.data):
+            self._reply(message, refusal(wrong))
+            return
         self._open.append(_Raised(message, event.cause))
         self._loop.happen(event)
 

@@ -1,8 +1,9 @@
-"""Transitions that wait for approval: whether their event comes from outside, so that it can wait."""
+"""Transitions that wait for approval: whether their event comes from outside, so that it can wait, and may wait."""
 
 from collections.abc import Iterator
 
 from lumen.language.actions import Raise, Send
+from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.transitions import MISPLACED_APPROVAL
@@ -10,17 +11,26 @@ from lumen.rules.events import hears
 from lumen.rules.recipients import sent_to
 from lumen.rules.walk import action_sites
 
+SAFETY_WAITS = Code("safety-waits", "statecharts", WARNING, "what keeps people and robot safe waits for a person's GO")
+
+SAFETY = ("stop", "fallen", "motors.hot", "robot.lost", "brain.lost", "motion.lost")
+"""Events that something has to come of at once."""
+
 
 def check(draft: ProjectDraft) -> None:
-    """Report those whose event a behaviour raises or sends: nobody waits within a step."""
+    """Report those whose event a behaviour raises or sends, for nobody waits within a step, and what is urgent."""
     for name, machine in draft.behaviors.items():
         marked = [t for state in machine.states.values() for t in state.transitions if t.approve]
         own = {*_own(machine), *sent_to(draft, machine)} if marked else set[str]()
+        report = draft.report("behaviors", name)
         for transition in marked:
+            if event := next((event for event in SAFETY if hears(transition.event, event)), ""):
+                message = f"what the behaviour does after `{event}` waits until a person says GO"
+                hint = "leave out `approve`: nobody may be near; ask for approval of what comes after it"
+                report(SAFETY_WAITS, (*transition.where, "approve"), message, hint, key=True)
             if event := next((event for event in sorted(own) if hears(transition.event, event)), ""):
                 message = f"`{event}` comes from a behaviour: only what comes from outside can wait for approval"
                 hint = "mark the transition that leads there, or let a button raise the event"
-                report = draft.report("behaviors", name)
                 report(MISPLACED_APPROVAL, (*transition.where, "approve"), message, hint, key=True)
 
 
