@@ -1,5 +1,6 @@
 """Transitions that wait for GO: the event waits, the chart does not, and nothing is lost without a word."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,13 @@ from lumen.app.decisions import Decisions
 from lumen.app.exhibition import Exhibition
 from lumen.app.reload.records import RunRecords
 from lumen.bus import Bus, connect
+from lumen.buses.checking import SchemaCheck
 from lumen.language.events import Event
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.home import Home
 from tests.app.test_now import Asker, asker
 
+STATE = Path(__file__).parents[2] / "schemas" / "messages" / "state.schema.json"
 MINE = """
 context: {n: 0, who: ""}
 events: {dance: {}, other: {}, sing: {}, back: {}, leave: {}}
@@ -61,6 +64,39 @@ def ask(exhibition: Exhibition, bus: Bus) -> Asker:
 def raised(exhibition: Exhibition, event: str, data: Any = None) -> None:
     exhibition.node.loop.happen(Event(event, data))
     exhibition.run(0.1)
+
+
+def test_modules_hear_what_waits_and_what_became_of_it(exhibition: Exhibition, ask: Asker, bus: Bus) -> None:
+    heard: list[dict[str, Any]] = []
+    bus.subscribe("lumen.NAO.state", lambda message: heard.append(message.body))
+    check = SchemaCheck(json.loads(STATE.read_text("utf-8")))
+
+    def told() -> list[dict[str, Any]]:
+        exhibition.run(0.1)
+        found = [body for body in heard if "approval" in body]
+        assert [check(body) for body in found] == [""] * len(found)
+        assert not check({**found[0], "approval": {"became": "goes"}})
+        assert check({**found[0], "approval": {"became": "maybe"}})
+        heard.clear()
+        return [body["approval"] for body in found]
+
+    raised(exhibition, "sing")
+    [waits] = told()
+    assert (waits["id"], waits["event"], waits["became"], waits["why"]) == ("a1", "sing", "waits", "")
+    assert (waits["source"], waits["targets"], waits["file"]) == ("hall", ["stage"], "behaviors/mine.yaml")
+    assert (waits["line"], waits["else"]) == (8, "go")
+    assert waits["until"] == pytest.approx(waits["since"] + 20.0)
+    exhibition.node.behavior.trace.standing(exhibition.node.loop.runtime.snapshot)  # somebody has come
+    assert told() == [waits]
+    ask("approve", id="a1", go=True, by="Aisyah")
+    assert [(one["became"], one["why"]) for one in told()] == [("goes", "Aisyah")]
+    ask("event", event="back")
+    raised(exhibition, "dance")
+    ask("event", event="leave")
+    assert [(one["event"], one["became"], one["until"]) for one in told()] == [
+        ("dance", "waits", None),
+        ("dance", "stays", None),
+    ]
 
 
 def test_an_event_waits_for_go_and_happens_as_it_was(exhibition: Exhibition, ask: Asker) -> None:

@@ -13,7 +13,7 @@ HOW = {"waits": "waits for GO", "goes": "goes", "stays": "stays"}
 class Decisions:
     """Lets people decide, and tells of it: a line of the transcript, and by `record` an entry of the journal.
 
-    `keep` has it written what was decided and what waits.
+    `keep` has it written what was decided and what waits; `publish` tells the bus what became of each event.
     """
 
     def __init__(
@@ -22,8 +22,10 @@ class Decisions:
         narrator: Narrator,
         record: Callable[[Mapping[str, Any]], None],
         keep: Callable[[Mapping[str, Any]], None],
+        publish: Callable[[str, HeldEvent, str], object] = lambda _how, _held, _why: None,
     ) -> None:
         self._approvals, self._narrator, self._record, self._keep = approvals, narrator, record, keep
+        self._publish = publish
         approvals.tell = self._told
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
@@ -59,6 +61,7 @@ class Decisions:
         targets = ", ".join(machine.states[path].name for path in wanted.targets) or "what it does"
         self._narrator.line("operator", f"{held.event.name} {HOW[how]}, to {targets}" + (f": {why}" if why else ""))
         self._record({"approval": how, "id": held.id, "event": held.event.name, "why": why})
+        self._publish(how, held, why)
         self._write()
 
     def _write(self) -> None:

@@ -39,6 +39,7 @@ class LiveBehavior:
             setup.clock.now,
             lambda: self.loop.runtime.steps,
             lambda: self.loop.step,
+            lambda: self.loop.runtime.approvals.waiting,
         )
         self.adopt: Callable[[Project], None] = lambda _: None
         self.forgetting: list[Callable[[PersonName], None]] = []

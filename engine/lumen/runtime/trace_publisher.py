@@ -1,7 +1,7 @@
 """What the behaviour does, on the bus: for operators, and for visitors in a process of their own."""
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
 from typing import Any
 
@@ -12,8 +12,10 @@ from lumen.interpreters.statechart.nesting import active_names, entered_names, f
 from lumen.language.causes import Cause
 from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.ports import Bus
+from lumen.runtime.approvals import HeldEvent
 from lumen.runtime.loop import Observer
 
 TRACE_ROUTE = "state"
@@ -25,10 +27,11 @@ _log = logging.getLogger(__name__)
 
 
 class TracePublisher(Observer):
-    """Publishes each step that changed something, each command as it is given, and its answer.
+    """Publishes each step that changed something, each command as it is given, its answer, and what waits for GO.
 
     `project` returns the bundle that runs, `now` for the time [s]. `count` for how many steps the run has had, and
-    `emitting` which of them asked for the command that is being performed; 0 where nobody counts.
+    `emitting` which of them asked for the command that is being performed; 0 where nobody counts. `waiting` are the
+    events that wait for a person's GO.
     """
 
     def __init__(
@@ -38,9 +41,10 @@ class TracePublisher(Observer):
         now: Callable[[], float],
         count: Callable[[], int] = lambda: 0,
         emitting: Callable[[], int] = lambda: 0,
+        waiting: Callable[[], Iterable[HeldEvent]] = tuple,
     ) -> None:
         self._bus, self._project, self._now = bus, project, now
-        self._count, self._emitting = count, emitting
+        self._count, self._emitting, self._waiting = count, emitting, waiting
         self._told: tuple[dict[str, Any], str] | None = None
 
     def stepped(self, step: Step) -> None:
@@ -63,8 +67,25 @@ class TracePublisher(Observer):
         self._tell({**_standing(plan.snapshot), **ways, "step": self._count(), "bundle": project.hash})
 
     def standing(self, snapshot: Snapshot) -> None:
-        """Tell somebody who has just come where the behaviour stands."""
+        """Tell somebody who has just come where the behaviour stands, and what waits for GO."""
         self._tell(_standing(snapshot))
+        for held in self._waiting():
+            self.approval("waits", held, "")
+
+    def approval(self, became: str, held: HeldEvent, why: str) -> None:
+        """Tell of an event for a marked transition: that it `waits`, `goes` or `stays`, and why."""
+        project, (machine, wanted, approval) = self._project(), held.marked
+        place = project.place(_file(project, machine), wanted.where)
+        said: dict[str, Any] = {
+            "id": held.id,
+            "event": held.event.name,
+            "became": became,
+            "why": why,
+            "source": wanted.source,
+        }
+        said |= {"targets": list(wanted.targets), "file": place.file, "line": place.line}
+        until = None if approval.within is None else round(held.until, 3)
+        self._tell({"approval": {**said, "since": round(held.since, 3), "until": until, "else": approval.otherwise}})
 
     def pace(self, realtime: float) -> None:
         """Tell how much of real time is kept, where that has become too little, or enough again."""
@@ -102,14 +123,18 @@ class TracePublisher(Observer):
 
 def _transitions(project: Project, step: Step) -> Iterator[dict[str, Any]]:
     """Which transitions were taken, those of invoked behaviours included, and where they stand."""
-    names = {id(machine): name for name, machine in project.behaviors.items()}
-    names[id(project.machine)] = project.behavior
     for prefix, machine, part in flattened_steps(project.machine, step):
-        file = f"behaviors/{names.get(id(machine), machine.id)}.yaml"
+        file = _file(project, machine)
         for transition in part.transitions:
             place = project.place(file, transition.where)
             said = {"source": prefix + transition.source, "targets": [prefix + target for target in transition.targets]}
             yield {**said, "file": place.file, "line": place.line}
+
+
+def _file(project: Project, machine: MachineDefinition) -> str:
+    """Where a machine stands; a behaviour that is run with a story's context is another one than was read."""
+    names = {id(one): name for name, one in project.behaviors.items()} | {id(project.machine): project.behavior}
+    return f"behaviors/{names.get(id(machine), machine.id)}.yaml"
 
 
 def _cause(cause: Cause | None) -> dict[str, Any]:

@@ -86,7 +86,8 @@ class OperatorPart(Part, Observer):
         )
         behavior.forgetting.append(lambda _: self._doings.forget())
         self._unsay = self._bus.subscribe(key_of(behavior.project, TEXT_ROUTE), self._doings.told.append)
-        self._decisions = Decisions(runtime.approvals, narrator, record, keep)
+        told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
+        self._decisions = Decisions(runtime.approvals, narrator, record, keep, *told)
         behavior.forgetting.append(lambda _: runtime.approvals.forget())
         self._raising = RaisedEvents(behavior.loop, self._reply)
         behavior.loop.observers += [self.steps, self._doings, self._raising, self]
