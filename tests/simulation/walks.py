@@ -47,27 +47,28 @@ class Walked:
 
 
 @cache
-def floor() -> str:
-    """The shipped hall, its robot on the floor."""
+def floor(more: str = "") -> str:
+    """The shipped hall, its robot on the floor; `more` geoms in it, as MJCF."""
     folder = Path(mkdtemp())
     (folder / "hall").symlink_to(MODELS / "hall")
     text = (MODELS / "hall.xml").read_text("utf-8")
     moved = text.replace('name="stage" pos="0 0 0.5"', f'name="stage" pos="{START[0]} {START[1]} 0"')
     assert moved != text
-    (folder / "floor.xml").write_text(moved, "utf-8")
+    (folder / "floor.xml").write_text(moved.replace("<worldbody>", f"<worldbody>{more}", 1), "utf-8")
     return str(folder / "floor.xml")
 
 
-def on_the_floor(body: Body, **options: Any) -> SimulatedRobot:
-    return SimulatedRobot(body, MODELS, floor(), **options)
+def on_the_floor(body: Body, more: str = "", **options: Any) -> SimulatedRobot:
+    return SimulatedRobot(body, MODELS, floor(more), **options)
 
 
-def any_robot(body: Body, seed: int, posture: str = "Stand") -> SimulatedRobot:
+def any_robot(body: Body, seed: int, posture: str = "Stand", more: str = "") -> SimulatedRobot:
     """A robot whose links are up to 10 % lighter or heavier, each by its own, on a floor of friction 0.5 to 1.0."""
     draw = np.random.default_rng(seed)
-    variation = Variation(friction=draw.uniform(0.5, 1.0) / 0.8, noise=1.0)
-    robot = on_the_floor(body, seed=seed, posture=posture, variation=variation)
+    friction = draw.uniform(0.5, 1.0) / 0.8
+    robot = on_the_floor(body, more, seed=seed, posture=posture, variation=Variation(noise=1.0))
     model = robot.world.model
+    model.geom_friction *= friction
     for i in range(model.nbody):
         if model.body(i).name.startswith("nao/"):
             factor = draw.uniform(0.9, 1.1)

@@ -1,0 +1,112 @@
+"""How well the simulated NAO walks: how fast, how straight, over what; and whether it knows where it is.
+
+    python benchmarks/walking.py [--robots N]
+
+Each robot differs from the model: every link up to 10 % lighter or heavier, friction 0.5 to 1.0, and noisy sensors.
+Speeds are asked for by `move`, for 8 s. `off` is how far from its goal a robot ends, `odometry` how far from where it
+believes to be, each the worst of those still upright. 2 robots for a look, 20 for the figures.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable
+from math import hypot, pi, radians, tan
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.simulation.walks import START, any_robot, truth, walk  # noqa: E402
+
+import lumen  # noqa: E402
+from lumen.interpreters.gait import Pose  # noqa: E402
+from lumen.language.commands import Move, Walk  # noqa: E402
+from lumen.language.robots import Body  # noqa: E402
+from lumen.robots.simulation import SimulatedRobot  # noqa: E402
+
+SECONDS = 8.0
+LENGTH = 2.0
+"""Of a slope [m]."""
+
+Start = Callable[[int], SimulatedRobot]
+
+
+def fast(name: str, start: Start, robots: int, command: Move, speed: Callable[[Pose], float]) -> None:
+    """Print how fast robots go that are asked for a speed."""
+    reached = []
+    for seed in range(robots):
+        robot = start(seed)
+        robot.start("it", command)
+        robot.advance(2.0)
+        before, turned, theta = truth(robot), 0.0, truth(robot).theta
+        for _ in range(round(SECONDS / 0.1)):
+            robot.advance(0.1)
+            now = truth(robot).theta
+            turned, theta = turned + (now - theta + pi) % (2 * pi) - pi, now
+        way = truth(robot).seen_from(before)
+        if not robot.fallen:
+            reached.append(speed(Pose(way.x, way.y, turned)) / SECONDS)
+    print(f"{name:<26} {len(reached):2d} of {robots} upright   {np.mean(reached or [0.0]):5.3f} on average", flush=True)
+
+
+def far(name: str, start: Start, robots: int, command: Walk) -> None:
+    """Print how true robots end that are sent to a place, and how true they believe to be."""
+    upright, off, aside, wrong = 0, [0.0], [0.0], [0.0]
+    for seed in range(robots):
+        robot = start(seed)
+        walked = walk(robot, command)
+        if not walked.upright:
+            continue
+        upright += 1
+        there, where = truth(robot), robot._odometry.whereabouts
+        off.append(walked.off)
+        aside.append(100 * abs(there.y - command.y))
+        wrong.append(100 * hypot(there.x - where.x, there.y - where.y))
+    share = max(wrong) / hypot(command.x, command.y)
+    print(
+        f"{name:<26} {upright:2d} of {robots} upright   off {max(off):4.1f} cm, aside {max(aside):4.1f} cm,"
+        f" odometry {max(wrong):4.1f} cm ({share:.1f} %)",
+        flush=True,
+    )
+
+
+def ramp(degrees: float) -> str:
+    """A slope that begins 0.3 m ahead of the robot."""
+    angle = radians(degrees)
+    x, height = START[0] + 0.3 + LENGTH / 2, LENGTH / 2 * tan(angle)
+    return (
+        f'<geom class="ground" type="box" size="{LENGTH / 2} 0.6 0.005" pos="{x} {START[1]} {height - 0.005}" '
+        f'euler="0 {-angle} 0"/>'
+    )
+
+
+def bump(height: float) -> str:
+    """Rails of that height [m] across the robot's way, 3 cm wide, 13 cm apart."""
+    return "".join(
+        f'<geom class="ground" type="box" size="0.015 0.6 {height / 2}" pos="{START[0] + 0.2 + 0.13 * k} {START[1]} '
+        f'{height / 2}"/>'
+        for k in range(6)
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--robots", type=int, default=2, help="how many for each row (20 for the figures)")
+    robots = parser.parse_args().robots
+    body: Body = lumen.load(ROOT).body
+
+    def on(more: str = "") -> Start:
+        return lambda seed: any_robot(body, seed, more=more)
+
+    fast("forward [m/s]", on(), robots, Move(1.0, 0.0, 0.0), lambda way: way.x)
+    fast("aside [m/s]", on(), robots, Move(0.0, 1.0, 0.0), lambda way: way.y)
+    fast("turning [rad/s]", on(), robots, Move(0.0, 0.0, 9.0), lambda way: way.theta)
+    far("5 m straight", on(), robots, Walk(5.0))
+    far("over rails of 5 mm", on(bump(0.005)), robots, Walk(1.2))
+    far("up 5 degrees", on(ramp(5.0)), robots, Walk(1.0))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,17 @@
+"""How hard the robot is to push over; `python benchmarks/pushes.py` prints the whole table."""
+
+from math import pi
+
+import pytest
+
+from lumen.language.robots import Body
+from tests.simulation.pushes import PushTrial, standing, upright
+
+
+@pytest.mark.parametrize("to", [0.0, pi / 2, -pi / 2, pi / 4, -pi / 4])
+def test_a_push_is_borne_standing(body: Body, to: float) -> None:
+    assert upright(body, standing, PushTrial(5, 2.0, to))
+
+
+def test_one_that_is_far_too_hard_is_not(body: Body) -> None:
+    assert not upright(body, standing, PushTrial(5, 8.0, 0.0))
