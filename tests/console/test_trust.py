@@ -9,6 +9,7 @@ from threading import Thread
 
 import pytest
 
+from lumen.console.orders import NEEDS
 from lumen.console.people import Role
 from tests.console.chromium import Chromium
 from tests.console.conftest import Hosted
@@ -152,6 +153,39 @@ def test_a_thousand_tries_in_a_row_get_nobody_in_and_rest_goes_on(locked: Browse
     assert hosted.exhibition.node.robot.server.hold.stopped
 
 
+def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted, copy: Path) -> None:
+    """All commands and paths that are not for that role are refused, also with what would be right for another."""
+    served = Served(copy, pins={Role.SHOW: PIN, Role.AUTHOR: f"{PIN}-author"})
+    browser, show = served.browser, {"Authorization": f"Bearer {PIN}"}
+    try:
+        until(lambda: any(robot["connected"] for robot in browser.robots))
+        before = hosted.exhibition.configuration
+        fields = {
+            "text": "Boo",
+            "name": "dance",
+            "state": "dance",
+            "level": "alone",
+            "event": "face",
+            "data": {"x": 1, "y": 1},
+        }
+        for command in sorted(set(NEEDS) - {"rest", "mark", "approve"}):
+            answer = browser.post(
+                "/api/commands", {"id": command, "robot": "NAO", "command": command, **fields}, **show
+            )
+            assert (answer.status, "role" in answer.data["reason"]) == (403, True), command
+        for path in ("api/day", "api/day.csv", "api/entries?from=0&to=9", "api/files"):
+            assert browser.get(f"/{path}", **show).status == 403, path
+        assert browser.post("/api/fork", {"robot": "NAO", "position": 1}, **show).status == 403
+        assert hosted.exhibition.configuration == before
+        assert browser.get("/api/now", **show).data["robots"][0]["autonomy"] == "ask"
+        mark = {"id": "m", "robot": "NAO", "command": "mark", "text": "he waved"}
+        assert browser.post("/api/commands", mark, **show).data["state"] == "finished"
+        go = {"id": "g", "robot": "NAO", "command": "approve", "approval": "a1", "go": True}
+        assert browser.post("/api/commands", go, **show).data["state"] == "failed"  # nothing waits
+    finally:
+        served.close()
+
+
 def tried(browser: Browser, number: int, source: str) -> int:
     """What a PIN gets, sent from an address of this machine."""
     connection = http.client.HTTPConnection(browser.host, browser.port, timeout=WAIT, source_address=(source, 0))
@@ -163,16 +197,18 @@ def tried(browser: Browser, number: int, source: str) -> int:
 
 
 def test_nobody_hears_a_name_or_sees_an_image(locked: Browser, hosted: Hosted, copy: Path) -> None:
-    """But what the robot says aloud, which a screen beside it shows."""
+    """What the robot says aloud is shown on a screen beside it, without the name: the hall heard that."""
     meet(hosted, NAME)
     signed_in = {"Authorization": f"Bearer {PIN}"}
     until(lambda: locked.get("/api/now", **signed_in).data["robots"][0]["visitor"] == NAME)
     with Stream(locked) as stream:
+        hosted.exhibition.say(f"Goodbye {NAME.upper()}, and {NAME}!", "en")
+        until(lambda: any("Goodbye …, and …!" in str(event.data["saying"]) for event in stream.of("now")), WAIT)
         until(lambda: stream.comments > 2)
     assert stream.of("now")
     assert stream.of("entry") == stream.of("command") == []
     told = [event.data for event in stream.of("now")] + list(locked.robots)
-    assert NAME not in json.dumps([{key: value for key, value in robot.items() if key != "saying"} for robot in told])
+    assert NAME not in json.dumps(told)
     for path in ("camera/NAO", "api/day", "api/day.csv", "api/entries?from=0&to=9", "api/why?what=greet", "api/files"):
         answer = locked.get(f"/{path}")
         assert (answer.status, NAME in answer.body.decode()) == (401, False), path

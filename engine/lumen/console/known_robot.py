@@ -8,6 +8,7 @@ from typing import Any
 import orjson
 
 from lumen.console.entry_ring import EntryRing
+from lumen.console.spoken_names import SpokenNames
 from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
 
 SILENT_AFTER = 2.5
@@ -41,6 +42,7 @@ class KnownRobot:
         self.seen: dict[str, Any] = {"faces": []}
         self._seen: dict[str, Any] = {}
         self._known, self._saw, self._knew = "", 0.0, 0.0
+        self._names = SpokenNames()
         self._processes: dict[str, dict[str, Any]] = {}
         self._sensed: dict[str, Any] = {}
         self.joints: Mapping[str, Any] = {}
@@ -56,6 +58,7 @@ class KnownRobot:
     def answered(self, said: Mapping[str, Any]) -> None:
         """Its exhibition has said how it is."""
         self._answered, self._heard = time.monotonic(), iso_now()
+        self._names.add(said.get("visitor"))
         told = {**said, "ahead": self._ahead(said.get("time"))}
         if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # it goes on by itself
             self.said, self.connected = told, True
@@ -85,6 +88,8 @@ class KnownRobot:
                 self._seen, self._saw = {"x": body["x"], "y": body["y"]}, time.monotonic()
             case "recognised" if isinstance(name := body.get("name"), str):
                 self._known, self._knew = name[:MAX_NAME], time.monotonic()
+                if name not in NO_NAMES:
+                    self._names.add(self._known)
             case "joint" if isinstance(names := body.get("name"), list):
                 self.joints = body
                 self.moved += 1
@@ -123,7 +128,7 @@ class KnownRobot:
         processes = [{k: v for k, v in said.items() if k != "at"} for said in self._processes.values()]
         said = {"robot": self.robot, **self.said, "connected": self.connected, "heard": self._heard or None}
         said |= {"senses": self.senses, "processes": processes, "files": self.files, "seen": self.seen}
-        return said if full else {key: said[key] for key in FOR_NOBODY if key in said}
+        return said if full else self._for_nobody(said)
 
     def block(self, *, full: bool) -> bytes:
         """The same as a server-sent event, encoded once."""
@@ -132,6 +137,13 @@ class KnownRobot:
             block = b"event: now\ndata: " + orjson.dumps(self.to_json(full=full)) + b"\n\n"
             self._blocks[full] = self.version, block
         return block
+
+    def _for_nobody(self, said: Mapping[str, Any]) -> dict[str, Any]:
+        """What is shown to who has no role: what the robot says aloud, but for whom it says it to."""
+        shown = {key: said[key] for key in FOR_NOBODY if key in said}
+        if isinstance(saying := shown.get("saying"), Mapping):
+            shown["saying"] = {**saying, "text": self._names.without(str(saying.get("text", "")))}
+        return shown
 
     def _faces(self) -> dict[str, Any]:
         """What its eyes found just now, in the image [px of 320 x 240]; who that is, where they know."""
