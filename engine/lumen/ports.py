@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import MotorCommand, Say
 from lumen.language.events import Event
+from lumen.language.life import LifeStyle
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import Route, Size
 from lumen.language.stories import Visitor
@@ -123,6 +124,13 @@ class Aim:
 
 
 @dataclass(frozen=True, slots=True)
+class Live:
+    """Be alive in this style from now on, wherever nothing else moves the robot; nobody waits for it."""
+
+    style: LifeStyle
+
+
+@dataclass(frozen=True, slots=True)
 class Record:
     """Listen for `duration` [s]; then the robot raises `RECORDED` with what it heard."""
 
@@ -130,7 +138,7 @@ class Record:
     duration: float
 
 
-RobotCommand = MotorCommand | Say | Perform | Aim | Record
+RobotCommand = MotorCommand | Say | Perform | Aim | Record | Live
 """What a robot understands."""
 
 
@@ -138,7 +146,7 @@ class Robot(Protocol):
     """A robot. No method blocks. If the robot can't do something, no method raises: an event says so.
 
     `start` is answered through `poll` by `done.command.ID`, `error.command.ID` (data: `{"reason": …}`) or
-    `cancelled.command.ID`; `Aim` is not answered. `poll` also returns what the robot noticed by itself
+    `cancelled.command.ID`; `Aim` and `Live` are not answered. `poll` also returns what the robot noticed by itself
     (`ROBOT_EVENTS`), each event with `at` [s] on the robot's clock.
     """
 

@@ -22,6 +22,7 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "story": ("behaviors/stories/*.yaml",),
     "controller": ("fuzzy/*.yaml",),
     "motion": ("motions/*.yaml", "models/passages/*.yaml"),
+    "life": ("motions/life/*.yaml",),
     "body": ("models/*.yaml",),
     "message": ("schemas/messages/*.schema.json",),
 }

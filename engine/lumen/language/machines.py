@@ -108,7 +108,8 @@ class State:
     `children` are paths in document order, `transitions` candidates in document order. `output` is the data of
     `done.state.*` for a final state. `resume` says how its `do` goes on where a history leads back into it, or where
     the engine was away: the step that it was at `again`, the one `after` it, or `never`; empty for all of it anew.
-    `buttons` are for the operator, also while a state within is active.
+    `buttons` are for the operator, also while a state within is active. `life` names the style in which the robot is
+    alive meanwhile, empty where the state around it decides.
     """
 
     path: str
@@ -126,6 +127,7 @@ class State:
     output: ComputedValue = None
     on_reload: str = ""
     resume: Resume = ""
+    life: str = ""
     buttons: tuple[Button, ...] = ()
     for_each: ForEach | None = None
     where: NodePath = field(default=(), compare=False)

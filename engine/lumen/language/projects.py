@@ -8,6 +8,7 @@ from lumen.language.console_settings import ConsoleSettings
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.hall_places import HallPlace
+from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EYES, ModuleSettings
 from lumen.language.motions import MotionDefinition
@@ -54,6 +55,7 @@ class Project:
     behaviors: Mapping[str, MachineDefinition]
     controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
     motions: Mapping[str, MotionDefinition] = field(default_factory=dict)
+    life: Mapping[str, LifeStyle] = field(default_factory=dict)
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)

@@ -119,6 +119,7 @@ class _Builder:
             output=self.expressions.value(data.get("output"), (*where, "output")),
             on_reload=self.on_reload(entry),
             resume=data.get("resume", ""),
+            life=data.get("life", ""),
             buttons=buttons(data.get("buttons"), (*where, "buttons")),
             where=where,
         )

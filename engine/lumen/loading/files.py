@@ -29,6 +29,7 @@ MISTAKEN_FOLDERS: Mapping[str, str] = {
     "behavior": "behaviors",
     "motion": "motions",
     "gestures": "motions",
+    "life": "motions/life",
     "controllers": "fuzzy",
 }
 """Folders beside lumen.yaml of which nothing is built, and the ones that were probably meant: lint says so."""
@@ -39,6 +40,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors/words": (".yaml", ".yml"),
     "fuzzy": (".yaml", ".yml"),
     "motions": (".yaml", ".yml"),
+    "motions/life": (".yaml", ".yml"),
     "models": (".yaml", ".yml", ".xml"),
     "models/passages": (".yaml", ".yml"),
     "schemas/messages": (".json",),

@@ -46,6 +46,7 @@ _KINDS: Mapping[str, _Kind] = {
     "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
     "motion": _Kind("a motion", "motions/", frozenset(("keyframes",))),
+    "life": _Kind("a style of life", "motions/life/", frozenset(("sways",)), "blinks"),
     "body": _Kind("a robot's body", "models/", frozenset(("joints", "camera")), "like"),
     "message": _Kind("a message schema", "schemas/messages/", frozenset(("$schema", "properties"))),
 }

@@ -7,6 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
+from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -18,6 +19,7 @@ from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend
+from lumen.loading.life import LIFE_FOLDER, build_life
 from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
@@ -39,6 +41,7 @@ _KINDS: Mapping[str, str] = {
     WORDS_FOLDER: "words",
     "fuzzy": "controller",
     "motions": "motion",
+    LIFE_FOLDER: "life",
     PASSAGES: "motion",
     MODELS: "body",
 }
@@ -66,6 +69,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     passages = _motions(found, PASSAGES)
     found.motions = _motions(found, "motions")
+    found.life = _life(found)
     found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
     _messages(found)
     torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
@@ -102,6 +106,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         behaviors=found.behaviors,
         controllers=found.controllers,
         motions=found.motions,
+        life=found.life,
         routes=settings.routes,
         stories=found.stories,
         messages=found.messages,
@@ -216,6 +221,13 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
     for file in files.values():
         file.report.lost |= found.report("models", model).lost
     return build_motions({name: (file.data, file.report) for name, file in files.items()}, found.bodies[model])
+
+
+def _life(found: ProjectDraft) -> dict[str, LifeStyle]:
+    """The styles of life, which can be read only where the robot's body is known."""
+    if (body := found.body) is None:
+        return {}
+    return _built(_each(found, LIFE_FOLDER, partial(build_life, body=body), around=body))
 
 
 def _messages(found: ProjectDraft) -> None:

@@ -15,6 +15,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "behaviors/words": "words",
     "fuzzy": "controller",
     "motions": "motion",
+    "motions/life": "life",
     "models": "body",
     "models/passages": "motion",
     "schemas/messages": "message",

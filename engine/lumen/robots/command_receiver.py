@@ -15,7 +15,7 @@ from lumen.errors import BusError, RobotError, RobotRefusedError
 from lumen.language.commands import Language, Rest, Say, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
+from lumen.ports import Aim, Bus, Joints, Live, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
 from lumen.robots.command_queries import CommandQueries
 from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, CommandRecord, CommandReports
@@ -265,7 +265,7 @@ class CommandReceiver:
             raise RobotRefusedError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
         if record.id and not isinstance(command, Rest | Stop):
             self._log_of_begun.note(record.id)
-        if isinstance(command, Aim):
+        if isinstance(command, Aim | Live):
             self._robot.start(self._number(), command)
             self._reports.change(record, FINISHED)
             return

@@ -12,10 +12,11 @@ from typing import Any, Generic, TypeVar, get_args
 from lumen.errors import BadCommandError
 from lumen.language.commands import Channel, Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.life import STILL, STILL_STYLE, LifeStyle
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
 from lumen.loading.sounds import MAX_SOUND_DURATION
-from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.robots.command_parameters import CommandParameters, shown
 from lumen.robots.motion_codec import decode_motion, encode_motion
@@ -158,6 +159,16 @@ def _stop(p: CommandParameters) -> Stop:
 def _rest(p: CommandParameters) -> Rest:
     """`by` is ours: the person who stops the robot."""
     return Rest(shown(p.text("by", "")))
+
+
+def _style(p: CommandParameters) -> LifeStyle:
+    """A style of the project's own."""
+    name = shown(p.text("style"))
+    if name == STILL:
+        return STILL_STYLE
+    if name not in p.project.life:
+        raise BadCommandError(f"there is no style `{name}`: {did_you_mean(name, (STILL, *p.project.life))}")
+    return p.project.life[name]
 
 
 def _record(p: CommandParameters) -> Record:
@@ -310,8 +321,22 @@ _AIM = CommandRow(
 )
 """Nobody waits for an aim, and it moves what no command owns."""
 
+_LIVE = CommandRow(
+    Live,
+    "life",
+    3,
+    "motion",
+    "live",
+    lambda c: {"style": c.style.name},
+    lambda p: Live(_style(p)),
+    owns(),
+    moves=False,
+)
+"""A manner, and no movement: a robot whose motors are off has none."""
+
 COMMANDS: tuple[CommandRow[Any], ...] = (
     _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _VOLUME, _SOUND, _AIM,
+    _LIVE,
 )  # fmt: skip
 
 _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMANDS}

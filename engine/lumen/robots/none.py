@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from lumen.language.events import Event
-from lumen.ports import Aim, Reading, RobotCommand, Sense
+from lumen.ports import Aim, Live, Reading, RobotCommand, Sense
 
 
 class NoRobot:
@@ -13,7 +13,7 @@ class NoRobot:
         self._answers: list[Event] = []
 
     def start(self, id: str, command: RobotCommand) -> None:
-        if not isinstance(command, Aim):
+        if not isinstance(command, Aim | Live):
             self._answers.append(Event(f"error.command.{id}", {"reason": "there is no robot (--robot none)"}))
 
     def cancel(self, id: str) -> None:

@@ -13,11 +13,12 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import part_of
+from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.body_parts import WHOLE_BODY, part_of
 from lumen.robots.command_table import check_command, parts_of, row_of
 from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
+from lumen.robots.life_layer import LifeLayer
 from lumen.robots.silent_recording import SilentRecording
 
 TORSO_HEIGHT = 0.333
@@ -97,9 +98,12 @@ class RecordingRobot:
         self._reckoning = DeadReckoning()
         self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
+        self._life = LifeLayer(body)
 
     def start(self, id: str, command: RobotCommand) -> None:
-        if isinstance(command, Aim):
+        if isinstance(command, Live):
+            self._life.style = command.style
+        elif isinstance(command, Aim):
             self._turn({n: a for n, a in command.angles.items() if self._free(n)})
         else:
             self._executor.start(id, command)
@@ -128,7 +132,8 @@ class RecordingRobot:
         match sense:
             case Sense.JOINT:
                 names = tuple(self.body.joints)
-                angles = tuple(self._angles.get(name, 0.0) for name in names)
+                offsets = self._offsets()
+                angles = tuple(self._angles.get(name, 0.0) + offsets.get(name, 0.0) for name in names)
                 return Joints(self.time, names, angles, (1.0,) * len(names), position=self._reckoning.whereabouts)
             case Sense.SONAR:
                 distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
@@ -189,6 +194,11 @@ class RecordingRobot:
         if isinstance(command, Record):
             return SilentRecording(command, until, self._notice)
         return _Lasting(until)
+
+    def _offsets(self) -> Mapping[str, float]:
+        """How far its life has moved the joints from where commands want them."""
+        free = {part for part in WHOLE_BODY if not self._executor.owner(part)}
+        return self._life.wanted(self.time, free, lambda _part: 1.0)
 
     def _free(self, joint: str) -> bool:
         """Whether no command owns that joint, or the robot has none of that name."""

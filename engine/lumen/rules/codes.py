@@ -17,6 +17,7 @@ from lumen.loading import (
     document,
     keyframes,
     known_words,
+    life,
     linking,
     messages,
     misplaced,
@@ -43,7 +44,7 @@ from lumen.rules.checks import CHECKS
 
 LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, keyframes, known_words,
-    linking, messages, misplaced, numbers, outline, poses, project, rounds, rulebook, schedules, settings, shapes,
+    life, linking, messages, misplaced, numbers, outline, poses, project, rounds, rulebook, schedules, settings, shapes,
     signal_bindings, terms, transitions, units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""

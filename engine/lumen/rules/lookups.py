@@ -12,6 +12,7 @@ from lumen.loading.linking import UNKNOWN_BEHAVIOR
 
 MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
 UNKNOWN_CONTROLLER = Code("unknown-controller", "references", ERROR, "a controller is named that is not in fuzzy/")
+UNKNOWN_LIFE = Code("unknown-life", "references", ERROR, "a style of life is named that is not in motions/life/")
 UNKNOWN_MESSAGE = Code(
     "unknown-message", "references", ERROR, "a message schema is named that is not in schemas/messages/"
 )
@@ -38,6 +39,7 @@ _FOLDERS: Mapping[str, tuple[str, str, Code]] = {
     "behavior": ("behaviors", "behaviour", UNKNOWN_BEHAVIOR),
     "story": ("behaviors/stories", "story", UNKNOWN_STORY),
     "controller": ("fuzzy", "controller", UNKNOWN_CONTROLLER),
+    "life": ("motions/life", "style of life", UNKNOWN_LIFE),
     "motion": ("motions", "motion", UNKNOWN_MOTION),
     "model": ("models", "robot", UNKNOWN_MODEL),
     "message": ("schemas/messages", "message schema", UNKNOWN_MESSAGE),

@@ -16,6 +16,7 @@ from lumen.ports import Bus, Clock, Robot
 from lumen.runtime.causes import caused
 from lumen.runtime.cues import MotionCues
 from lumen.runtime.inbox import Inbox
+from lumen.runtime.life import LifeDirector
 from lumen.runtime.performer import Performer
 from lumen.runtime.regulation import Regulation
 from lumen.runtime.resuming import Resumption
@@ -67,6 +68,7 @@ class BehaviorLoop:
         self.regulation = Regulation(project, bus)
         self.performer = Performer(robot, bus, self._track)
         self._cues = MotionCues()
+        self._life = LifeDirector(robot)
         self._events: list[Event] = []
         self._last = clock.now()
         self.patience = BRAIN_LOST_AFTER
@@ -139,6 +141,7 @@ class BehaviorLoop:
             self._recover(error, now)
         for emission in self.runtime.advance(now, self._gather(now)):
             self._perform(emission.commands, now, step=emission.step)
+        self._life.tick(self.project, self.runtime.snapshot, now)
         return now
 
     @property

@@ -7,7 +7,7 @@ from lumen.app.narrator import Narrator
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.verbs import verb_of
-from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 
 WHO = "command"
 
@@ -53,5 +53,7 @@ def words(command: RobotCommand) -> str:
             return f"listens for {duration:g} s: {name}"
         case Aim():
             return "aims"
+        case Live(style):
+            return f"is alive: {style.name}"
         case _:
             return verb_of(command).transcript(command)

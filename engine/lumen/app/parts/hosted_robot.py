@@ -16,7 +16,7 @@ from lumen.language.commands import Rest, Start
 from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
 from lumen.robots.person_hold import StoppedBy
 from lumen.robots.remote import RobotHost
@@ -123,7 +123,7 @@ class HostedRobotPart(RobotPart):
     def _given(self, command: RobotCommand, id: str) -> None:
         """A line for each command that it is given, where no brain in this process has told of it."""
         self.foreign.given(command, id)
-        if BRAIN in self._others.parts or isinstance(command, Aim) or not self._is_brains(id):
+        if BRAIN in self._others.parts or isinstance(command, Aim | Live) or not self._is_brains(id):
             return
         if isinstance(command, Perform | Record):
             self._say(words(command))

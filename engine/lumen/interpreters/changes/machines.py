@@ -88,6 +88,9 @@ class _Comparison:
             yield self.change(
                 "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"
             )
+        if old.life != new.life:
+            how = f"is alive as `{new.life}` says" if new.life else "says no more how the robot is alive"
+            yield self.change("state", title, f"{title} {how} now" if new.life else f"{title} {how}")
         yield from self.buttons(old, new, title)
         if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
             target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"

@@ -7,7 +7,7 @@ from lumen.errors import RobotError, RobotLostError
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.ports import Aim, Battery, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
@@ -59,6 +59,8 @@ class NaoqiRobot:
         self._senses = {sense: SensePoller(sense, self._session, *self._sensors.reader(sense)) for sense in Sense}
 
     def start(self, id: str, command: RobotCommand) -> None:
+        if isinstance(command, Live):
+            return
         if not isinstance(command, Aim):
             self._executor.start(id, command)
             return

@@ -9,7 +9,7 @@ from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
-from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of
 from lumen.robots.cues import EventSink
@@ -70,7 +70,7 @@ class NaoqiSkills:
                 return CallSequence(self._volume(level))
             case PlaySound(file):
                 return CallSequence(self._sound(file), lambda: [self._post("ALAudioPlayer", "stopAll")])
-            case Stop() | Aim():
+            case Stop() | Aim() | Live():
                 raise BadCommandError(f"{type(command).__name__} does not last")
         if self.fallen:
             raise RobotRefusedError("the robot has fallen: `wake` it first")

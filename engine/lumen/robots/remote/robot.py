@@ -14,7 +14,7 @@ from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
-from lumen.ports import Aim, Bus, Message, Perform, Reading, RobotCommand, Sense
+from lumen.ports import Aim, Bus, Live, Message, Perform, Reading, RobotCommand, Sense
 from lumen.robots.command_codec import encode_command
 from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN_COMMAND
 from lumen.robots.robot_routes import (
@@ -108,6 +108,9 @@ class RemoteRobot:
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
             self._send(AIM_ROUTE, encode_command(command), AIM_TTL)
+            return
+        if isinstance(command, Live):
+            self._send(COMMAND_ROUTE, encode_command(command), COMMAND_TTL)
             return
         now = self._patience()
         whole = f"{self.session}.{id}"

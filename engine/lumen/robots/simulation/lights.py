@@ -32,6 +32,7 @@ class Lights:
         self._ids = {name.removeprefix(prefix): i for name, i in names.items() if name.startswith(prefix)}
         self._first = self._colours.copy()
         self._unlit: dict[int, NDArray[np.float32]] = {}
+        self._worn = ""
 
     def show(self, colours: Mapping[str, object]) -> None:
         """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
@@ -49,12 +50,29 @@ class Lights:
     def speak(self, speaking: bool) -> None:
         """Light the ears while the robot speaks; then they are as they were before."""
         for light in LIGHT_GROUPS["ears"]:
+            self._cover(light, _SPEAKING if speaking else None)
+
+    def wear_eyes(self, colour: str) -> None:
+        """Draw the eyes in this colour, `off` where it blinks, unless it is empty; nobody has lit them for that.
+
+        Another colour than `off` is worn only by eyes that nobody has lit.
+        """
+        if colour == self._worn:
+            return
+        self._worn = colour
+        for light in LIGHT_GROUPS["eyes"]:
             i = self._ids.get(light)
-            if i is not None and speaking:
-                self._unlit.setdefault(i, self._colours[i].copy())
-                self._colours[i] = np.array([*_SPEAKING, 1.0])
-            elif i in self._unlit:
-                self._colours[i] = self._unlit.pop(i)
+            lit = i is not None and not np.array_equal(self.shown(light), self._first[i, :3])
+            self._cover(light, rendered(colour) if colour == "off" or not lit else None)
+
+    def _cover(self, light: str, shown: tuple[float, float, float] | None) -> None:
+        """Draw a light like this over what it is, until it is uncovered with None."""
+        i = self._ids.get(light)
+        if i is not None and shown is not None:
+            self._unlit.setdefault(i, self._colours[i].copy())
+            self._colours[i] = np.array([*shown, 1.0])
+        elif i in self._unlit:
+            self._colours[i] = self._unlit.pop(i)
 
     def restore(self, groups: Iterable[str]) -> None:
         """Give the lights of these groups the colours that they had when the robot was switched on."""
@@ -65,6 +83,7 @@ class Lights:
     def reset(self) -> None:
         """As the robot looked when it was switched on."""
         self._unlit.clear()
+        self._worn = ""
         self._colours[:] = self._first
 
     def shown(self, light: str) -> NDArray[np.float32]:

@@ -70,7 +70,7 @@ class Motors:
     def sway(self, offsets: Mapping[str, float]) -> None:
         """Add that [rad] to the goals of these joints in the next period, and in that alone."""
         for name, angle in offsets.items():
-            self._sway[self.index[name]] = angle
+            self._sway[self.index[name]] += angle
 
     def stiffen(self, stiffness: float) -> None:
         """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""

@@ -6,6 +6,7 @@ from math import degrees
 from pathlib import Path
 
 from lumen.errors import RobotError, RobotRefusedError, UsageError
+from lumen.interpreters.life import vigour
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest
 from lumen.language.diagnostics import did_you_mean
@@ -13,8 +14,10 @@ from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.body_parts import ARMS, LEGS, WHOLE_BODY
 from lumen.robots.executor import Activity, Executor
+from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation.aim_controller import AimController
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
@@ -75,6 +78,8 @@ class SimulatedRobot:
         self.greatest_tilt = 0.0
         self._balance = BalanceController(self.motors)
         self._aiming = AimController(self.motors)
+        self._life = LifeLayer(body, seed)
+        self._vigour = dict.fromkeys(body.parts, 1.0)
         self._sensors = BodySensors(self.world, variation.noise if variation else 0.0, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
@@ -135,12 +140,16 @@ class SimulatedRobot:
             self._tick()
 
     def start(self, id: str, command: RobotCommand) -> None:
+        if isinstance(command, Live):
+            self._life.style = command.style
+            return
         if not isinstance(command, Aim):
             self._executor.start(id, command)
             return
         try:
             if self.awake and not self.fallen:
                 self._aiming.aim(command)
+                self._life.led(command.angles, self.time)
         except RobotError as error:
             _log.warning("an aim was refused: %s", error)
 
@@ -195,6 +204,8 @@ class SimulatedRobot:
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
                 self._pressed[sensor] = not before
+                if not before:
+                    self._life.touched(sensor, self.time)
                 by = Cause("person", sender=VISITOR) if sensor in touched else None
                 self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time, cause=by))
 
@@ -214,12 +225,24 @@ class SimulatedRobot:
         self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
         self._aiming.advance(CONTROL_PERIOD, self._free)
         self._sensors.feel()
-        if self.awake:
+        if not self.awake:
+            self._life.still()
+        else:
             gyro = self._sensors.gyro if self._skills.upright else (0.0, 0.0)
+            self._live(now)
             self.motors.drive(self._balance.trim(gyro), CONTROL_PERIOD)
         self.world.step()
         self._ticks += 1
         self._watch(self.time)
+
+    def _live(self, now: float) -> None:
+        """Move a little what nothing else moves; a robot that is not on its feet moves its head at most."""
+        owner = self._executor.owner
+        free = {part for part in WHOLE_BODY if not (self.fallen or owner(part))}
+        if not self._skills.upright:
+            free -= {ARMS, LEGS}
+        self.motors.sway(self._life.advance(now, CONTROL_PERIOD, free, self._vigour.__getitem__))
+        self.lights.wear_eyes(self._life.eyes(now))
 
     def _free(self, joint: str) -> bool:
         """Whether no command owns that joint and it has power."""
@@ -244,6 +267,13 @@ class SimulatedRobot:
             world.check()
             self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * CONTROL_PERIOD, now)
             self._exhaust()
+            self._calm()
+
+    def _calm(self) -> None:
+        """Live less where motors are warm, or the battery is low."""
+        for part, joints in self.body.parts.items():
+            warmest = max(self.condition.temperatures[self.motors.index[joint]] for joint in joints)
+            self._vigour[part] = vigour(float(warmest), self.condition.percentage)
 
     def _exhaust(self) -> None:
         """With an empty battery, rest at once: what is left is enough for the way to Crouch."""

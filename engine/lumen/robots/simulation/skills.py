@@ -7,7 +7,7 @@ from typing import assert_never
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
-from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of, row_of
 from lumen.robots.cues import EventSink
@@ -114,7 +114,7 @@ class SimulatedSkills:
                 return (
                     self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
                 )
-            case Stop() | Aim():
+            case Stop() | Aim() | Live():
                 raise BadCommandError(f"{type(command).__name__} does not last")
             case _:
                 assert_never(command)

@@ -1,0 +1,133 @@
+"""How alive the robot looks: how much of the shipped tour passes without any movement, by the joints on the bus.
+
+    python benchmarks/alive.py [--without] [STORY]
+
+A joint has moved where its angle, in steps of 0.1 degrees as encoders have them, is not that of the message before.
+`--without` plays the same tour with a robot that does nothing of its own accord.
+"""
+
+import argparse
+import platform
+from collections.abc import Sequence
+from dataclasses import replace
+from math import degrees
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.setup import set_up
+from lumen.buses.memory import MemoryBus
+from lumen.language.commands import Command, Play, Start
+from lumen.language.events import Event
+from lumen.ports import Message
+from lumen.robots.life_layer import LifeLayer
+from lumen.runtime.loop import Observer
+
+ROOT = Path(__file__).parents[1]
+STEP = 0.1
+"""What an encoder tells apart [degrees]."""
+
+TICKS = 20_000
+
+
+class Movement:
+    """Adds up for how long none of some joints moved, while the robot was awake [s]."""
+
+    def __init__(self, chosen: Sequence[str] = ()) -> None:
+        self.chosen = chosen
+        self.time = self.still = self.longest = 0.0
+        self._last: tuple[float, tuple[int, ...]] | None = None
+        self._since = 0.0
+
+    def see(self, body: dict[str, Any], counts: bool) -> None:
+        """A message of the sense `joint`; it `counts` where the robot is awake, and in what is measured."""
+        at, angles = float(body["time"]), dict(zip(body["name"], body["angle"], strict=True))
+        stands = tuple(round(degrees(angles[name]) / STEP) for name in (self.chosen or angles))
+        if not counts:
+            self._last, self._since = None, at
+            return
+        if self._last is not None:
+            passed = at - self._last[0]
+            self.time += passed
+            if stands == self._last[1]:
+                self.still += passed
+                self.longest = max(self.longest, at - self._since)
+            else:
+                self._since = at
+        else:
+            self._since = at
+        self._last = at, stands
+
+    def __str__(self) -> str:
+        share = 100 * self.still / self.time if self.time else 0.0
+        return f"{share:5.1f} % of {self.time:.0f} s without movement, {self.longest:.2f} s at most"
+
+
+class Motions(Observer):
+    """Whether a motion plays."""
+
+    def __init__(self) -> None:
+        self.playing: set[str] = set()
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(id, Play()):
+                self.playing.add(id)
+
+    def answered(self, event: Event) -> None:
+        self.playing.discard(event.name.partition(".command.")[2])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("story", nargs="?", default="visitor")
+    parser.add_argument("--without", action="store_true")
+    given = parser.parse_args()
+    project = lumen.load(ROOT)
+    if given.without:
+        project = replace(project, life={})
+    head, parts = project.body.parts["head"], project.body.parts
+    trunk = [joint for part in ("arms", "legs") for joint in parts[part]]
+    whole, free_head, free_body = Movement(), Movement(head), Movement(trunk)
+    bus, motions = MemoryBus(), Motions()
+
+    def see(message: Message) -> None:
+        awake = max(message.body["stiffness"]) > 0.5
+        whole.see(message.body, awake)
+        for part in (free_head, free_body):
+            part.see(message.body, awake and not motions.playing)
+
+    story = project.stories[given.story]
+    setup = set_up("simulation", project, "max", story)
+    bus.subscribe(project.routes["joint"].key_for(project.robot), see)
+    begin = process_time()
+    with Exhibition(project, setup, bus, story) as exhibition:
+        exhibition.node.loop.observers.append(motions)
+        exhibition.start()
+        while not exhibition.node.player.finished:
+            exhibition.tick()
+    how = "without life" if given.without else "alive"
+    print(f"{given.story}, simulated, {how}; {platform.machine()}, Python {platform.python_version()}")
+    print(f"all joints               {whole}")
+    print(f"arms and legs, no motion {free_body}")
+    print(f"head, no motion          {free_head}")
+    print(f"CPU of the whole         {process_time() - begin:.1f} s")
+    _cost(project)
+
+
+def _cost(project: lumen.Project) -> None:
+    """What a control period costs."""
+    for name, style in project.life.items():
+        layer = LifeLayer(project.body)
+        layer.style = style
+        free = frozenset(project.body.parts)
+        begin = process_time()
+        for tick in range(TICKS):
+            layer.advance(tick / 100, 0.01, free, lambda _part: 1.0)
+        print(f"a tick of 10 ms, {name:<10} {1e6 * (process_time() - begin) / TICKS:5.1f} us of CPU")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,9 @@
+"""When the eyes are closed."""
+
+from lumen.interpreters.life.chance import moments
+from lumen.language.life import Blinks
+
+
+def eyes_closed(blinks: Blinks, seed: int, t: float) -> bool:
+    """Whether the robot blinks at `t` [s]."""
+    return moments(seed, "blink", blinks.every, t, blinks.length) is not None

@@ -1,0 +1,66 @@
+"""Where the head turns of its own accord: glances, nods, and where somebody touched or spoke."""
+
+from typing import NamedTuple
+
+from lumen.interpreters.life.chance import chance, moments
+from lumen.language.life import Glances, Nods
+
+HEAD_YAW, HEAD_PITCH = "HeadYaw", "HeadPitch"
+
+TURN_TIME = 0.5
+"""How long the head takes to where it glances, and back [s]."""
+
+NOD_TIME = 0.7
+"""How long a nod takes [s]."""
+
+
+class Attention(NamedTuple):
+    """Something at `yaw` to the left and `pitch` down [rad, of the head] asks to be looked at since `at` [s]."""
+
+    yaw: float
+    pitch: float
+    at: float
+
+
+TOUCHED = {
+    "FrontTactil": (0.0, -0.25), "MiddleTactil": (0.0, -0.3), "RearTactil": (0.0, -0.35),
+    "HandLeftBack": (0.6, 0.3), "HandLeftLeft": (0.6, 0.3), "HandLeftRight": (0.6, 0.3),
+    "HandRightBack": (-0.6, 0.3), "HandRightLeft": (-0.6, 0.3), "HandRightRight": (-0.6, 0.3),
+    "LeftBumper": (0.25, 0.4), "RightBumper": (-0.25, 0.4), "ChestButton": (0.0, 0.35),
+}  # fmt: skip
+"""Where the head turns to somebody who touches NAO there: yaw to the left, pitch down [rad]."""
+
+
+def glance(glances: Glances, seed: int, t: float) -> tuple[float, float]:
+    """How far the head is turned at `t` [s] by glances: (yaw, pitch) [rad]."""
+    if (now := moments(seed, "glance", glances.every, t, _length(glances))) is None:
+        return 0.0, 0.0
+    number, since = now
+    part = pulse(since, _length(glances))
+    yaw, pitch = (2 * chance(seed, way, number) - 1 for way in ("glance yaw", "glance pitch"))
+    return part * glances.yaw * yaw, part * glances.pitch * pitch
+
+
+def nod(nods: Nods, seed: int, t: float) -> float:
+    """How far down the head is at `t` [s] by nods [rad]."""
+    now = moments(seed, "nod", nods.every, t, NOD_TIME)
+    return 0.0 if now is None else nods.pitch * pulse(now[1], NOD_TIME)
+
+
+def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[float, float]:
+    """How far the head is turned at `t` [s] to what asks for attention, for as long as that `lasts` [s]."""
+    if attention is None or not 0.0 <= t - attention.at < lasts:
+        return 0.0, 0.0
+    part = pulse(t - attention.at, lasts)
+    return part * attention.yaw, part * attention.pitch
+
+
+def pulse(since: float, length: float) -> float:
+    """From 0 to 1 and back within `length` [s], without a jerk; `since` [s] its beginning."""
+    turn = min(TURN_TIME, length / 2)
+    u = max(0.0, min(1.0, since / turn, (length - since) / turn))
+    return u * u * u * (10 + u * (6 * u - 15))
+
+
+def _length(glances: Glances) -> float:
+    return min(glances.hold + 2 * TURN_TIME, glances.every)

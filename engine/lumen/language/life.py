@@ -1,0 +1,77 @@
+"""What a robot does while nothing else moves it, as `motions/life/NAME.yaml` says it: frozen values."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lumen.language.diagnostics import NodePath
+
+STILL = "still"
+"""The style in which a robot does nothing of its own accord: it needs no file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sway:
+    """Joints that go to and fro together around where they stand, by `joints` [rad; hands 0..1] at most.
+
+    Once in `period` [s]; where it `wanders`, never twice in the same way.
+    """
+
+    name: str
+    period: float
+    joints: Mapping[str, float]
+    wanders: bool = False
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Glances:
+    """Once in `every` [s] the head turns by at most `yaw` and `pitch` [rad] for `hold` [s], then back."""
+
+    every: float
+    yaw: float
+    pitch: float
+    hold: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Nods:
+    """Once in `every` [s] the head nods, `pitch` [rad] deep."""
+
+    every: float
+    pitch: float
+
+
+@dataclass(frozen=True, slots=True)
+class Blinks:
+    """Once in `every` [s] the eyes go dark for `length` [s]."""
+
+    every: float
+    length: float = 0.15
+
+
+@dataclass(frozen=True, slots=True)
+class LifeStyle:
+    """A way to be alive. `attention` [s] is how long it looks where it was touched or spoken to; 0 for not at all.
+
+    `eyes` is the colour of the eyes while nothing else lights them, empty where they stay as they are.
+    """
+
+    name: str
+    sways: tuple[Sway, ...] = ()
+    glances: Glances | None = None
+    nods: Nods | None = None
+    blinks: Blinks | None = None
+    attention: float = 0.0
+    eyes: str = ""
+
+    @property
+    def amplitudes(self) -> Mapping[str, float]:
+        """How far each joint sways at most [rad; hands 0..1]."""
+        found: dict[str, float] = {}
+        for sway in self.sways:
+            for joint, angle in sway.joints.items():
+                found[joint] = found.get(joint, 0.0) + abs(angle)
+        return found
+
+
+STILL_STYLE = LifeStyle(STILL)

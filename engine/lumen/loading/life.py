@@ -1,0 +1,80 @@
+"""A style of life, `motions/life/NAME.yaml`, from its plain data to a `LifeStyle`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.life import STILL, Blinks, Glances, LifeStyle, Nods, Sway
+from lumen.language.robots import Body
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.poses import UNKNOWN_JOINT
+from lumen.loading.units import ANGLES, BAD_DURATION, seconds
+
+LIFE_FOLDER = "motions/life"
+SHORTEST_PERIOD = 0.1
+"""What comes again and again in a life takes at least so long [s]."""
+
+RESERVED_LIFE = Code("reserved-life", "motions", ERROR, "a style of life is called `still`")
+
+
+def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> LifeStyle | None:
+    """The style that the data of `motions/life/NAME.yaml` describes, None where that is no map."""
+    if not isinstance(data, Mapping) or report.broken(("units", "angle")):
+        return None
+    if name == STILL:
+        hint = "give the file another name, or delete it"
+        report(RESERVED_LIFE, (), "`still` is the style in which the robot does nothing: it has no file", hint=hint)
+    return _LifeReader(report, body, ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0)).read(data, name)
+
+
+class _LifeReader:
+    """Reads one file; `factor` is what one of its angles is in [rad]."""
+
+    def __init__(self, report: DocumentReport, body: Body, factor: float) -> None:
+        self._report, self._body, self._factor = report, body, factor
+
+    def read(self, data: Mapping[str, Any], name: str) -> LifeStyle:
+        glances, nods, blinks = (data.get(key) or {} for key in ("glances", "nods", "blinks"))
+        return LifeStyle(
+            name,
+            tuple(self._sway(key, each) for key, each in (data.get("sways") or {}).items()),
+            Glances(
+                self._every("glances", glances),
+                self._factor * glances["yaw"],
+                self._factor * glances["pitch"],
+                seconds(glances.get("hold", "1s")) or 0.0,
+            )
+            if glances
+            else None,
+            Nods(self._every("nods", nods), self._factor * nods["pitch"]) if nods else None,
+            Blinks(self._every("blinks", blinks), seconds(blinks.get("length", "150ms")) or 0.0) if blinks else None,
+            seconds(data.get("attention")) or 0.0,
+            data.get("eyes", ""),
+        )
+
+    def _sway(self, name: str, data: Mapping[str, Any]) -> Sway:
+        where = ("sways", name)
+        period = self._time((*where, "period"), data["period"])
+        return Sway(name, period, self._joints(data["joints"], (*where, "joints")), data.get("wanders", False), where)
+
+    def _joints(self, joints: Mapping[str, float], path: NodePath) -> dict[str, float]:
+        found = {}
+        for joint, value in joints.items():
+            if joint not in self._body.joints:
+                hint = did_you_mean(joint, self._body.joints, f"{self._body.name} has")
+                message = f"there is no joint `{joint}`"
+                self._report(UNKNOWN_JOINT, (*path, joint), message, hint=hint, key=True, cause=f"joint {joint}")
+            else:
+                found[joint] = value * (1.0 if joint in self._body.hands else self._factor)
+        return found
+
+    def _every(self, key: str, data: Mapping[str, Any]) -> float:
+        return self._time((key, "every"), data["every"])
+
+    def _time(self, path: NodePath, text: str) -> float:
+        """A time between two of a kind [s], which is never too short to count with."""
+        time = seconds(text) or 0.0
+        if time < SHORTEST_PERIOD:
+            hint = f"write at least {1000 * SHORTEST_PERIOD:g}ms"
+            self._report(BAD_DURATION, path, f"`{text}` is too short for what comes again and again", hint=hint)
+        return max(time, SHORTEST_PERIOD)

@@ -1,0 +1,113 @@
+"""The robot's life beneath its commands: small movements of the joints that nothing else moves.
+
+A command never notices it: it is added to where joints are wanted, and taken back where a command begins.
+"""
+
+from collections.abc import Callable, Collection, Mapping
+
+from lumen.interpreters.life import (
+    HEAD_PITCH,
+    HEAD_YAW,
+    SPEED_SHARE,
+    Attention,
+    eyes_closed,
+    glance,
+    look_towards,
+    nod,
+    sway,
+)
+from lumen.interpreters.life.looking import TOUCHED
+from lumen.language.life import STILL_STYLE, LifeStyle
+from lumen.language.robots import Body
+from lumen.robots.body_parts import ARMS, HEAD, LEGS, part_of
+
+LIFE_PERIOD = 0.04
+"""How often it is computed where each joint is wanted [s]; in between joints go on evenly."""
+
+SETTLING = 0.25
+"""How long joints take to a movement that begins or ends at once [s]: the time constant of their way."""
+
+LED_FOR = 1.0
+"""How long after an aim the head belongs to who aimed it [s]."""
+
+_REACHED = 1e-4
+
+
+class LifeLayer:
+    """How far each joint is from where commands want it [rad; hands 0..1].
+
+    It depends on the seed, on the times and calls since the beginning, and on nothing else. What it remembers is the
+    style, what asked for attention last, when the head was aimed last, and where the joints are on their way.
+    """
+
+    def __init__(self, body: Body, seed: int = 0) -> None:
+        self.style: LifeStyle = STILL_STYLE
+        self._seed, self._part = seed, part_of(body)
+        self._speeds = {joint.name: SPEED_SHARE * joint.speed for joint in body.joints.values()}
+        self._attention: Attention | None = None
+        self._led_at = -LED_FOR
+        self._wanted: Mapping[str, float] = {}
+        self._computed: tuple[float, object] = (-LIFE_PERIOD, None)
+        self._offsets: dict[str, float] = {}
+
+    def touched(self, sensor: str, now: float) -> None:
+        """Somebody touched the robot there: it looks, where the style says so."""
+        if sensor in TOUCHED:
+            self._attention = Attention(*TOUCHED[sensor], now)
+
+    def led(self, joints: Collection[str], now: float) -> None:
+        """Somebody aims these joints: of the head they have it for a while."""
+        if HEAD_YAW in joints or HEAD_PITCH in joints:
+            self._led_at = now
+
+    def still(self) -> None:
+        """The motors are off: nothing moves."""
+        self._offsets.clear()
+
+    def advance(
+        self, now: float, dt: float, free: Collection[str], vigour: Callable[[str], float]
+    ) -> Mapping[str, float]:
+        """The offsets at `now` [s], `dt` [s] after the last ones; see `wanted`."""
+        computed, found = self._computed
+        if now >= computed + LIFE_PERIOD or found != (free, self.style):
+            self._wanted, self._computed = self.wanted(now, free, vigour), (now, (free, self.style))
+        for joint in (*self._offsets, *(self._wanted.keys() - self._offsets.keys())):
+            offset, goal = self._offsets.get(joint, 0.0), self._wanted.get(joint, 0.0)
+            most = self._speeds[joint] * dt
+            offset += max(-most, min(most, (goal - offset) * min(1.0, dt / SETTLING)))
+            if goal == 0.0 and abs(offset) < _REACHED:
+                self._offsets.pop(joint, None)
+            else:
+                self._offsets[joint] = offset
+        return self._offsets
+
+    def wanted(self, now: float, free: Collection[str], vigour: Callable[[str], float]) -> dict[str, float]:
+        """Where the offsets go to at `now` [s], without the way there.
+
+        `free` are the parts of the body that nothing else moves, `vigour` how lively each may be (0 to 1). Arms and
+        legs live only where the legs are free, too: a robot that walks or sits down needs all of its balance.
+        """
+        alive = {part for part in free if part == HEAD or LEGS in free}
+        found = {j: angle for j, angle in sway(self.style, self._seed, now).items() if self._part.get(j) in alive}
+        if HEAD in alive:
+            for joint, angle in zip((HEAD_YAW, HEAD_PITCH), self._head(now), strict=True):
+                if joint in self._part:
+                    found[joint] = found.get(joint, 0.0) + angle
+        levels = {part: vigour(part) for part in (HEAD, ARMS, LEGS) if part in alive}
+        return {joint: angle * levels[self._part[joint]] for joint, angle in found.items()}
+
+    def eyes(self, now: float) -> str:
+        """The colour of the eyes at `now` [s]: `off` where it blinks, empty where they stay as they are."""
+        blinks = self.style.blinks
+        return "off" if blinks and eyes_closed(blinks, self._seed, now) else self.style.eyes
+
+    def _head(self, now: float) -> tuple[float, float]:
+        """How far the head is turned and tilted; who leads it is not disturbed but by nods."""
+        style = self.style
+        down = nod(style.nods, self._seed, now) if style.nods else 0.0
+        if now < self._led_at + LED_FOR:
+            return 0.0, down
+        yaw, pitch = look_towards(self._attention, style.attention, now)
+        if style.glances and not (yaw or pitch):
+            yaw, pitch = glance(style.glances, self._seed, now)
+        return yaw, pitch + down

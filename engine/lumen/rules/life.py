@@ -1,0 +1,89 @@
+"""Styles of life: the states that name one, and what these ask of the robot's joints."""
+
+from collections.abc import Iterator
+
+from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW, PEAK_SLOPE, SPEED_SHARE
+from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.life import STILL, LifeStyle, Sway
+from lumen.language.robots import Body
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.life import LIFE_FOLDER
+from lumen.loading.units import ANGLES
+from lumen.rules.lookups import References, value_at
+
+LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than the robot can bear")
+LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint faster than it should")
+
+POSTURE = "Stand"
+"""The posture around which a robot lives."""
+
+MAX_LEG_SWAY = 0.05
+"""How far a joint of the legs may sway [rad]: the weight stays within the soles, whatever the others do."""
+
+_Fault = tuple[Code, NodePath, str, str]
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report styles that no file has, and sways that a joint can't follow, or that could tip the robot."""
+    references = References(draft)
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for state in machine.states.values():
+            if state.life and state.life != STILL:
+                references.look_up(report, (*state.where, "life"), "life", state.life)
+    if draft.body is None:
+        return
+    for name, style in draft.life.items():
+        report = draft.report(LIFE_FOLDER, name)
+        unit = value_at(report, ("units", "angle")) or "rad"
+        for code, path, message, hint in _Judge(style, draft.body, unit).faults():
+            report(code, path, message, hint)
+
+
+class _Judge:
+    """Looks at one style; `unit` is that of the angles in its file."""
+
+    def __init__(self, style: LifeStyle, body: Body, unit: str) -> None:
+        self._style, self._body, self._unit = style, body, unit
+
+    def faults(self) -> Iterator[_Fault]:
+        for sway in self._style.sways:
+            for joint in sway.joints:
+                yield from self._sway(sway, joint)
+        if glances := self._style.glances:
+            yield from self._head(HEAD_YAW, glances.yaw, ("glances", "yaw"))
+            yield from self._head(HEAD_PITCH, glances.pitch, ("glances", "pitch"))
+        if nods := self._style.nods:
+            yield from self._head(HEAD_PITCH, nods.pitch, ("nods", "pitch"))
+
+    def _sway(self, sway: Sway, joint: str) -> Iterator[_Fault]:
+        path = (*sway.where, "joints", joint)
+        speed, most = PEAK_SLOPE * abs(sway.joints[joint]) / sway.period, SPEED_SHARE * self._body.joints[joint].speed
+        if speed > most:
+            message = f"`{joint}` would turn at up to {self._shown(joint, speed)}/s: too fast for a sway"
+            longest = sway.period * speed / most
+            yield LIFE_TOO_FAST, path, message, f"a period of {longest:.1f}s, or a smaller angle"
+            return
+        whole = self._style.amplitudes[joint]
+        if joint in self._body.parts.get("legs", ()) and whole > MAX_LEG_SWAY:
+            message = f"`{joint}` would sway by {self._shown(joint, whole)} to either side: that can tip the robot"
+            yield LIFE_TOO_FAR, path, message, f"at most {self._shown(joint, MAX_LEG_SWAY)}, of all sways together"
+            return
+        yield from self._reach(joint, whole, path)
+
+    def _head(self, joint: str, angle: float, path: NodePath) -> Iterator[_Fault]:
+        if joint in self._body.joints:
+            yield from self._reach(joint, angle + self._style.amplitudes.get(joint, 0.0), path)
+
+    def _reach(self, joint: str, angle: float, path: NodePath) -> Iterator[_Fault]:
+        """Whether it can go so far to either side of where it stands."""
+        limits, stands = self._body.joints[joint], self._body.postures.get(POSTURE, {}).get(joint, 0.0)
+        room = max(0.0, min(stands - limits.minimum, limits.maximum - stands))
+        if angle > room:
+            message = f"`{joint}` would go {self._shown(joint, angle)} to either side of {POSTURE}, beyond its limit"
+            yield LIFE_TOO_FAR, path, message, f"at most {self._shown(joint, room)}"
+
+    def _shown(self, joint: str, angle: float) -> str:
+        if joint in self._body.hands:
+            return f"{angle:.2g}"
+        return f"{angle / ANGLES[self._unit]:.2g} {self._unit}"

@@ -1,0 +1,78 @@
+"""A simulated robot that lives: it stands as firmly as before, and commands do not notice."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lumen
+from lumen.language.commands import Rest
+from lumen.ports import Live, Perform
+from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.subject import subject
+
+ROOT = Path(__file__).parents[2]
+PROJECT = lumen.load(ROOT)
+MODELS = ROOT / "models"
+
+
+def robot(style: str = "lively") -> SimulatedRobot:
+    made = SimulatedRobot(PROJECT.body, MODELS, "hall.xml")
+    made.start("", Live(PROJECT.life[style]))
+    return made
+
+
+def test_it_moves_and_does_not_lean() -> None:
+    nao = robot()
+    nao.advance(1.0)
+    last, seen = nao.world.angles.copy(), []
+    for _ in range(8):
+        nao.advance(0.5)
+        seen.append(float(np.abs(nao.world.angles - last).max()))
+        last = nao.world.angles.copy()
+    assert min(seen) > 0.0017
+    assert nao.greatest_tilt < 3.0
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("style", sorted(PROJECT.life))
+@pytest.mark.parametrize("brother", range(1, 6))
+def test_no_style_tips_any_robot(style: str, brother: int) -> None:
+    nao = subject(PROJECT.body, MODELS, "hall.xml", brother)
+    nao.start("", Live(PROJECT.life[style]))
+    nao.advance(40.0)
+    assert nao.greatest_tilt < 4.0
+    assert not nao.fallen
+
+
+def test_a_motion_has_its_joints_to_itself_and_ends_as_without_life() -> None:
+    nao, motion = robot(), PROJECT.motions["goodbye"]
+    nao.advance(2.0)
+    nao.start("wave", Perform(motion))
+    nao.advance(2.0)  # past the moment in which life lets go
+    for _ in range(20):
+        nao.advance(0.05)
+        inside = np.clip(nao.motors.goal, nao.motors.envelope.low, nao.motors.envelope.high)
+        arms = [nao.motors.index[joint] for joint in PROJECT.body.parts["arms"]]
+        assert np.abs(nao.motors.command - inside)[arms].max() < 1e-3
+    nao.advance(motion.duration)
+    assert any(event.name == "done.command.wave" for event in nao.poll())
+
+
+def test_a_robot_that_rests_is_still() -> None:
+    nao = robot()
+    nao.start("rest", Rest())
+    nao.advance(8.0)
+    assert not nao.awake
+    told = nao.motors.command.copy()
+    nao.advance(1.0)
+    assert np.array_equal(nao.motors.command, told)
+
+
+def test_the_same_seed_is_the_same_run() -> None:
+    def run() -> list[float]:
+        nao = robot("calm")
+        nao.advance(2.0)
+        return list(nao.world.angles)
+
+    assert run() == run()
