@@ -136,7 +136,7 @@ def leave(page: Stream) -> int:
 
 @pytest.mark.slow
 def test_an_hour_of_it(busy_house: House) -> None:
-    lived(busy_house, 10_000, 40, 3)
+    lived(busy_house, 7_000, 28, 2)
 
 
 @pytest.mark.soak

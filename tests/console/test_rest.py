@@ -154,14 +154,14 @@ def pressed(house: House, draw: Random, troubles: tuple[Trouble, ...], presses: 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
-def test_rest_at_15_moments_on_the_local_bus(house: House, draw: Random) -> None:
-    pressed(house, draw, WITHOUT_BROKER, 15)
+def test_rest_at_10_moments_on_the_local_bus(house: House, draw: Random) -> None:
+    pressed(house, draw, WITHOUT_BROKER, 10)
 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
-def test_rest_at_20_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
-    pressed(house_on_a_broker, draw, WITH_BROKER, 20)
+def test_rest_at_10_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
+    pressed(house_on_a_broker, draw, WITH_BROKER, 10)
 
 
 @pytest.mark.soak

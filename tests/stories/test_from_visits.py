@@ -25,8 +25,18 @@ from lumen.runtime.inputs.redaction import redact
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = {"tour": ROOT, "museum": ROOT / "examples" / "museum", "minimal": ROOT / "examples" / "minimal"}
+LONG = {
+    *(
+        ("tour", story)
+        for story in ("endless_motion", "endless_song", "endless_speech", "silent_visitors", "slow_speech")
+    ),
+    *(("museum", story) for story in ("closing", "german")),
+}
+"""Stories of many minutes, or with several visits: `make soak` tries them, too."""
 SHIPPED = [
-    (name, file.stem) for name, at in EXAMPLES.items() for file in sorted((at / "behaviors/stories").glob("*.yaml"))
+    pytest.param(name, file.stem, marks=[pytest.mark.soak] if (name, file.stem) in LONG else [])
+    for name, at in EXAMPLES.items()
+    for file in sorted((at / "behaviors/stories").glob("*.yaml"))
 ]
 
 
