@@ -30,10 +30,10 @@ class Collector:
         return self.bodies
 
 
-def until(condition: Callable[[], object], timeout: float = 20.0) -> None:
-    """Return once the condition holds; fails after `timeout` [s]."""
+def until(condition: Callable[[], object], timeout: float = 20.0, *, every: float = 0.01) -> None:
+    """Return once the condition holds, which is looked at `every` so often [s]; fails after `timeout` [s]."""
     deadline = time.monotonic() + timeout
     pause = threading.Event()
     while not condition():
         assert time.monotonic() < deadline, f"it did not happen within {timeout:g} s"
-        pause.wait(0.01)
+        pause.wait(every)

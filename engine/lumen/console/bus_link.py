@@ -13,6 +13,7 @@ from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.2
 """How often it is looked whether the bus is still there [s]."""
+AWAY = "the broker is away: nothing that is sent reaches anybody until it is back"
 RETRY_PERIOD = 0.5
 """How long after a bus could not be reached it is tried again [s]."""
 
@@ -38,7 +39,7 @@ class BusLink:
         changed: Callable[[], None],
     ) -> None:
         self.reached: Reached | None = None
-        self.trouble = "the bus has not been reached yet"
+        self._trouble = "the bus has not been reached yet"
         self._reach, self._patterns = reach, patterns
         self._heard, self._answered, self._returned, self._changed = heard, answered, returned, changed
         self._ending = threading.Event()
@@ -48,6 +49,11 @@ class BusLink:
     def up(self) -> bool:
         """Whether the bus takes messages now."""
         return self.reached is not None and not getattr(self.reached.bus, "away", False)
+
+    @property
+    def trouble(self) -> str:
+        """Why the bus takes no messages; empty where it does."""
+        return AWAY if self.reached is not None and not self.up else self._trouble
 
     @property
     def bus(self) -> Bus | None:
@@ -71,7 +77,7 @@ class BusLink:
                 continue
             try:
                 self._subscribe(reached)
-                self.reached, self.trouble = reached, ""
+                self.reached, self._trouble = reached, ""
                 self._changed()
                 self._watch(reached.bus)
             except BusError as error:
@@ -102,6 +108,6 @@ class BusLink:
             self._say("the exhibition has ended")
 
     def _say(self, trouble: str) -> None:
-        if trouble != self.trouble:
-            self.trouble = trouble
+        if trouble != self._trouble:
+            self._trouble = trouble
             _log.info("%s", trouble)

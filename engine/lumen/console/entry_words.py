@@ -5,13 +5,15 @@ from typing import Any
 
 from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import HOWS
+from lumen.language.events import CLOCK_SET
 
 MAX_TEXT = 300
 SAYS, DOES, STATE = "says", "does", "state"
+ERROR = "error."
 PERSON = "person"
 MARK, NOTE = "mark", "note"
-FACE, ENDS = "face", ("done.command.", "cancelled.command.", "lost.command.")
-"""What comes many times a second, and after each command: told where something comes of it."""
+OFTEN, ENDS = ("face", CLOCK_SET), ("done.command.", "cancelled.command.", "lost.command.")
+"""What comes again and again, and after each command: told where something comes of it."""
 JUMPS = {
     "start": "the behaviour begins",
     "reload": "other files run from here on",
@@ -55,7 +57,7 @@ def text_of(entry: Mapping[str, Any]) -> str:
     came, did = _came(entry), [*_did(entry)]
     if came.startswith(ENDS):
         return ", ".join(did)[:MAX_TEXT]
-    if not did and came == FACE:
+    if not did and entry.get("heard") in OFTEN:
         return ""
     return f"{came}: {', '.join(did)}"[:MAX_TEXT] if did else came[:MAX_TEXT]
 
@@ -84,6 +86,8 @@ def _came(entry: Mapping[str, Any]) -> str:
             return f"{name} “{words}”{by}"
         case {"state": str(state)} if how == "goto":
             return f"sent to {state}{by}"
+        case {"reason": str(reason)} if reason and name.startswith(ERROR):
+            return f"{name}: {reason}{by}"
         case _:
             return ("time is up" if how == "timer" else name) + by
 

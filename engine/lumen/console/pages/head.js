@@ -1,26 +1,28 @@
 // What stands above each page: which robot, whether the page is live, where one may go, and how it is shown.
 import { command } from "./commands.js";
 import { live } from "./live.js";
+import { lostBody, waitsForResume } from "./now/troubles.js";
 import { ROLES, askPin, leave, may, mode, show } from "./session.js";
 import { Dialog, LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useState } from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
 
 function Connection({ robot }) {
-  const state = live.state !== "live" ? live.state : robot && robot.connected === false ? "robot-away" : "live";
+  const state = live.state !== "live" ? live.state : robot?.connected === false ? "robot-away" : robot && lostBody(robot) ? "robot-lost" : "live";
   return html`<p class="connection" data-state=${state} role="status"><span class="dot" aria-hidden="true"></span>${t(`connection.${state}`)}
-    ${state === "live" ? null : html`<span aria-hidden="true"> <${Since} at=${new Date(live.since).toISOString()} skew=${0} /></span>`}</p>`;
+    ${state === "live" || state === "robot-lost" ? null : html`<span aria-hidden="true"> <${Since} at=${new Date(live.since).toISOString()} skew=${0} /></span>`}</p>`;
 }
 
 function Resume({ robot }) {
   const [asking, ask] = useState(false);
-  if (!robot?.stopped) return null;
+  const waits = robot && waitsForResume(robot), by = robot?.stopped_by ?? "?";
+  if (!robot?.stopped && !waits) return null;
   const go = () => { ask(false); command(robot.robot, "resume"); };
-  return html`<div class="stopped"><p role="status"><strong>${t("stopped")}</strong> ${t("stopped.by", { by: robot.stopped_by ?? "?" })}</p>
+  return html`<div class="stopped"><p role="status"><strong>${t(waits ? "waits" : "stopped")}</strong> ${t(waits ? "waits.more" : "stopped.by", { by })}</p>
     ${may("operator") && html`<button type="button" class="resume" onClick=${() => ask(true)}>${t("resume")}</button>`}
     ${asking && html`<${Dialog} title=${t("resume.ask", { name: robot.robot })} onClose=${() => ask(false)}
       actions=${html`<button type="button" class="strong" onClick=${go}>${t("resume")}</button>`}>
-      <p>${t("resume.by", { by: robot.stopped_by ?? "?" })}</p><p>${t("resume.room")}</p></${Dialog}>`}</div>`;
+      ${!waits && html`<p>${t("resume.by", { by })}</p>`}<p>${t("resume.room")}</p></${Dialog}>`}</div>`;
 }
 
 function Theme() {

@@ -26,7 +26,7 @@
   const LIMIT = 1000, SILENT = 12000, TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
   const NEW = 5000; // [ms] after a press what a robot says of itself is newer than it
   const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
-  const ALARMS = ["unsent", "failed", "unknown"];
+  const ALARMS = ["unsent", "failed", "unknown"], RESTS = ["finished", "after_all"];
   const PRESSED = "lumen.pressed", FRESH = 10000; // a press that the next page is to tell of, for so long [ms]
   const root = document.documentElement;
 
@@ -118,10 +118,11 @@
       });
     }
 
-    heed(robots) { // what they say of themselves: who was said not to rest may do so after all
-      if (!this.told || this.said.hidden || !ALARMS.includes(this.told[0]) || Date.now() - this.sent.at < NEW) return;
+    heed(robots) { // what they say of themselves: who was said not to rest may do so after all, and who rested may move again
+      if (!this.sent || this.said.hidden || Date.now() - this.sent.at < NEW) return;
       const meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
-      if (meant.length && meant.every((one) => one.stopped && one.connected)) this.show("after_all");
+      if (ALARMS.includes(this.told[0])) { if (meant.length && meant.every((one) => one.stopped && one.connected)) this.show("after_all"); }
+      else if (RESTS.includes(this.told[0]) && meant.some((one) => !one.stopped && one.connected)) this.said.hidden = true;
     }
 
     hint() { // after one Escape, for as long as the second counts; it hides nothing that was told

@@ -3,10 +3,11 @@ import { live } from "./live.js";
 import { Since, fixed, html, percent, t, useRedraw } from "./ui.js";
 import { LOW } from "./now/body.js";
 import { innermost } from "./now/states.js";
+import { lostBody } from "./now/troubles.js";
 
 function Tile({ robot }) {
   const { robot: name, saying, skew } = robot, link = `/robot/${encodeURIComponent(name)}`;
-  const state = robot.connected === false ? "away" : robot.stopped ? "stopped" : "well";
+  const state = robot.connected === false ? "away" : lostBody(robot) ? "lost" : robot.stopped ? "stopped" : "well";
   const leaf = innermost(robot.states ?? []);
   return html`<li class="tile" data-state=${state} aria-label=${name}>
     <div class="tile-head"><h2><a href=${link}>${name}</a></h2><rest-button robot=${name}></rest-button></div>

@@ -13,10 +13,10 @@ function Findings({ findings }) {
       <p><b>${one.message}</b></p>${one.hint && html`<p>${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
 }
 
-function Changes({ report }) {
+function Changes({ report, refused }) {
   const changes = report.changes ?? [];
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: report.risk })}</span>`}>
-    ${changes.length ? html`<ul class="diff">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(report.verdict === "refused" ? "files.unread" : "files.nothing")}</p>`}
+    ${changes.length ? html`<ul class="diff">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(refused ? "files.unread" : "files.nothing")}</p>`}
     ${report.restart?.length > 0 && html`<ul class="diff">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
 }
 
@@ -54,8 +54,8 @@ export default function FilesPage({ name }) {
   const report = files.last ?? files, verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
-        ${" "}${files.last?.reason ?? ""} ${report.hint ?? ""}</p>
+        ${" "}${files.last?.reason ?? ""} ${report.hint ?? ""} ${verdict === "refused" && t("files.goes.on")}</p>
       ${files.last?.lines?.length > 0 && html`<ul class="lines">${files.last.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
       <p class="quiet">${files.reason ?? ""}</p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
-    <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report.changes ? report : files} /><${Replay} replay=${files.replay} /></div>`;
+    <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report.changes ? report : files} refused=${verdict === "refused"} /><${Replay} replay=${files.replay} /></div>`;
 }

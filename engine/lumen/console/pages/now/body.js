@@ -1,6 +1,7 @@
 // How the robot and what runs it are: power, heat, distance, time, processes, modules, queues.
 import { Part, Since, clock, fixed, html, percent, t } from "../ui.js";
 import { Autonomy } from "./approvals.js";
+import { processesOf } from "./troubles.js";
 
 export const LOW = 20; // [%]
 const HOT = 75, SLOW = 0.95; // [°C], of real time
@@ -34,18 +35,18 @@ function Senses({ robot }) {
 }
 
 function Processes({ robot }) {
-  const processes = robot.processes ?? [];
+  const processes = processesOf(robot);
   return html`<h3>${t("processes")}</h3>${processes.length ? html`<ul class="processes">${processes.map((one) => {
     const gone = one.state !== "here";
     return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}><span>${one.parts.join(", ")}</span>
-      <span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>
+      ${robot.connected === false ? html`<span class="badge">${t("unknown")}</span>` : html`<span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>`}
       <span class="quiet">${one.word ? `${one.word} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} skew=${0} /></span></li>`;
   })}</ul>` : html`<p class="quiet">${t("processes.none")}</p>`}`;
 }
 
 export function Body({ robot }) {
   const reload = robot.last_reload;
-  return html`<${Part} title=${t("body")} kind="body"><${Autonomy} robot=${robot} /><${Senses} robot=${robot} /><${Processes} robot=${robot} />
+  return html`<${Part} title=${t("body")} kind="body"><${Senses} robot=${robot} /><${Processes} robot=${robot} />
     ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
-      <span class="quiet">${clock(reload.at)}</span> ${reload.text} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}</${Part}>`;
+      <span class="quiet">${clock(reload.at)}</span> ${reload.text} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}<${Autonomy} robot=${robot} /></${Part}>`;
 }

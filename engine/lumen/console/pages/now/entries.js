@@ -1,6 +1,7 @@
 // The latest of what happened; each opens its why.
 import { get, live } from "../live.js";
 import { Dialog, Part, Place, clock, html, t, useEffect, useState } from "../ui.js";
+import { isTrouble } from "./troubles.js";
 
 const SHOWN = 80;
 
@@ -26,7 +27,7 @@ export function question(entry) {
 }
 
 export function Entry({ entry, onOpen, current = false }) {
-  return html`<li class="entry" data-kind=${entry.kind}><button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
+  return html`<li class="entry" data-kind=${entry.kind} data-trouble=${isTrouble(entry) || null}><button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
     <span class="entry-when"><time datetime=${entry.at_time}>${clock(entry.at_time)}</time> <span class="entry-kind">${t(`kind.${entry.kind}`)}</span></span><span class="entry-text">${entry.text}</span></button></li>`;
 }
 

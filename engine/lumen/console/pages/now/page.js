@@ -9,6 +9,7 @@ import { Cues } from "./cues.js";
 import { Entries } from "./entries.js";
 import { States } from "./states.js";
 import { Talk } from "./talk.js";
+import { Troubles } from "./troubles.js";
 import { Ways } from "./ways.js";
 
 /** Buttons come first: what is pressed does not move when somebody speaks. */
@@ -16,9 +17,8 @@ export function NowPage({ name }) {
   useRedraw();
   const robot = robotOf(name);
   return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
-    ${robot.connected === false && html`<p class="notice bad" role="alert">${t("robot.away", { name })}</p>`}
-    <div class="now"><div class="column"><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} />
-        ${may("author") && html`<${Cues} robot=${robot} />`}</div>
+    <${Troubles} robot=${robot} />
+    <div class="now"><div class="column"><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
-      <div class="column"><${Body} robot=${robot} /><${Entries} robot=${robot} /></div></div>`;
+      <div class="column"><${Body} robot=${robot} />${may("author") && html`<${Cues} robot=${robot} />`}</div></div>`;
 }

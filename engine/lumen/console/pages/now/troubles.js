@@ -1,0 +1,51 @@
+// What is wrong with a robot and what helps, above all else on its page: until it is over, or somebody has read it.
+import { get, live } from "../live.js";
+import { Since, clock, html, redraw, t, useEffect, useState } from "../ui.js";
+
+const PART = "robot"; // that moves it, as `lumen run --only robot` says
+const BODY = { "fallen": "trouble.fallen", "battery.low": "trouble.battery", "motors.hot": "trouble.hot" };
+const TROUBLES = /^(fallen|battery\.low|motors\.hot|[a-z]+\.lost|error\..*)$/;
+const RECENT = 600000, AGAIN = 3000; // [ms] for how long a fall is new; how often it is asked why nobody answers
+const read = new Set();
+
+/** Whether an entry is about something that went wrong. */
+export const isTrouble = (entry) => TROUBLES.test(entry.heard ?? "");
+
+/** The processes that count: one that has gone counts for nothing once another one does what it did. */
+export function processesOf(robot) {
+  const all = robot.processes ?? [], here = new Set(all.filter((one) => one.state === "here").flatMap((one) => one.parts));
+  const last = new Map(all.map((one) => [one.parts.join(), one]));
+  return all.filter((one) => one.state === "here" || (last.get(one.parts.join()) === one && one.parts.some((part) => !here.has(part))));
+}
+
+/** The process that moved the robot, where that has gone; else null. */
+export const lostBody = (robot) => processesOf(robot).find((one) => one.state !== "here" && one.parts.includes(PART)) ?? null;
+
+/** Whether the behaviour waits until a person lets it go on, though nobody stopped the robot itself. */
+export const waitsForResume = (robot) => !robot.stopped && (robot.ways ?? []).some((way) => way.event === "resume" && way.open && way.targets?.length);
+
+/** The last time that the robot felt each of what is wrong with it, as far as nobody has read that. */
+function felt(robot) {
+  const last = new Map();
+  for (const entry of live.told) if (entry.robot === robot.robot && entry.heard in BODY) last.set(entry.heard, entry);
+  return [...last.values()].filter((one) => !read.has(one.position) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
+}
+
+function Away({ robot }) {
+  const [why, set] = useState("");
+  useEffect(() => {
+    const ask = () => get("/api/now").then((now) => set(now.bus ?? ""), () => {});
+    const timer = setInterval(ask, AGAIN);
+    ask();
+    return () => clearInterval(timer);
+  }, []);
+  return html`<p class="notice bad" role="alert"><b>${t("robot.away", { name: robot.robot })}</b> ${why || t("robot.away.why")}</p>`;
+}
+
+export function Troubles({ robot }) {
+  const lost = robot.connected === false ? null : lostBody(robot), name = robot.robot;
+  return html`${robot.connected === false && html`<${Away} robot=${robot} />`}
+    ${lost && html`<div class="notice bad"><p role="alert"><b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p><p>${t("heard.ago")} <${Since} at=${lost.heard} skew=${0} /></p></div>`}
+    ${felt(robot).map((one) => html`<div class="notice bad" key=${one.position}><p role="alert"><b>${clock(one.at_time)} ${t(BODY[one.heard], one.data ?? {})}</b> ${t(`${BODY[one.heard]}.do`)}</p>
+      <button type="button" onClick=${() => { read.add(one.position); redraw(); }}>${t("trouble.read")}</button></div>`)}`;
+}
