@@ -20,16 +20,20 @@ DRIVER_TIMEOUT = 60.0
 
 
 class DrivenBrowser:
-    """A Chromium with these `options`, under a guarded driver; it reads the driver's pipe, and ends with it."""
+    """A Chromium with these `options`, under a guarded driver; it reads the driver's pipe, and ends with it.
 
-    def __init__(self, options: ChromeOptions) -> None:
+    The driver keeps what `logs` names: `browser` what pages complain of, `performance` what they ask for, which costs
+    processor time with every message.
+    """
+
+    def __init__(self, options: ChromeOptions, *logs: str) -> None:
         program, driver = _program("usr/lib/chromium/chromium", "chromium"), _program("usr/bin/chromedriver")
         port = _free_port()
         self._process: Guarded[bytes] = Guarded([driver, f"--port={port}"], stdout=DEVNULL, stderr=DEVNULL)
         until(lambda: _listens(port), DRIVER_TIMEOUT)
         options.binary_location = str(program)
         options.add_argument("--remote-debugging-pipe")
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        options.set_capability("goog:loggingPrefs", dict.fromkeys(logs, "ALL"))
         self.driver = Remote(f"http://127.0.0.1:{port}", options=options)
 
     def close(self) -> None:

@@ -30,7 +30,7 @@ class Viewer:
         options = ChromeOptions()
         for argument in ARGUMENTS:
             options.add_argument(argument)
-        self._browser = DrivenBrowser(options)
+        self._browser = DrivenBrowser(options, "browser", "performance")
         self.driver = self._browser.driver
         self.driver.set_script_timeout(WAIT)
         self._before = ""
