@@ -8,7 +8,7 @@ A joint has moved where its angle, in steps of 0.1 degrees as encoders have them
 
 import argparse
 import platform
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import degrees
 from pathlib import Path
@@ -19,9 +19,13 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
-from lumen.language.commands import Command, Play, Start
+from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
+from lumen.language.gestures import merged
+from lumen.language.projects import Project
 from lumen.ports import Message
+from lumen.robots.command_table import speech_duration
+from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.life_layer import LifeLayer
 from lumen.runtime.loop import Observer
 
@@ -70,11 +74,14 @@ class Motions(Observer):
 
     def __init__(self) -> None:
         self.playing: set[str] = set()
+        self.texts: list[Say] = []
 
     def performing(self, command: Command, now: float) -> None:
         match command:
             case Start(id, Play()):
                 self.playing.add(id)
+            case Start(_, Say() as said):
+                self.texts.append(said)
 
     def answered(self, event: Event) -> None:
         self.playing.discard(event.name.partition(".command.")[2])
@@ -87,7 +94,7 @@ def main() -> None:
     given = parser.parse_args()
     project = lumen.load(ROOT)
     if given.without:
-        project = replace(project, life={})
+        project = replace(project, life={}, gestures={})
     head, parts = project.body.parts["head"], project.body.parts
     trunk = [joint for part in ("arms", "legs") for joint in parts[part]]
     whole, free_head, free_body = Movement(), Movement(head), Movement(trunk)
@@ -105,7 +112,6 @@ def main() -> None:
     begin = process_time()
     with Exhibition(project, setup, bus, story) as exhibition:
         exhibition.node.loop.observers.append(motions)
-        exhibition.start()
         while not exhibition.node.player.finished:
             exhibition.tick()
     how = "without life" if given.without else "alive"
@@ -114,10 +120,28 @@ def main() -> None:
     print(f"arms and legs, no motion {free_body}")
     print(f"head, no motion          {free_head}")
     print(f"CPU of the whole         {process_time() - begin:.1f} s")
+    _gestures(project, motions.texts)
     _cost(project)
 
 
-def _cost(project: lumen.Project) -> None:
+def _threes(drawn: Sequence[Sequence[str]]) -> Iterator[Sequence[Sequence[str]]]:
+    return (drawn[i : i + 3] for i in range(len(drawn) - 2))
+
+
+def _gestures(project: Project, texts: Sequence[Say]) -> None:
+    """How many texts have gestures, and how often one comes again too soon."""
+    player = GesturePlayer(project.body)
+    player.library = merged(project.gestures)
+    drawn = [player.say(text.text, text.language, speech_duration(text.text), 0.0) for text in texts]
+    soon = sum(bool(set(now) & {*before, *earlier}) for earlier, before, now in _threes(drawn))
+    kinds = {name for names in drawn for name in names}
+    print(
+        f"gestures                 {sum(map(bool, drawn))} of {len(texts)} texts, {sum(map(len, drawn))} gestures "
+        f"({len(kinds)} different), {soon} twice within three texts"
+    )
+
+
+def _cost(project: Project) -> None:
     """What a control period costs."""
     for name, style in project.life.items():
         layer = LifeLayer(project.body)

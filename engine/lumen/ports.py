@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import MotorCommand, Say
 from lumen.language.events import Event
+from lumen.language.gestures import NO_GESTURES, GestureLibrary
 from lumen.language.life import LifeStyle
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import Route, Size
@@ -125,9 +126,13 @@ class Aim:
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """Be alive in this style from now on, wherever nothing else moves the robot; nobody waits for it."""
+    """Be alive in this style from now on, wherever nothing else moves the robot, and speak with these gestures.
+
+    Nobody waits for it.
+    """
 
     style: LifeStyle
+    gestures: GestureLibrary = NO_GESTURES
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "controller": ("fuzzy/*.yaml",),
     "motion": ("motions/*.yaml", "models/passages/*.yaml"),
     "life": ("motions/life/*.yaml",),
+    "gestures": ("motions/gestures/*.yaml",),
     "body": ("models/*.yaml",),
     "message": ("schemas/messages/*.schema.json",),
 }

@@ -109,7 +109,8 @@ class State:
     `done.state.*` for a final state. `resume` says how its `do` goes on where a history leads back into it, or where
     the engine was away: the step that it was at `again`, the one `after` it, or `never`; empty for all of it anew.
     `buttons` are for the operator, also while a state within is active. `life` names the style in which the robot is
-    alive meanwhile, empty where the state around it decides.
+    alive meanwhile, empty where the state around it decides;
+    with `gestures` none it speaks without them.
     """
 
     path: str
@@ -128,6 +129,7 @@ class State:
     on_reload: str = ""
     resume: Resume = ""
     life: str = ""
+    gestures: Literal["none", ""] = ""
     buttons: tuple[Button, ...] = ()
     for_each: ForEach | None = None
     where: NodePath = field(default=(), compare=False)

@@ -7,6 +7,7 @@ from lumen.language.alerts import Alerts
 from lumen.language.console_settings import ConsoleSettings
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
+from lumen.language.gestures import GestureLibrary
 from lumen.language.hall_places import HallPlace
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
@@ -56,6 +57,7 @@ class Project:
     controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
     motions: Mapping[str, MotionDefinition] = field(default_factory=dict)
     life: Mapping[str, LifeStyle] = field(default_factory=dict)
+    gestures: Mapping[str, GestureLibrary] = field(default_factory=dict)
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)

@@ -120,6 +120,7 @@ class _Builder:
             on_reload=self.on_reload(entry),
             resume=data.get("resume", ""),
             life=data.get("life", ""),
+            gestures=data.get("gestures", ""),
             buttons=buttons(data.get("buttons"), (*where, "buttons")),
             where=where,
         )

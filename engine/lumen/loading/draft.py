@@ -8,6 +8,7 @@ from typing import Any
 from lumen.errors import ProjectError
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
+from lumen.language.gestures import GestureLibrary
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
@@ -39,6 +40,7 @@ class ProjectDraft:
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
     motions: dict[str, MotionDefinition] = field(default_factory=dict)
     life: dict[str, LifeStyle] = field(default_factory=dict)
+    gestures: dict[str, GestureLibrary] = field(default_factory=dict)
     stories: dict[str, Story] = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)

@@ -41,6 +41,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "fuzzy": (".yaml", ".yml"),
     "motions": (".yaml", ".yml"),
     "motions/life": (".yaml", ".yml"),
+    "motions/gestures": (".yaml", ".yml"),
     "models": (".yaml", ".yml", ".xml"),
     "models/passages": (".yaml", ".yml"),
     "schemas/messages": (".json",),

@@ -47,6 +47,7 @@ _KINDS: Mapping[str, _Kind] = {
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
     "motion": _Kind("a motion", "motions/", frozenset(("keyframes",))),
     "life": _Kind("a style of life", "motions/life/", frozenset(("sways",)), "blinks"),
+    "gestures": _Kind("a library of gestures", "motions/gestures/", frozenset(("gestures",))),
     "body": _Kind("a robot's body", "models/", frozenset(("joints", "camera")), "like"),
     "message": _Kind("a message schema", "schemas/messages/", frozenset(("$schema", "properties"))),
 }

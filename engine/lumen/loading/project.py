@@ -7,7 +7,6 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
-from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -18,6 +17,7 @@ from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
+from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend
 from lumen.loading.life import LIFE_FOLDER, build_life
 from lumen.loading.linking import link
@@ -42,6 +42,7 @@ _KINDS: Mapping[str, str] = {
     "fuzzy": "controller",
     "motions": "motion",
     LIFE_FOLDER: "life",
+    GESTURES_FOLDER: "gestures",
     PASSAGES: "motion",
     MODELS: "body",
 }
@@ -69,7 +70,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     passages = _motions(found, PASSAGES)
     found.motions = _motions(found, "motions")
-    found.life = _life(found)
+    _accompany(found)
     found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
     _messages(found)
     torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
@@ -107,6 +108,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         controllers=found.controllers,
         motions=found.motions,
         life=found.life,
+        gestures=found.gestures,
         routes=settings.routes,
         stories=found.stories,
         messages=found.messages,
@@ -223,11 +225,11 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
     return build_motions({name: (file.data, file.report) for name, file in files.items()}, found.bodies[model])
 
 
-def _life(found: ProjectDraft) -> dict[str, LifeStyle]:
-    """The styles of life, which can be read only where the robot's body is known."""
-    if (body := found.body) is None:
-        return {}
-    return _built(_each(found, LIFE_FOLDER, partial(build_life, body=body), around=body))
+def _accompany(found: ProjectDraft) -> None:
+    """The styles of life and the gestures of speech, which can be read only where the robot's body is known."""
+    if body := found.body:
+        found.life = _built(_each(found, LIFE_FOLDER, partial(build_life, body=body), around=body))
+        found.gestures = _built(_each(found, GESTURES_FOLDER, partial(build_gestures, body=body), around=body))
 
 
 def _messages(found: ProjectDraft) -> None:

@@ -16,7 +16,7 @@ _FINAL = {*_COMMON, "entry", "exit", "output"}
 _MACHINE = {"units", "context", "types", "events", "words", "phrases", "answers", "lists", "properties", "renamed"}
 _STATE = {
     *_COMMON, *_MACHINE, "on", "always", "after", "at", "onDone", "onError", "onReload", "resume", "buttons",
-    "life",
+    "life", "gestures",
     "entry",
     "do", "exit", "invoke", "for",
 }  # fmt: skip

@@ -16,6 +16,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "fuzzy": "controller",
     "motions": "motion",
     "motions/life": "life",
+    "motions/gestures": "gestures",
     "models": "body",
     "models/passages": "motion",
     "schemas/messages": "message",

@@ -13,6 +13,7 @@ How a command is performed:
     executor.py           a command waits until its parts are free, then runs until it is done
     person_hold.py        a robot that a person stopped moves for nobody, until a person lets it
     cues.py               the words and sounds of a motion, as their times come
+    gesture_player.py     the gestures that accompany what it says
     life_layer.py         what the robot does of its own accord, beneath all commands
     silent_recording.py   a recording where nobody makes a sound
 

@@ -12,6 +12,7 @@ from typing import Any, Generic, TypeVar, get_args
 from lumen.errors import BadCommandError
 from lumen.language.commands import Channel, Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.gestures import NO_GESTURES, merged
 from lumen.language.life import STILL, STILL_STYLE, LifeStyle
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
@@ -327,8 +328,8 @@ _LIVE = CommandRow(
     3,
     "motion",
     "live",
-    lambda c: {"style": c.style.name},
-    lambda p: Live(_style(p)),
+    lambda c: {"style": c.style.name, "gestures": bool(c.gestures)},
+    lambda p: Live(_style(p), merged(p.project.gestures) if p.values.get("gestures") else NO_GESTURES),
     owns(),
     moves=False,
 )

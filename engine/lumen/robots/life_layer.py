@@ -19,7 +19,9 @@ from lumen.interpreters.life import (
 from lumen.interpreters.life.looking import TOUCHED
 from lumen.language.life import STILL_STYLE, LifeStyle
 from lumen.language.robots import Body
+from lumen.ports import Live
 from lumen.robots.body_parts import ARMS, HEAD, LEGS, part_of
+from lumen.robots.gesture_player import GesturePlayer
 
 LIFE_PERIOD = 0.04
 """How often it is computed where each joint is wanted [s]; in between joints go on evenly."""
@@ -49,6 +51,11 @@ class LifeLayer:
         self._wanted: Mapping[str, float] = {}
         self._computed: tuple[float, object] = (-LIFE_PERIOD, None)
         self._offsets: dict[str, float] = {}
+        self.speech = GesturePlayer(body, seed)
+
+    def live(self, command: Live) -> None:
+        """Be alive like this from now on."""
+        self.style, self.speech.library = command.style, command.gestures
 
     def touched(self, sensor: str, now: float) -> None:
         """Somebody touched the robot there: it looks, where the style says so."""
@@ -63,6 +70,7 @@ class LifeLayer:
     def still(self) -> None:
         """The motors are off: nothing moves."""
         self._offsets.clear()
+        self.speech.still()
 
     def advance(
         self, now: float, dt: float, free: Collection[str], vigour: Callable[[str], float]
@@ -79,7 +87,9 @@ class LifeLayer:
                 self._offsets.pop(joint, None)
             else:
                 self._offsets[joint] = offset
-        return self._offsets
+        free = {HEAD, ARMS} & set(free) if LEGS in free else set()
+        gestures = self.speech.advance(now, dt, free, led=now < self._led_at + LED_FOR)
+        return {j: self._offsets.get(j, 0.0) + gestures.get(j, 0.0) for j in self._offsets.keys() | gestures.keys()}
 
     def wanted(self, now: float, free: Collection[str], vigour: Callable[[str], float]) -> dict[str, float]:
         """Where the offsets go to at `now` [s], without the way there.

@@ -8,13 +8,13 @@ from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import seen
 from lumen.language.causes import VISITOR, Cause
-from lumen.language.commands import Look, Move, Posture, Walk
+from lumen.language.commands import Look, Move, Posture, Say, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import WHOLE_BODY, part_of
+from lumen.robots.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.robots.command_table import check_command, parts_of, row_of
 from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
@@ -102,7 +102,7 @@ class RecordingRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
-            self._life.style = command.style
+            self._life.live(command)
         elif isinstance(command, Aim):
             self._turn({n: a for n, a in command.angles.items() if self._free(n)})
         else:
@@ -187,6 +187,8 @@ class RecordingRobot:
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
         usual = row.duration(command)
         until = now + (inf if behaves == "hangs" else usual if behaves is None else float(behaves))
+        if isinstance(command, Say):
+            self._life.speech.say(command.text, command.language, until - now, now)
         if isinstance(command, Perform):
             return _Playing(until, now, CueNotifier(command.motion, self._notice))
         if isinstance(command, Walk | Move):
@@ -198,7 +200,10 @@ class RecordingRobot:
     def _offsets(self) -> Mapping[str, float]:
         """How far its life has moved the joints from where commands want them."""
         free = {part for part in WHOLE_BODY if not self._executor.owner(part)}
-        return self._life.wanted(self.time, free, lambda _part: 1.0)
+        offsets = self._life.wanted(self.time, free, lambda _part: 1.0)
+        for joint, angle in self._life.speech.wanted(self.time, free if LEGS in free else ()).items():
+            offsets[joint] = offsets.get(joint, 0.0) + angle
+        return offsets
 
     def _free(self, joint: str) -> bool:
         """Whether no command owns that joint, or the robot has none of that name."""

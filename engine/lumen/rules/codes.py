@@ -15,6 +15,7 @@ from lumen.loading import (
     bodies,
     complaints,
     document,
+    gestures,
     keyframes,
     known_words,
     life,
@@ -43,7 +44,7 @@ from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
 LOADERS = (
-    actions, behaviors, bindings, bodies, complaints, document, expression_findings, keyframes, known_words,
+    actions, behaviors, bindings, bodies, complaints, document, expression_findings, gestures, keyframes, known_words,
     life, linking, messages, misplaced, numbers, outline, poses, project, rounds, rulebook, schedules, settings, shapes,
     signal_bindings, terms, transitions, units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip

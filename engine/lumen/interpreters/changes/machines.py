@@ -91,6 +91,9 @@ class _Comparison:
         if old.life != new.life:
             how = f"is alive as `{new.life}` says" if new.life else "says no more how the robot is alive"
             yield self.change("state", title, f"{title} {how} now" if new.life else f"{title} {how}")
+        if old.gestures != new.gestures:
+            how = "without" if new.gestures else "with"
+            yield self.change("state", title, f"{title} speaks {how} gestures now")
         yield from self.buttons(old, new, title)
         if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
             target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"

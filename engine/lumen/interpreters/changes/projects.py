@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 _PARTS = (
     "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
-    "life",
+    "life", "gestures",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents")
 
@@ -63,6 +63,8 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
         "controller", "controller", Risk.MOTION, "fuzzy/{}.yaml", old.controllers, new.controllers, controller_changes
     )
     yield from _named("motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes)
+    libraries = old.gestures, new.gestures
+    yield from _named("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
     yield from _named("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
     yield from _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes)
     yield from _named("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)

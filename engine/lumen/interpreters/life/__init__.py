@@ -2,11 +2,11 @@
 
 from lumen.interpreters.life.blinking import eyes_closed
 from lumen.interpreters.life.looking import HEAD_PITCH, HEAD_YAW, Attention, glance, look_towards, nod
-from lumen.interpreters.life.mood import style_name
+from lumen.interpreters.life.mood import gestures_wanted, style_name
 from lumen.interpreters.life.swaying import PEAK_SLOPE, SPEED_SHARE, sway
 from lumen.interpreters.life.vigour import vigour
 
 __all__ = [
-    "HEAD_PITCH", "HEAD_YAW", "PEAK_SLOPE", "SPEED_SHARE", "Attention", "eyes_closed", "glance", "look_towards", "nod",
-    "style_name", "sway", "vigour",
+    "HEAD_PITCH", "HEAD_YAW", "PEAK_SLOPE", "SPEED_SHARE", "Attention", "eyes_closed", "gestures_wanted", "glance",
+    "look_towards", "nod", "style_name", "sway", "vigour",
 ]  # fmt: skip

@@ -19,5 +19,10 @@ def style_name(machine: MachineDefinition, configuration: Collection[str]) -> st
     return STILL if STILL in styles or not styles else styles[0]
 
 
+def gestures_wanted(machine: MachineDefinition, configuration: Collection[str]) -> bool:
+    """Whether no active state says `gestures: none`."""
+    return not any(state.gestures for path, state in machine.states.items() if not path or state.name in configuration)
+
+
 def _within(path: str, outer: str) -> bool:
     return path != outer and (not outer or path.startswith(f"{outer}."))

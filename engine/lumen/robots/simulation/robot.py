@@ -8,14 +8,14 @@ from pathlib import Path
 from lumen.errors import RobotError, RobotRefusedError, UsageError
 from lumen.interpreters.life import vigour
 from lumen.language.causes import VISITOR, Cause
-from lumen.language.commands import Rest
+from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import ARMS, LEGS, WHOLE_BODY
+from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation.aim_controller import AimController
@@ -29,6 +29,7 @@ from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.model import Variation
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.odometry import Odometry
+from lumen.robots.simulation.playback import SpeechActivity
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.skills import SimulatedSkills
 from lumen.robots.simulation.sonar import Sonars
@@ -141,7 +142,7 @@ class SimulatedRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
-            self._life.style = command.style
+            self._life.live(command)
             return
         if not isinstance(command, Aim):
             self._executor.start(id, command)
@@ -218,7 +219,10 @@ class SimulatedRobot:
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         if self.condition.empty and not isinstance(command, Rest):
             raise RobotRefusedError("the battery is empty: plug the robot in")
-        return self._skills.begin(command, now)
+        activity = self._skills.begin(command, now)
+        if isinstance(command, Say) and isinstance(activity, SpeechActivity):
+            self._life.speech.say(command.text, command.language, activity.duration, now)
+        return activity
 
     def _tick(self) -> None:
         now = self.time
@@ -241,6 +245,8 @@ class SimulatedRobot:
         free = {part for part in WHOLE_BODY if not (self.fallen or owner(part))}
         if not self._skills.upright:
             free -= {ARMS, LEGS}
+        if not owner(VOICE):
+            self._life.speech.hush(now)
         self.motors.sway(self._life.advance(now, CONTROL_PERIOD, free, self._vigour.__getitem__))
         self.lights.wear_eyes(self._life.eyes(now))
 

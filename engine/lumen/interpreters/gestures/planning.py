@@ -1,0 +1,86 @@
+"""Which gesture goes with which phrase of a text.
+
+A text has a tag where one of the tag's phrases is in it, as whole words. The gesture's stroke falls on the phrase; it
+is prepared before (McNeill's phases of gesture). A long part of a text without any tag gets a beat.
+"""
+
+import re
+from collections.abc import Collection, Iterator
+from functools import lru_cache
+from typing import NamedTuple
+
+from lumen.interpreters.gestures.posing import BEAT
+from lumen.interpreters.life.chance import chance
+from lumen.language.gestures import Gesture, GestureLibrary
+
+LONG_PART = 18
+"""Characters from which on a part of a text without a tag gets a beat."""
+
+TAIL = 0.4
+"""How long after the last word a gesture may end [s]."""
+
+_PART = re.compile(r"[^.,;:!?…]+[.,;:!?…]*\s*")
+
+
+class PlannedGesture(NamedTuple):
+    """A gesture that begins at `at` [s from the text's first word], with the other side where that is said."""
+
+    gesture: Gesture
+    at: float
+    other_side: bool = False
+
+
+class _Mention(NamedTuple):
+    """A tag, and where in the text it is said, as a fraction of its length."""
+
+    tag: str
+    where: float
+
+
+def plan_gestures(
+    text: str, language: str, library: GestureLibrary, duration: float, recent: Collection[str], seed: int
+) -> tuple[PlannedGesture, ...]:
+    """The gestures of a text that takes `duration` [s] to say, one after another.
+
+    None of those whose names are `recent` is among them, nor any twice; the seed draws among those that fit.
+    """
+    planned: list[PlannedGesture] = []
+    used, free_from = set(recent), 0.0
+    for i, mention in enumerate(_mentions(text, language, library)):
+        fitting = [g for g in library.gestures if mention.tag in g.tags and g.name not in used]
+        if not fitting and mention.tag != BEAT:
+            fitting = [g for g in library.gestures if BEAT in g.tags and g.name not in used]
+        if not fitting:
+            continue
+        gesture = fitting[int(chance(seed, "gesture", i) * len(fitting))]
+        at = max(free_from, mention.where * duration - gesture.stroke)
+        late = at + gesture.stroke - mention.where * duration
+        if at + gesture.duration > duration + TAIL or late > gesture.stroke + gesture.duration / 2:
+            continue
+        planned.append(PlannedGesture(gesture, at, gesture.mirrored and chance(seed, "side", i) < 0.5))
+        used.add(gesture.name)
+        free_from = at + gesture.duration
+    return tuple(planned)
+
+
+def _mentions(text: str, language: str, library: GestureLibrary) -> Iterator[_Mention]:
+    """The first tag of each part of the text, else a beat where the part is long."""
+    for part in _PART.finditer(text):
+        found = [
+            (match.start(), tag)
+            for tag, table in library.phrases.items()
+            for phrase in (*table.get(language, ()), *table.get("any", ()))
+            if (match := _words(phrase).search(part[0]))
+        ]
+        if found:
+            start, tag = min(found)
+            yield _Mention(tag, (part.start() + start) / len(text))
+        elif len(part[0]) >= LONG_PART:
+            yield _Mention(BEAT, (part.start() + len(part[0]) / 2) / len(text))
+
+
+@lru_cache(maxsize=5_000)
+def _words(phrase: str) -> re.Pattern[str]:
+    """The phrase as whole words, however much space lies between them; `#` is any number."""
+    words = (r"\d+" if word == "#" else re.escape(word) for word in phrase.split())
+    return re.compile(r"(?<!\w)" + r"\s+".join(words) + r"(?!\w)", re.IGNORECASE)

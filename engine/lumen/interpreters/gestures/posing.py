@@ -1,0 +1,44 @@
+"""Where the joints are at a moment of a gesture."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from lumen.interpreters.choreography import mirrored_joint
+from lumen.language.gestures import Gesture
+
+BEAT = "beat"
+"""The tag of gestures that go with any phrase."""
+
+GESTURE_SHARE = 0.5
+"""The part of its greatest speed that a joint uses for a gesture."""
+
+_PEAK = 1.875
+"""The greatest speed of a minimum-jerk movement, in parts of the mean one."""
+
+
+def gesture_offsets(gesture: Gesture, since: float, *, other_side: bool = False) -> dict[str, float]:
+    """How far each joint is from where it stands, `since` [s] the gesture began; nothing once it is over."""
+    if not 0.0 < since < gesture.duration:
+        return {}
+    found = {}
+    for joint, keys in gesture.tracks.items():
+        for (t0, a0), (t1, a1) in pairwise(keys):
+            if since <= t1:
+                u = (since - t0) / (t1 - t0)
+                found[joint] = a0 + (a1 - a0) * u * u * u * (10 + u * (6 * u - 15))
+                break
+    return dict(_mirror(found)) if other_side else found
+
+
+def peak_speeds(gesture: Gesture) -> dict[str, float]:
+    """The greatest speed of each joint [rad/s]."""
+    return {
+        joint: max(_PEAK * abs(a1 - a0) / (t1 - t0) for (t0, a0), (t1, a1) in pairwise(keys))
+        for joint, keys in gesture.tracks.items()
+    }
+
+
+def _mirror(offsets: dict[str, float]) -> Iterator[tuple[str, float]]:
+    for joint, angle in offsets.items():
+        other, sign = mirrored_joint(joint)
+        yield other, sign * angle

@@ -1,0 +1,85 @@
+"""A library of gestures, `motions/gestures/NAME.yaml`, from its plain data to a `GestureLibrary`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.gestures import Gesture, GestureLibrary
+from lumen.language.robots import Body
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.poses import PoseReader
+from lumen.loading.units import ANGLES, BAD_DURATION, seconds
+
+GESTURES_FOLDER = "motions/gestures"
+POSTURE = "Stand"
+"""The posture from which a gesture begins, and to which it leads back."""
+
+GESTURE_LEGS = Code("gesture-legs", "motions", ERROR, "a gesture moves a leg")
+
+
+def build_gestures(data: Any, report: DocumentReport, *, name: str, body: Body) -> GestureLibrary | None:
+    """The library that the data describes, None where that is no map."""
+    if not isinstance(data, Mapping) or report.broken(("units", "angle")):
+        return None
+    unit = (data.get("units") or {}).get("angle", "rad")
+    reader = _GestureReader(report, body, PoseReader(report, body, unit, ANGLES.get(unit, 1.0)))
+    read = (reader.read(key, each) for key, each in (data.get("gestures") or {}).items())
+    phrases = {
+        tag: {language: (said,) if isinstance(said, str) else tuple(said) for language, said in table.items()}
+        for tag, table in (data.get("phrases") or {}).items()
+    }
+    return GestureLibrary(tuple(filter(None, read)), phrases)
+
+
+class _GestureReader:
+    """Reads one gesture after the other: preparation, stroke, hold and retraction, each after the one before."""
+
+    def __init__(self, report: DocumentReport, body: Body, poses: PoseReader) -> None:
+        self._report, self._body, self._poses = report, body, poses
+
+    def read(self, name: str, data: Mapping[str, Any]) -> Gesture | None:
+        where: NodePath = ("gestures", name)
+        at, stroke, keys = 0.0, 0.0, list[tuple[float, dict[str, float]]]()
+        for phase in ("preparation", "stroke"):
+            if phase in data:
+                stroke = at
+                at += self._takes(data[phase]["takes"], (*where, phase, "takes"))
+                keys.append((at, self._offsets(data[phase]["joints"], (*where, phase))))
+        held = at + (seconds(data.get("hold")) or 0.0)
+        duration = held + self._takes(data.get("retraction", "600ms"), (*where, "retraction"))
+        tracks: dict[str, list[tuple[float, float]]] = {}
+        for time, offsets in keys:
+            for joint, angle in offsets.items():
+                tracks.setdefault(joint, [(0.0, 0.0)]).append((time, angle))
+        if not tracks:
+            return None
+        for keyed in tracks.values():
+            if held > keyed[-1][0]:
+                keyed.append((held, keyed[-1][1]))
+            keyed.append((duration, 0.0))
+        tags = data["for"]
+        return Gesture(
+            name,
+            (tags,) if isinstance(tags, str) else tuple(tags),
+            {joint: tuple(keyed) for joint, keyed in tracks.items()},
+            stroke,
+            duration,
+            data.get("mirrored", False),
+            where,
+        )
+
+    def _offsets(self, joints: Mapping[str, float], path: NodePath) -> dict[str, float]:
+        stands, found = self._body.postures.get(POSTURE, {}), {}
+        for joint, (angle, place) in self._poses.read({"joints": joints}, path).items():
+            if joint in self._body.parts.get("legs", ()):
+                hint = "gestures are of head, arms and hands; a motion may move legs"
+                self._report(GESTURE_LEGS, place, f"`{joint}` is a joint of the legs", hint=hint, key=True)
+            else:
+                found[joint] = angle - stands.get(joint, 0.0)
+        return found
+
+    def _takes(self, text: str, path: NodePath) -> float:
+        time = seconds(text) or 0.0
+        if time <= 0.0:
+            self._report(BAD_DURATION, path, f"`{text}` is no time for a movement", hint="write at least 100ms")
+        return max(time, 0.05)

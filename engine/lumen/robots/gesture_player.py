@@ -1,0 +1,78 @@
+"""The gestures that accompany what the robot says: planned when a text begins, and played beneath all commands."""
+
+from collections import deque
+from collections.abc import Collection
+
+from lumen.interpreters.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
+from lumen.interpreters.life import HEAD_YAW
+from lumen.language.gestures import NO_GESTURES, GestureLibrary
+from lumen.language.robots import Body
+from lumen.robots.body_parts import part_of
+
+TEXTS_APART = 2
+"""So many texts have to lie between two with the same gesture."""
+
+SETTLING = 0.06
+"""How long joints take to a gesture that begins or ends at once [s]: the time constant of their way."""
+
+_REACHED = 1e-4
+
+
+class GesturePlayer:
+    """How far gestures have each joint from where it stands [rad; hands 0..1].
+
+    What it remembers is the text that is said, the gestures of the last texts, how many texts there were, and where the
+    joints are on their way.
+    """
+
+    def __init__(self, body: Body, seed: int = 0) -> None:
+        self.library: GestureLibrary = NO_GESTURES
+        self._seed, self._part = seed, part_of(body)
+        self._speeds = {joint.name: GESTURE_SHARE * joint.speed for joint in body.joints.values()}
+        self._plan: tuple[PlannedGesture, ...] = ()
+        self._begin = 0.0
+        self._texts = 0
+        self._recent: deque[frozenset[str]] = deque(maxlen=TEXTS_APART)
+        self._offsets: dict[str, float] = {}
+
+    def say(self, text: str, language: str, duration: float, now: float) -> tuple[str, ...]:
+        """A text begins, which takes `duration` [s]; the names of the gestures that it gets."""
+        self._texts += 1
+        self._begin = now
+        recent = frozenset[str]().union(*self._recent)
+        self._plan = plan_gestures(text, language, self.library, duration, recent, self._seed + self._texts)
+        names = tuple(planned.gesture.name for planned in self._plan)
+        self._recent.append(frozenset(names))
+        return names
+
+    def hush(self, now: float) -> None:
+        """Nothing is said any more: what has not begun is left out."""
+        self._plan = tuple(planned for planned in self._plan if self._begin + planned.at < now)
+
+    def still(self) -> None:
+        """The motors are off: nothing moves."""
+        self._offsets.clear()
+        self._plan = ()
+
+    def wanted(self, now: float, free: Collection[str], *, led: bool = False) -> dict[str, float]:
+        """The offsets at `now` [s] of joints in the parts that are `free`; of a head that is `led` no turn."""
+        found: dict[str, float] = {}
+        for planned in self._plan:
+            since = now - self._begin - planned.at
+            offsets = gesture_offsets(planned.gesture, since, other_side=planned.other_side)
+            barred = {HEAD_YAW} if led else ()
+            found |= {j: a for j, a in offsets.items() if self._part.get(j) in free and j not in barred}
+        return found
+
+    def advance(self, now: float, dt: float, free: Collection[str], *, led: bool = False) -> dict[str, float]:
+        """The offsets at `now` [s], `dt` [s] after the last ones."""
+        goals = self.wanted(now, free, led=led) if self._plan else {}
+        for joint in (*self._offsets, *(goals.keys() - self._offsets.keys())):
+            offset, goal = self._offsets.get(joint, 0.0), goals.get(joint, 0.0)
+            most = self._speeds[joint] * dt
+            offset += max(-most, min(most, (goal - offset) * min(1.0, dt / SETTLING)))
+            if goal == 0.0 and abs(offset) < _REACHED:
+                self._offsets.pop(joint, None)
+            else:
+                self._offsets[joint] = offset
+        return self._offsets

@@ -1,0 +1,41 @@
+"""Gestures that accompany speech: joints that can't follow, and tags that no text has."""
+
+from lumen.interpreters.gestures import BEAT, GESTURE_SHARE, peak_speeds
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.gestures import GestureLibrary, merged
+from lumen.language.robots import Body
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.gestures import GESTURES_FOLDER
+from lumen.rules.effects import NO_EFFECT
+from lumen.rules.lookups import first
+from lumen.rules.motions import TOO_FAST
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report gestures that are too fast for the robot, or that go with nothing anybody says."""
+    tags = (BEAT, *merged(draft.gestures).phrases)
+    for name, library in draft.gestures.items():
+        report = draft.report(GESTURES_FOLDER, name)
+        _tags(library, report, tags)
+        if draft.body:
+            _speeds(library, report, draft.body)
+
+
+def _tags(library: GestureLibrary, report: DocumentReport, tags: tuple[str, ...]) -> None:
+    for gesture in library.gestures:
+        for i, tag in enumerate(gesture.tags):
+            if tag not in tags and not report.broken(("phrases",)):
+                path = first(report, (*gesture.where, "for", i), (*gesture.where, "for"))
+                message = f"no text has the tag `{tag}`: it has no `phrases`"
+                report(NO_EFFECT, path, message, did_you_mean(tag, tags, "there are"))
+
+
+def _speeds(library: GestureLibrary, report: DocumentReport, body: Body) -> None:
+    for gesture in library.gestures:
+        excesses = {j: v / (GESTURE_SHARE * body.joints[j].speed) for j, v in peak_speeds(gesture).items()}
+        joint = max(excesses, key=lambda name: excesses[name])
+        if excesses[joint] > 1.0:
+            message = f"`{joint}` would move {excesses[joint]:.1f} times as fast as a gesture should"
+            hint = f"give its longest way {100 * (excesses[joint] - 1):.0f} % more time, or a smaller angle"
+            report(TOO_FAST, gesture.where, message, hint, key=True)
