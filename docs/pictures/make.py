@@ -1,13 +1,13 @@
 """Makes every picture of the documentation from the shipped project, at honest physics.
 
-    python docs/pictures/make.py [tour] [museum] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop]
+    python docs/pictures/make.py [tour] [museum] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop] [film]
 
 `tour` is the README's picture, mid-dance in the shipped story; `museum` the guide of examples/museum at the organ.
 `head` is the paper's Fig. 13 and 14: the top camera's image when the visitor's face is first seen, and once the head
 has turned to it; a cross marks the image's centre, a ring the face. `sides` is the robot from three sides. `motions`
 is a sheet of each motion, at the moments that differ most. `walk` is a strip of `walk: {x: 0.2}`, `postures` one of
 each way down to the floor and up again. `fuzzy` draws the head controller, one evaluation of it, and the paper's
-erratum against it; `loop` the closed loop, and prints its numbers.
+erratum against it; `loop` the closed loop, and prints its numbers. `film` is four moments of a film of the tour.
 """
 
 import argparse
@@ -15,9 +15,11 @@ import io
 import math
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import imageio_ffmpeg
 import mujoco
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -41,6 +43,8 @@ from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneR
 HERE = Path(__file__).parent
 MID_DANCE = 7.0
 STRIP = 8
+FILM_FRAMES = (30, 110, 190, 225)
+"""A title, a close-up, a two-shot and what the visitor sees."""
 WALK = 5.4
 ORGAN = 2.1, 0.8
 LONG = 14.0
@@ -241,9 +245,26 @@ def loop(project: Project) -> None:
     subprocess.run([sys.executable, script, "--plot", HERE / "head_loop.png"], check=True)
 
 
+def film(project: Project) -> None:
+    """A film of the tour's beginning, and four frames of it."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "tour.mp4")
+        size = 960, 540
+        words = ["run", "--story", "visitor", "--speed", "max", "--for", "14s", "--video", str(file)]
+        command = [sys.executable, "-m", "lumen", *words, "--size", "x".join(map(str, size))]
+        subprocess.run(command, check=True)
+        frames = imageio_ffmpeg.read_frames(str(file))
+        next(frames)
+        shots = [Image.frombytes("RGB", size, frame) for i, frame in enumerate(frames) if i in FILM_FRAMES]
+    sheet([shot.resize((640, 360), Image.Resampling.LANCZOS) for shot in shots], 2).save(
+        HERE / "film.png", optimize=True
+    )
+
+
 PICTURES = {
     "fuzzy": fuzzy,
     "loop": loop,
+    "film": film,
     "tour": tour,
     "museum": museum,
     "head": head,

@@ -91,7 +91,7 @@ def test_a_film_of_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     file = tmp_path / "goodbye.mp4"
     short = tmp_path / "nod.yaml"
     short.write_text("keyframes:\n  - {at: 300ms, joints: {HeadPitch: 0.2}}\n", "utf-8")
-    assert main(["play", str(short), "--video", str(file)]) == 0
+    assert main(["play", str(short), "--video", str(file), "--size", "320x240"]) == 0
     assert file.stat().st_size > 1000
     assert file.read_bytes()[4:8] == b"ftyp"
 

@@ -25,10 +25,12 @@ def test_no_file_imports_what_stands_above_or_beside_its_floor(house: Shape) -> 
 
 
 def test_every_thread_is_watched() -> None:
-    """A thread that a fault ends is begun again, or told of: `lumen.upkeep.threads`; the records' is a desk for one."""
+    """A thread that a fault ends is begun again, or told of: `lumen.upkeep.threads`; the records' is a desk for one,
+    and whoever waits for a picture of a film gets the fault that drawing it had.
+    """
     made = {
         str(file.relative_to(ROOT / PACKAGE))
         for file in (ROOT / PACKAGE).rglob("*.py")
         if re.search(r"threading\.Thread\(|ThreadPoolExecutor\(", file.read_text("utf-8"))
     }
-    assert made == {"upkeep/threads.py", "app/reload/records.py"}
+    assert made == {"upkeep/threads.py", "app/reload/records.py", "robots/simulation/film.py"}

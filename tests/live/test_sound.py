@@ -74,7 +74,7 @@ def loudness(samples: Any, rate: int = RATE, window: float = 0.02) -> Any:
 @pytest.mark.physics
 def test_a_film_has_the_sounds_of_the_run_at_their_times(project: Path, tmp_path: Path) -> None:
     film = tmp_path / "film.mp4"
-    command = ["run", str(project), "--speed", "max", "--for", "2s", "--video", str(film)]
+    command = ["run", str(project), "--speed", "max", "--for", "2s", "--video", str(film), "--size", "320x240"]
     done = run_guarded([sys.executable, "-m", "lumen", *command], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("sounds sounds/bell.wav") == 2

@@ -69,7 +69,7 @@ def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -
 
 def test_a_film_has_a_frame_for_every_twenty_fifth_of_a_second(robot: SimulatedRobot, tmp_path: Path) -> None:
     path = tmp_path / "film.mp4"
-    film = Film(path, robot)
+    film = Film(path, robot, "observer", size=(320, 240))
     for _ in range(20):
         robot.advance(0.02)
         film.tick(robot.time)

@@ -29,7 +29,7 @@ class Narrator(Observer):
     """Tells what happens, a line each, and counts it; who shows the lines overrides `line` and `note`.
 
     `now` is asked for the time [s], `machine` for the one that runs. Where it `explains`, it tells of what changed
-    nothing, and why.
+    nothing, and why. `of_visitor` are called with what the visitor does.
     """
 
     explains = False
@@ -41,6 +41,7 @@ class Narrator(Observer):
         self.said = 0
         self.played: dict[str, int] = {}
         self._ignored = IgnoredEvents()
+        self.of_visitor: list[Callable[[VisitorAction], None]] = []
 
     def line(self, who: str, text: str) -> None:
         """One line: who it is about, and what happens now."""
@@ -107,6 +108,8 @@ class Narrator(Observer):
 
     def visitor_action(self, action: VisitorAction) -> None:
         """The visitor does something."""
+        for watch in self.of_visitor:
+            watch(action)
         match action:
             case Arrive():
                 self.line("visitor", "walks up")

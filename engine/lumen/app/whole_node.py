@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.claiming import presence_of
+from lumen.app.film_progress import FilmProgress
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
@@ -87,9 +88,20 @@ class WholeNode(Node):
         where = self.parts.index(self.brain)
         self.parts[where:where] = parts
 
-    def add_film(self, path: Path, track: AudioTrack | None = None) -> None:
+    def add_film(
+        self,
+        path: Path,
+        track: AudioTrack | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        progress: FilmProgress | None = None,
+    ) -> None:
         """Write a film of a simulated robot, with what `track` hears. Raises RobotError where nothing can be drawn."""
-        self.add(FilmPart(path, self.setup.robot, track))
+        title = self.story.title if self.story else self.project.name
+        film = FilmPart(path, self.setup.robot, track, size=size, title=title, progress=progress)
+        self.loop.observers.append(film)
+        self.narrator.of_visitor.append(film.visitor_action)
+        self.add(film)
 
     def add_modules(self, folder: Path | None = None, *, awaited: bool = False) -> None:
         """Let the modules take part that `lumen.yaml` wants here; one that can't is told of, and the others begin.

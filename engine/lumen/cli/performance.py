@@ -73,6 +73,8 @@ class Performance:
             print(f"  {line}")
         print(f"Next: change a sentence in behaviors/{exhibition.project.behavior}.yaml while it runs,")
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
+        if (story := exhibition.node.story) and not film:
+            print(f"      `lumen run --story {story.name} --speed max --video {story.name}.mp4` makes a film of this.")
         how = INTERRUPTED if exhibition.node.interrupted else EARLY if early else WELL
         return RunVerdict(FAILED if failure else how, self._lived, self._took, failure, tuple(lines), film)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.setup import SPEEDS, set_up
-from lumen.cli.film_path import film_path
+from lumen.cli.film_options import configure_size, film_path
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.progress import ProgressListener, progress
@@ -41,6 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
     parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
+    configure_size(parser)
     configure_format(parser)
 
 
@@ -52,13 +53,15 @@ def run(options: argparse.Namespace) -> int:
     project = assemble(found, str(root.absolute()))
     video = film_path(options.video, "simulation")
     with one_object(options.format) as say:
-        say(_played(project, motion, options.speed, video))
+        say(_played(project, motion, options.speed, video, options.size))
     return 0
 
 
-def _played(project: Project, motion: MotionDefinition, speed: str, video: Path | None) -> dict[str, Any]:
+def _played(
+    project: Project, motion: MotionDefinition, speed: str, video: Path | None, size: tuple[int, int]
+) -> dict[str, Any]:
     """How it went. Raises UsageError where the robot can't, or falls."""
-    player = _Player(project, speed, video)
+    player = _Player(project, speed, video, size)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
     late = _slowed(motion, project.body)
     for line in late:
@@ -81,14 +84,14 @@ def _played(project: Project, motion: MotionDefinition, speed: str, video: Path 
 class _Player:
     """The simulated robot with nobody in charge of it: one command after another, each to its end."""
 
-    def __init__(self, project: Project, speed: str, video: Path | None) -> None:
+    def __init__(self, project: Project, speed: str, video: Path | None, size: tuple[int, int]) -> None:
         from lumen.robots.simulation import SimulatedRobot
         from lumen.robots.simulation.film import Film
 
         chosen = set_up("simulation", project, speed)
         assert isinstance(chosen.robot, SimulatedRobot)
         self.robot, self._clock = chosen.robot, chosen.clock
-        self._film = Film(video, self.robot, "close") if video else None
+        self._film = Film(video, self.robot, "close", size=size) if video else None
 
     def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> None:
         """To its end, which is `duration` [s] ahead. Raises UsageError where the robot can't, with its reason."""

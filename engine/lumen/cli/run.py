@@ -26,7 +26,7 @@ from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup, set_up
 from lumen.app.stories import home_of, stories_of
 from lumen.bus import connect
 from lumen.buses.validated import validated
-from lumen.cli.film_path import film_path
+from lumen.cli.film_options import configure_size, film_path, film_progress
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.main import ready
 from lumen.cli.performance import Performance
@@ -72,6 +72,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--for", dest="period", metavar="60s", help="end after so much simulated time")
     add("--language", metavar="LANG", help="which language it speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
+    configure_size(parser)
     add("--record", metavar="FILE.mcap", type=Path, help="record what is said on the bus, for Foxglove and Lichtblick")
     add("--voice", choices=VOICES, default="none", help="let espeak-ng say the simulated robot's texts (default: none)")
     add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write what is said instead of playing it")
@@ -141,7 +142,7 @@ def _whole(
         _heed_signals(node)
         try:
             if video:
-                node.add_film(video, track)
+                node.add_film(video, track, size=options.size, progress=film_progress(project, story, period))
             if project.console.wanted and options.speed != "max":
                 node.add(ConsolePart(run_directory.root, url, partial(performance.transcript.line, "console")))
             node.claim()

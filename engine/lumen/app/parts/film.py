@@ -3,30 +3,75 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from lumen.app.film_progress import FilmProgress
 from lumen.app.film_sound import add_sound
 from lumen.app.parts.part import Part
 from lumen.errors import UsageError
+from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
+from lumen.language.stories import Arrive, Leave, Speak, VisitorAction
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Robot
+from lumen.runtime.loop import Observer
 
 
-class FilmPart(Part):
-    """Writes each tick into a file, and when it is closed what `track` heard.
+class FilmPart(Part, Observer):
+    """Writes each tick into a file, and when it is closed what `track` heard; what happens chooses what is shown.
 
-    Raises RobotError where nothing can be drawn, UsageError for another robot.
+    `size` is (width, height) [px], None for the usual one. Raises RobotError where nothing can be drawn, UsageError for
+    another robot.
     """
 
-    def __init__(self, path: Path, robot: Robot, track: AudioTrack | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        robot: Robot,
+        track: AudioTrack | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        title: str = "",
+        progress: FilmProgress | None = None,
+    ) -> None:
         from lumen.robots.simulation import SimulatedRobot
-        from lumen.robots.simulation.film import Film
+        from lumen.robots.simulation.film import FILM_SIZE, Film
+        from lumen.robots.simulation.shots import FilmMoment
 
         if not isinstance(robot, SimulatedRobot):
             raise UsageError("a film is one of the simulated robot")
-        self._film, self._path, self._track = Film(path, robot), path, track
+        self._moments = FilmMoment
+        self._film, self._path, self._track = Film(path, robot, size=size or FILM_SIZE, title=title), path, track
+        self._progress = progress
+        self._saying = ""
+        self._now = 0.0
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(id, Say(text)):
+                self._saying = id
+                self._film.says(text)
+            case Start(_, Play()):
+                self._film.happened(self._moments.ROBOT_MOVES)
+
+    def answered(self, event: Event) -> None:
+        _, answer, id = event.name.partition(".command.")
+        if answer and id == self._saying:
+            self._film.says("")
+
+    def visitor_action(self, action: VisitorAction) -> None:
+        """The visitor does something."""
+        match action:
+            case Arrive():
+                self._film.happened(self._moments.COMES)
+            case Leave():
+                self._film.happened(self._moments.LEAVES)
+            case Speak(text=text):
+                self._film.hears(text, self._now)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._now = now
         self._film.tick(now)
+        if self._progress:
+            self._progress.tick(self._film.length)
 
     def close(self) -> None:
         self._film.close()

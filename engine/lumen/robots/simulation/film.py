@@ -1,68 +1,216 @@
-"""A film of a run, by simulated time."""
+"""A film of a run, by simulated time: directed, subtitled, drawn by as many threads as there are cores."""
 
+import os
+from collections import deque
 from collections.abc import Generator
+from concurrent.futures import Future, ThreadPoolExecutor
+from math import atan2
 from pathlib import Path
+from typing import NamedTuple
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
-from lumen.robots.simulation.rendering import FILM_QUALITY, RenderState, SceneRenderer, available
+from lumen.robots.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, title
+from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.robot import SimulatedRobot
+from lumen.robots.simulation.shots import (
+    FIELD_OF_VIEW,
+    CameraPlace,
+    FilmMoment,
+    HallPoint,
+    Shot,
+    ShotDirector,
+    Subjects,
+    camera_place,
+    free_camera,
+)
 
 FILM_RATE = 25
-FILM_WIDTH, FILM_HEIGHT = 640, 480
+FilmSize = tuple[int, int]
+FILM_SIZE: FilmSize = (1920, 1080)
+
+TITLE_SHOWN, TITLE_FADES = 3.0, 0.6
+"""How long the title stands, and how long it takes to come and to go [s]."""
+
+MAX_WAITING_FRAMES = 8
+"""Drawn ahead of those that are written, at most: each is as large as its pixels."""
+
+FOLLOWING = 0.06
+"""The part of the way that a camera within a shot goes after what it shows, each frame."""
+
+
+class Picture(NamedTuple):
+    """All that one frame is drawn from."""
+
+    state: RenderState
+    camera: str | tuple[HallPoint, float, float, float]
+    said: str
+    heard: str
+    title: float
 
 
 class Film:
-    """Writes an MP4 of what a camera of the hall sees; `tick` whenever time has passed, `close` at the end.
+    """Writes an MP4 of a run; `tick` whenever time has passed, `close` at the end.
 
-    Raises RobotError where nothing can be drawn, saying which package to install, or the hall has no such camera.
+    Without a `camera` of the hall its own one is directed: by what `happened`. `size` is (width, height) [px], even
+    numbers. Raises RobotModelError where nothing can be drawn, saying which package to install, or the hall has no such
+    camera.
     """
 
-    def __init__(self, path: Path, robot: SimulatedRobot, camera: str = "observer") -> None:
+    def __init__(
+        self, path: Path, robot: SimulatedRobot, camera: str = "", *, size: FilmSize = FILM_SIZE, title: str = ""
+    ) -> None:
         if reason := available():
             raise RobotModelError(reason)
-        if mujoco.mj_name2id(robot.world.model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
+        model = robot.world.model
+        if camera and mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
             raise RobotModelError(f"the hall has no camera `{camera}` to film with")
-        self._robot, self._camera = robot, camera
-        self._renderer = SceneRenderer(robot.world.model, FILM_QUALITY)
-        self._writer = _writer(path)
-        self.frames = 0
+        self._robot, self._camera, self._size, self._title = robot, camera, size, title
+        self._renderer = SceneRenderer(model, FILM_QUALITY)
+        self._head, self._torso = (model.body(f"{ROBOT_PREFIX}/{name}").id for name in ("HeadPitch", "Torso"))
+        self._director = ShotDirector()
+        self._shown: tuple[Shot, HallPoint, HallPoint] | None = None
+        self._drawers = [ThreadPoolExecutor(1, "lumen-film") for _ in range(min(os.cpu_count() or 1, 8))]
+        self._waiting: deque[tuple[Future[PixelArray], int]] = deque()
+        self._writer = _writer(path, size)
+        self._said = self._heard = ""
+        self._heard_until = 0.0
+        self._due = self._drawn = 0
+
+    @property
+    def frames(self) -> int:
+        """How many it has by now."""
+        return self._due
 
     @property
     def length(self) -> float:
         """How long it is by now [s]."""
-        return self.frames / FILM_RATE
+        return self._due / FILM_RATE
 
     def frame_due(self, now: float) -> bool:
         """Whether it is time [s] for the next frame."""
-        return now + 1e-9 >= self.frames / FILM_RATE
+        return now + 1e-9 >= self._due / FILM_RATE
+
+    def happened(self, moment: FilmMoment) -> None:
+        """Something happens that a camera cares about."""
+        self._director.happened(moment)
+
+    def says(self, text: str) -> None:
+        """The robot says this from now on; empty where it has ended."""
+        self._said = text
+        if text:
+            self._heard = ""
+            self.happened(FilmMoment.ROBOT_SPEAKS)
+
+    def hears(self, text: str, now: float) -> None:
+        """The visitor says this at `now` [s]: it stands as long as it takes to read."""
+        self._heard, self._heard_until = text, now + 1.0 + 0.07 * len(text)
+        self.happened(FilmMoment.VISITOR_SPEAKS)
 
     def tick(self, now: float) -> None:
-        """Take the frames that are due by `now` [s]; the run waits for them."""
+        """Take the frames that are due by `now` [s]; the run waits where drawing does not keep up."""
         if not self.frame_due(now):
             return
         world = self._robot.world
-        pixels = self._renderer.draw(RenderState.of(world.model, world.data), self._camera, FILM_WIDTH, FILM_HEIGHT)
+        picture = Picture(
+            RenderState.of(world.model, world.data),
+            self._camera or self._directed(now),
+            self._said,
+            self._heard if now < self._heard_until else "",
+            _fading(now) if self._title else 0.0,
+        )
+        again = 0
         while self.frame_due(now):
-            self._writer.send(pixels.tobytes())
-            self.frames += 1
+            self._due += 1
+            again += 1
+        drawer = self._drawers[self._drawn % len(self._drawers)]
+        self._drawn += 1
+        self._waiting.append((drawer.submit(self._draw, picture), again))
+        while len(self._waiting) > MAX_WAITING_FRAMES or (self._waiting and self._waiting[0][0].done()):
+            self._write()
 
     def close(self) -> None:
         """Finish the file; harmless when repeated."""
+        while self._waiting:
+            self._write()
         self._writer.close()
-        self._renderer.close()
+        for drawer in self._drawers:
+            drawer.submit(self._renderer.close)
+            drawer.shutdown()
+        self._drawers = []
+
+    def _write(self) -> None:
+        drawn, times = self._waiting.popleft()
+        pixels = drawn.result().tobytes()
+        for _ in range(times):
+            self._writer.send(pixels)
+
+    def _draw(self, picture: Picture) -> PixelArray:
+        camera: str | mujoco.MjvCamera
+        if isinstance(picture.camera, str):
+            camera = picture.camera
+        else:
+            camera = mujoco.MjvCamera()
+            camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+            camera.lookat[:], camera.azimuth, camera.elevation, camera.distance = picture.camera
+        pixels = self._renderer.draw(picture.state, camera, *self._size, field_of_view=FIELD_OF_VIEW)
+        if picture.said or picture.heard:
+            text, colour = (picture.said, ROBOT_COLOUR) if picture.said else (picture.heard, VISITOR_COLOUR)
+            subtitle(text, colour, *self._size).lay_on(pixels)
+        elif picture.title > 0.0:
+            title(self._title, *self._size).lay_on(pixels, picture.title)
+        return pixels
+
+    def _directed(self, now: float) -> tuple[HallPoint, float, float, float]:
+        """Where the film's own camera looks, its azimuth and elevation [deg] and its distance [m]."""
+        who = self._subjects()
+        shot = self._director.shot(now, who.visitor is not None)
+        eye, target = camera_place(shot, who, self._size[0] / self._size[1])
+        if self._shown and self._shown[0] is shot:
+            eye, target = (_nearer(was, now_at) for was, now_at in zip(self._shown[1:], (eye, target), strict=True))
+        self._shown = shot, eye, target
+        return target, *free_camera(CameraPlace(eye, target))
+
+    def _subjects(self) -> Subjects:
+        data = self._robot.world.data
+        head, torso = (_point(data.xpos[body]) for body in (self._head, self._torso))
+        ahead = data.xmat[self._torso].reshape(3, 3)[:, 0]
+        return Subjects(_up(head, 0.03), torso, atan2(ahead[1], ahead[0]), self._robot.figure.face())
 
 
-def _writer(path: Path) -> Generator[None, bytes, None]:
+def _nearer(was: HallPoint, wanted: HallPoint) -> HallPoint:
+    x, y, z = (a + FOLLOWING * (b - a) for a, b in zip(was, wanted, strict=True))
+    return x, y, z
+
+
+def _point(place: NDArray[np.float64]) -> HallPoint:
+    x, y, z = (float(part) for part in place)
+    return x, y, z
+
+
+def _up(point: HallPoint, by: float) -> HallPoint:
+    return point[0], point[1], point[2] + by
+
+
+def _fading(now: float) -> float:
+    """How visible the title is at `now` [s], from 0 to 1."""
+    return max(0.0, min(now / TITLE_FADES, (TITLE_SHOWN - now) / TITLE_FADES, 1.0))
+
+
+def _writer(path: Path, size: FilmSize) -> Generator[None, bytes, None]:
     import imageio_ffmpeg
 
     writer: Generator[None, bytes, None] = imageio_ffmpeg.write_frames(
         str(path),
-        (FILM_WIDTH, FILM_HEIGHT),
+        size,
         fps=FILM_RATE,
         codec="libx264",
-        quality=7,
+        quality=None,
+        output_params=["-preset", "veryfast", "-crf", "20", "-movflags", "+faststart"],
         macro_block_size=2,
         ffmpeg_log_level="error",
     )

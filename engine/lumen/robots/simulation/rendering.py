@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.robots.simulation import gl
+from lumen.robots.simulation.contact_shadows import ContactShadows
 
 PixelArray = NDArray[np.uint8]
 """Shape (height, width, 3), RGB."""
@@ -22,14 +23,15 @@ def available() -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class RenderQuality:
-    """What a picture costs: size of the shadow map and antialiasing samples, 0 for none."""
+    """What a picture costs: size of the shadow map and antialiasing samples, 0 for none; dark spots under feet."""
 
     shadows: int = 0
     samples: int = 0
+    contact: bool = False
 
 
 CAMERA_QUALITY = RenderQuality()
-FILM_QUALITY = RenderQuality(shadows=2048)
+FILM_QUALITY = RenderQuality(shadows=2048, samples=4, contact=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +67,21 @@ class SceneRenderer:
         self._model, self._quality = model, quality
         self._local = threading.local()
 
-    def draw(self, scene: RenderState, camera: str | mujoco.MjvCamera, width: int, height: int) -> PixelArray:
-        """The scene through a camera of the model, or one anywhere."""
+    def draw(
+        self,
+        scene: RenderState,
+        camera: str | mujoco.MjvCamera,
+        width: int,
+        height: int,
+        *,
+        field_of_view: float | None = None,
+    ) -> PixelArray:
+        """The scene through a camera of the model, or one anywhere whose picture's height has that angle [deg]."""
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
         canvas = cameras.get((width, height))
         if canvas is None:
             canvas = cameras[width, height] = _Canvas(self._model, self._quality, width, height)
-        return canvas.draw(scene, camera)
+        return canvas.draw(scene, camera, field_of_view)
 
     def close(self) -> None:
         """Let go of this thread's contexts; those of other threads stay until the program ends."""
@@ -92,9 +102,14 @@ class _Canvas:
         self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
         atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
+        self._contact = ContactShadows(self._model) if quality.contact else None
 
-    def draw(self, scene: RenderState, camera: str | mujoco.MjvCamera) -> PixelArray:
+    def draw(
+        self, scene: RenderState, camera: str | mujoco.MjvCamera, field_of_view: float | None = None
+    ) -> PixelArray:
         model, data = self._model, self._data
+        if field_of_view is not None:
+            model.vis.global_.fovy = field_of_view
         data.qpos[:] = scene.positions
         data.mocap_pos[:], data.mocap_quat[:] = scene.visitor_place, scene.visitor_turn
         model.mat_rgba[:] = scene.colours
@@ -103,6 +118,8 @@ class _Canvas:
         mujoco.mj_comPos(model, data)
         mujoco.mj_camlight(model, data)
         self._renderer.update_scene(data, camera)
+        if self._contact:
+            self._contact.add(self._renderer.scene, data)
         pixels: PixelArray = self._renderer.render()
         return pixels
 

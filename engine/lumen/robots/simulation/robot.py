@@ -102,7 +102,7 @@ class SimulatedRobot:
             self.world, self.motors, self.lights, walker, self._sensors, posture, self._notice
         )
         self._executor = Executor(self._begin, self._skills.parts)
-        self._figure = VisitorFigure(self.world.model, self.world.data)
+        self.figure = VisitorFigure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
         self._events: list[Event] = []
         self._exhausted = False
@@ -186,10 +186,10 @@ class SimulatedRobot:
         self._camera.close()
 
     def place(self, visitor: Visitor | None) -> None:
-        self._figure.place(visitor)
+        self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:
-        face = self._figure.face()
+        face = self.figure.face()
         return self._camera.pixel(face) if face else None
 
     def touch(self, sensor: str, pressed: bool) -> None:

@@ -1,0 +1,32 @@
+"""How far a film is, and about when it will be finished: told now and then, for it takes longer than what it shows."""
+
+import time
+from collections.abc import Callable
+
+FILM_TOLD_EVERY = 15.0
+"""[s] of real time between one line and the next."""
+
+
+class FilmProgress:
+    """Tells, with `tell`, how much of a film of about `whole` [s] is drawn; 0 where nobody knows its length."""
+
+    def __init__(
+        self, tell: Callable[[str], None], whole: float = 0.0, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._tell, self._whole, self._clock = tell, whole, clock
+        self._began = self._told = clock()
+
+    def tick(self, length: float) -> None:
+        """The film has `length` [s] by now."""
+        now = self._clock()
+        if now - self._told < FILM_TOLD_EVERY or length <= 0.0:
+            return
+        self._told, took = now, now - self._began
+        left = (self._whole - length) * took / length
+        of = f" of about {self._whole:.0f} s, about {_duration(left)} more" if left > 0.0 else " s"
+        self._tell(f"film: {length:.0f}{of}")
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes else f"{rest} s"

@@ -1,0 +1,55 @@
+"""Where `--video` may write, and how large its picture is."""
+
+import argparse
+import os
+import re
+from pathlib import Path
+
+from lumen.app.film_progress import FilmProgress
+from lumen.app.rehearsal import rehearse
+from lumen.cli.streams import complain
+from lumen.errors import UsageError
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+
+
+def film_path(path: Path | None, robot: str) -> Path | None:
+    """Where a film may be written; raises UsageError where it may not."""
+    if path is None:
+        return None
+    if robot != "simulation":
+        raise UsageError("--video films the simulation: leave out --robot")
+    if path.suffix != ".mp4" or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise UsageError(
+            f"can't write a film to {path}: name an .mp4 file in a folder that is there and yours to write"
+        )
+    return path
+
+
+FILM_SIZE = (1920, 1080)
+MIN_FILM_SIDE, MAX_FILM_SIDE = 64, 4096
+"""What a side of the picture may have [px]."""
+
+
+def configure_size(parser: argparse.ArgumentParser) -> None:
+    """`--size`, for a verb that has `--video`."""
+    shown = "x".join(map(str, FILM_SIZE))
+    parser.add_argument(
+        "--size", type=film_size, default=FILM_SIZE, metavar="WIDTHxHEIGHT", help=f"of the film [px] (default: {shown})"
+    )
+
+
+def film_size(text: str) -> tuple[int, int]:
+    """(width, height) [px] of `1280x720`. Raises ArgumentTypeError for what no film can have."""
+    match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
+    sides = (int(match[1]), int(match[2])) if match else (0, 0)
+    if any(side % 2 or not MIN_FILM_SIDE <= side <= MAX_FILM_SIDE for side in sides):
+        wanted = f"1280x720 for one: even numbers from {MIN_FILM_SIDE} to {MAX_FILM_SIDE}"
+        raise argparse.ArgumentTypeError(f"`{text}` is no size of a film; {wanted}")
+    return sides
+
+
+def film_progress(project: Project, story: Story | None, period: float | None) -> FilmProgress:
+    """Who tells how far a film is, of a story or of a `period` [s]: the recording robot plays the story beforehand."""
+    lengths = [length for length in (rehearse(project, story).time if story else None, period) if length]
+    return FilmProgress(complain, min(lengths, default=0.0))

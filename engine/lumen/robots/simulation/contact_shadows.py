@@ -1,0 +1,77 @@
+"""Soft dark spots where somebody stands: what little light there is under a shoe, which a shadow map misses."""
+
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.visitor_figure import VISITOR_BODY
+
+FOOT_BODIES = (f"{ROBOT_PREFIX}/LAnkleRoll", f"{ROBOT_PREFIX}/RAnkleRoll")
+ANKLE_HEIGHT = 0.045
+"""Of a foot's joint above its sole [m] (data sheet of NAO: FootHeight 45.19 mm)."""
+
+SHADOW_FADES = 0.05
+"""How high above the ground [m] a sole is when nothing is left of the spot beneath it."""
+
+LAYERS, LAYER_OPACITY = (0.75, 1.0, 1.3, 1.65), 0.13
+FOOT_SIZE, VISITOR_SIZE = (0.088, 0.052), (0.17, 0.2)
+"""Of a spot: half its length and half its width [m]."""
+
+_THICKNESS = 4e-4
+_GROUND = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
+"""The groups of geoms that can be stood on."""
+
+
+class ContactShadows:
+    """Adds the spots to a scene of one model, whatever of the robot and the visitor there is."""
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self._model = model
+        bodies = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in (*FOOT_BODIES, VISITOR_BODY))
+        *self._feet, self._visitor = (body if body >= 0 else None for body in bodies)
+
+    def add(self, scene: mujoco.MjvScene, data: mujoco.MjData) -> None:
+        """Put the spots into the scene, as far as it has room."""
+        for place, turn, (length, width), opacity in self._spots(data):
+            for i, layer in enumerate(LAYERS):
+                if scene.ngeom >= scene.maxgeom:
+                    return
+                size = np.array([length * layer, width * layer, _THICKNESS])
+                spot = place + np.array([0.0, 0.0, (len(LAYERS) - i) * _THICKNESS / 2])
+                colour = np.array([0.0, 0.0, 0.0, LAYER_OPACITY * opacity], dtype=np.float32)
+                geom = scene.geoms[scene.ngeom]
+                mujoco.mjv_initGeom(geom, mujoco.mjtGeom.mjGEOM_ELLIPSOID, size, spot, turn.flatten(), colour)
+                geom.category = mujoco.mjtCatBit.mjCAT_DECOR
+                scene.ngeom += 1
+
+    def _spots(self, data: mujoco.MjData) -> Iterator[tuple[np.ndarray, np.ndarray, tuple[float, float], float]]:
+        for foot in self._feet:
+            if foot is None:
+                continue
+            sole = data.xpos[foot] - data.xmat[foot].reshape(3, 3)[:, 2] * ANKLE_HEIGHT
+            ahead = data.xmat[foot].reshape(3, 3)[:, 0]
+            if spot := self._on_ground(data, data.xpos[foot] + 0.02 * ahead, float(sole[2])):
+                place, height = spot
+                if height < SHADOW_FADES:
+                    yield place, _flat(ahead), FOOT_SIZE, 1.0 - max(height, 0.0) / SHADOW_FADES
+        if self._visitor is not None and data.xpos[self._visitor][2] > -1.0:
+            yield data.xpos[self._visitor].copy(), data.xmat[self._visitor].reshape(3, 3), VISITOR_SIZE, 1.0
+
+    def _on_ground(self, data: mujoco.MjData, above: np.ndarray, sole: float) -> tuple[np.ndarray, float] | None:
+        """The ground below, and how high the sole is above it [m]; None over nothing."""
+        hit = np.array([-1], dtype=np.int32)
+        far = mujoco.mj_ray(self._model, data, above, np.array([0.0, 0.0, -1.0]), _GROUND, 1, -1, hit)
+        if far < 0:
+            return None
+        place = above - np.array([0.0, 0.0, far])
+        return place, sole - float(place[2])
+
+
+def _flat(ahead: np.ndarray) -> np.ndarray:
+    """The rotation of something that lies flat and points there."""
+    x, y = float(ahead[0]), float(ahead[1])
+    length = max(float(np.hypot(x, y)), 1e-9)
+    x, y = x / length, y / length
+    return np.array([[x, -y, 0.0], [y, x, 0.0], [0.0, 0.0, 1.0]])

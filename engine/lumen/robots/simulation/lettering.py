@@ -1,0 +1,113 @@
+"""What is written into the pictures of a film: subtitles and a title, drawn by Pillow and laid over the pixels."""
+
+import unicodedata
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+FONTS = ("DejaVuSans.ttf", "NotoSans-Regular.ttf", "LiberationSans-Regular.ttf", "Arial.ttf", "arial.ttf")
+"""Looked for where the system keeps its fonts; without any of them Pillow's own writes, which has no accents."""
+
+SUBTITLE_HEIGHT, TITLE_HEIGHT = 0.05, 0.1
+"""Of a line, as a part of the picture's height."""
+
+SUBTITLE_WIDTH = 0.72
+"""The part of the picture's width that a line of subtitles may take."""
+
+ROBOT_COLOUR, VISITOR_COLOUR = (255, 255, 255), (255, 221, 130)
+_BOX = (12, 16, 24, 185)
+
+Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
+Colour = tuple[int, int, int]
+
+
+class Overlay(NamedTuple):
+    """Letters and what is behind them: RGBA of shape (height, width, 4), and where its upper left corner lies [px]."""
+
+    pixels: NDArray[np.uint8]
+    left: int
+    top: int
+
+    def lay_on(self, picture: NDArray[np.uint8], opacity: float = 1.0) -> None:
+        """Blend it into a picture (height, width, 3)."""
+        height, width = self.pixels.shape[:2]
+        part = picture[self.top : self.top + height, self.left : self.left + width]
+        alpha = self.pixels[:, :, 3:].astype(np.uint16) * round(256 * opacity) // 256
+        part[:] = (part * (255 - alpha) + self.pixels[:, :, :3] * alpha) // 255
+
+
+@lru_cache(maxsize=64)
+def subtitle(text: str, colour: Colour, width: int, height: int) -> Overlay:
+    """A text in lines at the bottom of a picture of that size [px]."""
+    font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
+    lines = _wrapped(_written(text, plain), font, round(width * SUBTITLE_WIDTH))
+    return _drawn(lines, font, colour, width, round(height * 0.94))
+
+
+@lru_cache(maxsize=8)
+def title(text: str, width: int, height: int) -> Overlay:
+    """A title in the lower third of a picture of that size [px]."""
+    font, plain = _font(round(height * TITLE_HEIGHT * 0.78))
+    lines = _wrapped(_written(text, plain), font, round(width * 0.86))
+    return _drawn(lines, font, ROBOT_COLOUR, width, round(height * 0.88))
+
+
+def _drawn(lines: list[str], font: Font, colour: Colour, width: int, bottom: int) -> Overlay:
+    canvas = Image.new("RGBA", (width, bottom))
+    pen = ImageDraw.Draw(canvas)
+    text = "\n".join(lines)
+    box = pen.multiline_textbbox((0, 0), text, font=font, align="center")
+    wide, tall = round(box[2] - box[0]), round(box[3] - box[1])
+    margin = max(round(tall / len(lines) * 0.45), 2)
+    left, top = max((width - wide) // 2 - margin, 0), max(bottom - tall - 2 * margin, 0)
+    right, low = min(left + wide + 2 * margin, width), bottom
+    pen.rounded_rectangle((left, top, right - 1, low - 1), radius=margin, fill=_BOX)
+    pen.multiline_text((left + margin - box[0], top + margin - box[1]), text, font=font, fill=colour, align="center")
+    return Overlay(np.asarray(canvas.crop((left, top, right, low))), left, top)
+
+
+def _wrapped(text: str, font: Font, most: int) -> list[str]:
+    """The words in lines of at most so many pixels, about as long as each other."""
+    words = text.split()
+    text = " ".join(words)
+    for count in range(1, 9):
+        wanted = max(font.getlength(text) / count * 1.12, 1.0)
+        if count > 1 or wanted <= most * 1.12:
+            lines = _filled(words, font, min(most, wanted))
+            if len(lines) <= count and all(font.getlength(line) <= most for line in lines):
+                return lines
+    return _filled(words, font, most)
+
+
+def _filled(words: list[str], font: Font, most: float) -> list[str]:
+    lines = [""]
+    for word in words:
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and font.getlength(longer) > most:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
+
+
+@lru_cache(maxsize=4)
+def _font(size: int) -> tuple[Font, bool]:
+    """A font of that height [px], and whether it has only what ASCII has."""
+    for name in FONTS:
+        try:
+            return ImageFont.truetype(name, size, layout_engine=ImageFont.Layout.BASIC), False
+        except OSError:
+            continue
+    return ImageFont.load_default(size), True
+
+
+def _written(text: str, plain: bool) -> str:
+    """The text as a font can write it: without accents where it has none."""
+    text = "".join(c for c in text if c.isprintable() or c.isspace())
+    if not plain:
+        return text
+    spread = unicodedata.normalize("NFKD", text).replace("–", "-").replace("—", "-")
+    return "".join(c for c in spread if c.isascii() or c in "“”‘’…")

@@ -1,0 +1,146 @@
+"""Where a film's camera stands: the robot with its visitor, its face, all of it, or what the visitor sees.
+
+What happens chooses the shot, as an editor would cut a talk between two: who speaks is seen, who listens now and then,
+and nothing is cut faster than an eye follows.
+"""
+
+from enum import StrEnum
+from math import atan2, cos, degrees, hypot, radians, sin, tan
+from typing import NamedTuple
+
+HallPoint = tuple[float, float, float]
+"""In the hall [m]: x, y, z."""
+
+
+class Shot(StrEnum):
+    """What a camera shows, in the words of those who make films."""
+
+    TWO_SHOT = "two-shot"
+    CLOSE_UP = "close-up"
+    FULL_SHOT = "full shot"
+    POINT_OF_VIEW = "point of view"
+
+
+class FilmMoment(StrEnum):
+    """What happens that a camera cares about."""
+
+    COMES = "comes"
+    LEAVES = "leaves"
+    ROBOT_SPEAKS = "robot speaks"
+    VISITOR_SPEAKS = "visitor speaks"
+    ROBOT_MOVES = "robot moves"
+
+
+class Subjects(NamedTuple):
+    """Who is to be seen: the robot's head and torso, where it looks [rad], and the visitor's face, None without one."""
+
+    head: HallPoint
+    torso: HallPoint
+    heading: float
+    visitor: HallPoint | None
+
+
+class CameraPlace(NamedTuple):
+    """Where a camera stands and what stands in the middle of its picture [m]."""
+
+    eye: HallPoint
+    target: HallPoint
+
+
+SHORTEST_SHOT, LONGEST_SHOT = 2.5, 9.0
+"""How long a shot stays, whatever happens, and after how long another one is due, even if nothing does [s]."""
+
+FIELD_OF_VIEW = 36.0
+"""Of the picture's height [deg]: a long lens, in which nothing looks bent."""
+
+HEAD_ROOM, CLOSE_DISTANCE, FULL_DISTANCE = 0.45, 0.62, 1.75
+SIDE = radians(-32.0)
+"""How far beside the robot's look a camera stands that sees its face: on the open side of the hall."""
+
+_WANTED = {
+    FilmMoment.COMES: (Shot.TWO_SHOT,),
+    FilmMoment.LEAVES: (Shot.TWO_SHOT,),
+    FilmMoment.ROBOT_SPEAKS: (Shot.CLOSE_UP, Shot.TWO_SHOT, Shot.POINT_OF_VIEW),
+    FilmMoment.VISITOR_SPEAKS: (Shot.POINT_OF_VIEW, Shot.TWO_SHOT),
+    FilmMoment.ROBOT_MOVES: (Shot.FULL_SHOT,),
+}
+"""What is shown when something happens: the next time the next one, so that a talk is not one picture."""
+
+_NEEDS_VISITOR = frozenset((Shot.TWO_SHOT, Shot.POINT_OF_VIEW))
+
+
+class ShotDirector:
+    """Chooses what is shown; the same moments at the same times [s] make the same film."""
+
+    def __init__(self) -> None:
+        self._shot, self._since = Shot.FULL_SHOT, 0.0
+        self._next = Shot.FULL_SHOT
+        self._times = dict.fromkeys(FilmMoment, 0)
+
+    def happened(self, moment: FilmMoment) -> None:
+        """Something happens now; what was due before is forgotten."""
+        wanted = _WANTED[moment]
+        self._next = wanted[self._times[moment] % len(wanted)]
+        self._times[moment] += 1
+
+    def shot(self, now: float, visitor: bool) -> Shot:
+        """What is shown at `now` [s], with a visitor or without one."""
+        shown = now - self._since
+        if self._shot in _NEEDS_VISITOR and not visitor:
+            self._cut(Shot.FULL_SHOT, now)
+        elif self._next != self._shot and shown >= SHORTEST_SHOT and (visitor or self._next not in _NEEDS_VISITOR):
+            self._cut(self._next, now)
+        elif shown >= LONGEST_SHOT and visitor:
+            self._cut(Shot.TWO_SHOT if self._shot is not Shot.TWO_SHOT else Shot.FULL_SHOT, now)
+        return self._shot
+
+    def _cut(self, shot: Shot, now: float) -> None:
+        self._shot = self._next = shot
+        self._since = now
+
+
+def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
+    """Where the camera of a shot stands; `aspect` is the picture's width by its height."""
+    if shot is Shot.CLOSE_UP:
+        return CameraPlace(_beside(who, CLOSE_DISTANCE, who.head[2] + 0.02), _higher(who.head, -0.03))
+    if shot is Shot.POINT_OF_VIEW and who.visitor:
+        x, y, z = who.visitor
+        ahead = atan2(who.head[1] - y, who.head[0] - x)
+        return CameraPlace((x + 0.14 * cos(ahead), y + 0.14 * sin(ahead), z + 0.02), _higher(who.head, -0.1))
+    if shot is Shot.TWO_SHOT and who.visitor:
+        return _two_shot(who, who.visitor, aspect)
+    return CameraPlace(_beside(who, FULL_DISTANCE, who.torso[2] + 0.3), _higher(who.torso, 0.02))
+
+
+def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
+    """From the side, so far away that both are in the picture, from the robot's feet to the visitor's hair."""
+    dx, dy = visitor[0] - who.torso[0], visitor[1] - who.torso[1]
+    apart = max(hypot(dx, dy), 0.3)
+    low, high = who.torso[2] - 0.4, max(visitor[2] + 0.22, who.head[2] + 0.15)
+    half = tan(radians(FIELD_OF_VIEW) / 2)
+    distance = max((high - low) / 2 / half, (apart / 2 + HEAD_ROOM) / (half * aspect))
+    middle = (who.torso[0] + dx / 2, who.torso[1] + dy / 2, (low + high) / 2)
+    across = atan2(dy, dx) - radians(90.0)
+    eye = (middle[0] + distance * cos(across), middle[1] + distance * sin(across), middle[2] + 0.12)
+    return CameraPlace(eye, middle)
+
+
+def _beside(who: Subjects, distance: float, height: float) -> HallPoint:
+    """A place that far before the robot, to the side on which no visitor stands."""
+    side = SIDE
+    if who.visitor:
+        towards = atan2(who.visitor[1] - who.torso[1], who.visitor[0] - who.torso[0]) - who.heading
+        side = SIDE if atan2(sin(towards), cos(towards)) > -0.15 else -SIDE
+    angle = who.heading + side
+    return who.torso[0] + distance * cos(angle), who.torso[1] + distance * sin(angle), height
+
+
+def _higher(point: HallPoint, by: float) -> HallPoint:
+    return point[0], point[1], point[2] + by
+
+
+def free_camera(place: CameraPlace) -> tuple[float, float, float]:
+    """Azimuth [deg], elevation [deg] and distance [m] of a camera of MuJoCo's that looks at the place's target."""
+    dx, dy, dz = (target - eye for eye, target in zip(place.eye, place.target, strict=True))
+    flat = hypot(dx, dy)
+    return degrees(atan2(dy, dx)), degrees(atan2(dz, flat)), hypot(flat, dz)
