@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 
-from lumen.console.jobs import OUT_OF_MEMORY, REFUSED
+from lumen.console.job_promises import OUT_OF_MEMORY, REFUSED
 
 match sys.argv[1]:
     case "killed":

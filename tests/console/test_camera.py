@@ -45,7 +45,13 @@ def test_images_come_while_somebody_looks(served: Served, hosted: Hosted, browse
         answer.close()
         connection.close()
         until(lambda: not cameras.looked_at("NAO"))
+        until(lambda: browser.get("/camera/NAO?still").status == 200)
+        still = browser.get("/camera/NAO?still")
+        assert (still.headers["content-type"], still.body) == ("image/jpeg", JPEG)
+        assert cameras.looked_at("NAO")
+        until(lambda: not cameras.looked_at("NAO"))
     finally:
         ending.set()
         sender.join()
-    assert browser.get("/camera/NAO7").status == 404
+    until(lambda: browser.get("/camera/NAO?still").status == 204)  # what was seen long ago is not shown
+    assert browser.get("/camera/NAO7?still").status == browser.get("/camera/NAO7").status == 404

@@ -139,3 +139,13 @@ def test_who_does_not_read_poses_is_given_the_newest_only(served: Served, hosted
     poses._placed = placed  # type: ignore[method-assign]
     first, second = asyncio.run(read())
     assert int(second) == view.moved > int(first) + 900
+
+
+def test_a_robot_of_another_project_is_not_drawn_by_the_model_of_this_one(served: Served, hosted: Hosted) -> None:
+    body = {"robot": "NAO2", "parts": ["robot"], "session": "s", "state": "here", "time": 0.0}
+    hosted.exhibition.node.bus.publish("lumen.NAO2.presence", body)
+    until(lambda: "NAO2" in [robot["robot"] for robot in served.browser.robots])
+    for path in ("shape", "poses"):
+        answer = served.browser.get(f"/api/{path}?robot=NAO2")
+        reason = "only the robot of this console's own project can be drawn"
+        assert (answer.status, answer.data["reason"]) == (404, reason)

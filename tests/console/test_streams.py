@@ -46,6 +46,15 @@ def test_many_pages_hear_the_same(browser: Browser, hosted: Hosted) -> None:
             stream.close()
 
 
+def test_who_asks_once_gets_what_there_is_and_no_more(browser: Browser, hosted: Hosted) -> None:
+    browser.command("mark", text="he waved")
+    last = browser.robots[0]["position"]
+    with Stream(browser, "/api/events?after=-1&once=1") as stream:
+        until(stream.ended.is_set)
+    assert stream.positions() == [str(number) for number in range(int(stream.positions()[0]), last + 1)]
+    assert [event.data["robot"] for event in stream.of("now")] == ["NAO"]
+
+
 def test_who_never_reads_is_cut_off_and_nobody_else_hears_of_it(
     served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
 ) -> None:

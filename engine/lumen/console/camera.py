@@ -3,6 +3,7 @@
 import asyncio
 import base64
 import binascii
+import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from typing import Any
@@ -20,6 +21,8 @@ PERIOD = 1 / 15
 """How long after an image the next is sent at the earliest [s]."""
 SILENCE = 10.0
 """How long a robot may send no image until the stream ends [s]."""
+FRESH = 2.0
+"""How old an image may be that is shown by itself [s]."""
 LINGER = 2.0
 """How long after the last looker images are still asked for [s]."""
 
@@ -29,12 +32,13 @@ class WatchedCamera:
 
     def __init__(self) -> None:
         self.frame, self.count, self.lookers = b"", 0, 0
+        self.at = self.wanted = -FRESH
         self.bus: Bus | None = None
         self.undo: Callable[[], None] = lambda: None
         self.came = asyncio.Event()
 
     def show(self, frame: bytes) -> None:
-        self.frame, self.count = frame, self.count + 1
+        self.frame, self.count, self.at = frame, self.count + 1, time.monotonic()
         self.came.set()
         self.came = asyncio.Event()
 
@@ -77,8 +81,17 @@ class Cameras:
                 yield head.encode() + camera.frame + b"\r\n"
                 await asyncio.sleep(PERIOD)
         finally:
-            camera.lookers -= 1
-            asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
+            self._looked(camera)
+
+    async def still(self, robot: str) -> bytes:
+        """The newest image; empty where there is none, or an old one. Others are asked for, for a while."""
+        camera = self._cameras.setdefault(robot, WatchedCamera())
+        camera.lookers += 1
+        try:
+            await self._listen(robot, camera)
+        finally:
+            self._looked(camera)
+        return camera.frame if time.monotonic() - camera.at < FRESH else b""
 
     async def _listen(self, robot: str, camera: WatchedCamera) -> None:
         """Subscribe on the bus that there is, unless that was done."""
@@ -96,8 +109,15 @@ class Cameras:
             key = self._watch.keys.of(robot).image
             camera.undo = await asyncio.to_thread(bus.subscribe, key, take)
 
+    def _looked(self, camera: WatchedCamera) -> None:
+        """Somebody looks no more; others may."""
+        camera.lookers -= 1
+        camera.wanted = time.monotonic()
+        asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
+
     def _leave(self, camera: WatchedCamera) -> None:
-        if not camera.lookers and camera.bus:
+        lately = time.monotonic() - camera.wanted < LINGER * 0.9
+        if not camera.lookers and not lately and camera.bus:
             camera.bus, undo, camera.undo = None, camera.undo, lambda: None
             asyncio.get_running_loop().run_in_executor(None, undo)
 

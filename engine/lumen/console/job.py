@@ -23,7 +23,7 @@ from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
 from lumen.console.day_csv import day_csv
-from lumen.console.jobs import JOB_TIME, NOTHING, OUT_OF_MEMORY, REFUSED
+from lumen.console.job_promises import JOB_TIME, NOTHING, OUT_OF_MEMORY, REFUSED
 from lumen.console.kept_days import KeptDays
 from lumen.errors import LumenError
 from lumen.loading.files import read_files

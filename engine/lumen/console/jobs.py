@@ -11,19 +11,14 @@ from typing import Any
 
 import orjson
 
+from lumen.console.job_promises import JOB_TIME, OUT_OF_MEMORY, REFUSED
 from lumen.console.requests import DeniedError
 
 PROGRAM = "lumen.console.job"
-JOB_TIME = 60.0
-"""How long a job may take, with its wait for those before it [s]."""
 MAX_WAITING = 8
 """Jobs under way or waiting; one more is refused."""
 MAX_ANSWER = 64 << 20
 """What a job may answer [bytes]."""
-NOTHING = b"null"
-"""The answer of a job that found nothing."""
-REFUSED, OUT_OF_MEMORY = 76, 77
-"""Exit codes: what it wrote is the reason why there is no answer; it was refused more memory."""
 
 
 class Jobs:

@@ -9,7 +9,8 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from lumen.app.answering import WHY, WHY_NOT
-from lumen.console.jobs import NOTHING, Jobs
+from lumen.console.job_promises import NOTHING
+from lumen.console.jobs import Jobs
 from lumen.console.journal_source import JournalSource
 from lumen.console.known_robot import KnownRobot
 from lumen.console.people import Role

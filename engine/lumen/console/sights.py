@@ -33,6 +33,9 @@ class Sights:
     async def _camera(self, request: Request) -> Response:
         self._reception.person(request, Role.SHOW)
         view = self._reception.robot(request.path_params["robot"])
+        if "still" in request.query_params:
+            image = await self.cameras.still(view.robot)
+            return Response(image, 200 if image else 204, headers=NO_STORE, media_type="image/jpeg")
         return StreamingResponse(self.cameras.stream(view.robot), media_type=MEDIA_TYPE, headers=NO_STORE)
 
     async def _shape(self, request: Request) -> Response:

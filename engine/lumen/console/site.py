@@ -84,7 +84,7 @@ class Site:
         after = request.headers.get("last-event-id") or request.query_params.get("after", "")
         if self.watch.lookers >= MAX_STREAMS:
             raise DeniedError(503, f"{MAX_STREAMS} pages listen already: close some")
-        who = Listener(robot, positions_in(after, robot), full)
+        who = Listener(robot, positions_in(after, robot), full, "once" in request.query_params)
         return StreamingResponse(self.streams.events(who), media_type=STREAM, headers=NO_STORE)
 
     async def _command(self, request: Request) -> Response:

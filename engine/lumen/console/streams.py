@@ -32,11 +32,15 @@ class ReadPosition:
 
 
 class Listener(NamedTuple):
-    """Who listens: to which robot (empty: to all), after which positions, `full` where it has a role."""
+    """Who listens: to which robot (empty: to all), after which positions, `full` where it has a role.
+
+    `once` is for who wants only what there is.
+    """
 
     robot: str
     after: Mapping[str, int]
     full: bool
+    once: bool = False
 
 
 def positions_in(text: str, robot: str) -> dict[str, int]:
@@ -83,6 +87,8 @@ class Streams:
                     if number > command and who.full:
                         command = number
                         yield block
+                if who.once:
+                    return
                 pending = any(cursors[v.robot].version != v.version for v in self._views(who) if v.robot in cursors)
                 wait = NOW_PERIOD if pending else max(0.01, beaten + HEARTBEAT - time.monotonic())
                 await self._watch.changes.wait(seen, wait)

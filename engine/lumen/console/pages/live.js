@@ -1,8 +1,10 @@
-// What happens, as it happens: one stream of the console's events, read by fetch so that a silent cut is noticed too.
+// What happens, as it happens: a stream of the console's events that all pages of this browser share.
 // Entries come once, in order, by the journal's position; a page that was away goes on where it was.
+import { blocks, parsed } from "./blocks.js";
+import { follow } from "./follow.js";
 import { redraw } from "./ui.js";
 
-const SILENCE = 3000, AGAIN = 500, ANSWER = 2500, BEFORE = 600, MOST = 300; // [ms], [ms], [ms], entries, entries
+const AGAIN = 500, ANSWER = 2500, BEFORE = 600, MOST = 300; // [ms], [ms], entries, entries
 
 export const live = {
   state: "connecting", since: Date.now(), role: null, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
@@ -71,41 +73,33 @@ function after(robots) {
   return [...known].filter(([robot]) => !lumen.robot || robot === lumen.robot).map(([robot, position]) => `${robot}:${position}`).join(",");
 }
 
+/** Follow what happens until that is lost. What was before is asked for by itself; what comes meanwhile waits. */
 async function read(mine, robots) {
-  let silent = 0;
-  const alive = () => { clearTimeout(silent); silent = setTimeout(() => { mine.abort(); again(mine, 0); }, SILENCE); };
-  alive();
+  let waiting = [], lose = () => {};
+  const lost = new Promise((done) => { lose = done; });
+  const leave = follow("/api/events", live.role, (block) => (waiting ? waiting.push(block) : take(block, mine)), lose);
+  mine.signal.addEventListener("abort", lose);
   try {
-    const answer = await fetch(`/api/events?${params({ robot: lumen.robot, after: after(robots) })}`,
-      { signal: mine.signal, cache: "no-store", headers: { Accept: "text/event-stream" } });
-    if (!answer.ok) throw Object.assign(new Error(`${answer.status}`), { status: answer.status });
+    await blocks(`/api/events?${params({ robot: lumen.robot, after: after(robots), once: 1 })}`, (block) => take(block), mine.signal);
     become("live");
-    const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
-    let text = "";
-    for (;;) {
-      const { done, value } = await reader.read();
-      if (done) return;
-      alive();
-      text += value.replaceAll("\r\n", "\n");
-      let end;
-      while ((end = text.indexOf("\n\n")) >= 0) { take(text.slice(0, end)); text = text.slice(end + 2); }
-    }
-  } finally { clearTimeout(silent); }
+    const came = waiting;
+    waiting = null;
+    for (const block of came) take(block, mine);
+    await lost;
+  } finally { leave(); }
 }
 
 const add = (list, entry) => { list.push(entry); if (list.length > MOST) list.shift(); };
 
-function take(block) {
-  let kind = "message", data = "";
-  for (const line of block.split("\n")) {
-    if (line.startsWith("event:")) kind = line.slice(6).trim();
-    else if (line.startsWith("data:")) data += line.slice(5);
-  }
-  if (!data) return;
-  const body = JSON.parse(data);
+/** What a block says. Where entries are missing before one that comes `live` they are asked for, and it with them. */
+function take(block, shared = null) {
+  const [kind, body] = parsed(block) ?? [];
+  if (!kind || shared?.signal.aborted) return;
   if (kind === "entry") {
+    if (lumen.robot && body.robot !== lumen.robot) return;
     const [last, when] = seen.get(body.robot) ?? [-1, ""]; // a journal that begins anew counts anew, later
     if (body.position <= last && body.at_time <= when) return;
+    if (shared && body.position > last + 1) { connect(); return; }
     seen.set(body.robot, [body.position, body.at_time]);
     add(live.entries, body);
     if (body.text) add(live.told, body); // of those that people read as many are kept, however many faces come between
@@ -122,3 +116,4 @@ document.addEventListener("visibilitychange", () => {
   else clearTimeout(timer);
 });
 addEventListener("online", connect);
+addEventListener("pageshow", (event) => { if (event.persisted) connect(); });

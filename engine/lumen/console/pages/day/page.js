@@ -54,7 +54,7 @@ export default function DayPage({ name }) {
   useEffect(() => {
     let gone = false;
     fail("");
-    get("/api/day", { robot: name, date }).then((found) => {
+    get("/api/day", { robot: name, date }, 60000).then((found) => {
       if (gone) return;
       set(found), mark(null);
       const last = found.visits.at(-1);

@@ -3,7 +3,7 @@ import { Part, html, t, useEffect, useRef, useState } from "../ui.js";
 import { follow, shape } from "./poses.js";
 
 export function Hall({ name, instead }) {
-  const canvas = useRef(null), [failed, fail] = useState(""), [moved, move] = useState(0);
+  const canvas = useRef(null), [failed, fail] = useState(""), [moved, move] = useState(0), [trouble, say] = useState("");
   useEffect(() => {
     if (!canvas.current) return undefined;
     let end = () => {}, over = false;
@@ -12,13 +12,14 @@ export function Hall({ name, instead }) {
       const [{ Scene }, form] = await Promise.all([import("./scene.js"), shape(name)]);
       if (over) return undefined;
       const scene = new Scene(canvas.current, form);
-      const stop = follow(name, (links) => { scene.pose(links); move((n) => n + 1); });
+      const stop = follow(name, (links) => { scene.pose(links); move((n) => n + 1); say(""); }, say);
       end = () => { stop(); scene.close(); };
       return undefined;
-    })().catch(() => fail("see.noshape"));
+    })().catch((error) => { say(error.status ? error.message : ""); fail("see.noshape"); });
     return () => { over = true; end(); };
   }, [name, failed]);
-  if (failed) return instead(failed);
+  if (failed) return instead(failed, trouble);
   return html`<${Part} title=${t("see.hall")} kind="hall"><div class="picture"><canvas ref=${canvas} role="img" aria-label=${t("see.alt.hall", { name })} data-poses=${moved}></canvas></div>
+    ${trouble && html`<p class="notice" role="status">${trouble}</p>`}
     ${moved === 0 && html`<p class="quiet" role="status">${t("see.waiting")}</p>`}</${Part}>`;
 }

@@ -1,27 +1,25 @@
 // See: what the robot's camera sees with what the eyes found in it, and the robot in its hall.
 import { robotOf } from "../live.js";
-import { Part, html, kept, keep, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Part, html, kept, keep, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
 import { Hall } from "./hall.js";
 
 const WIDTH = 320, HEIGHT = 240, BOX = 56; // [px]: what places in the image are given in, and about a face
-const PATIENCE = 4000; // [ms] for a first picture
+const PATIENCE = 4000, NEXT = 200, AGAIN = 1000; // [ms] for a first picture, after one, and where there was none
 
+// Pictures are asked for one by one: each takes a connection for a moment, and not one of the browser's six for ever.
 function Camera({ name }) {
-  const [state, set] = useState("waiting"), [tries, again] = useState(0), [hidden, hide] = useState(document.hidden);
+  const [state, set] = useState("waiting"), [number, show] = useState(0), timer = useRef(0);
+  const next = (after) => { clearTimeout(timer.current); timer.current = setTimeout(() => { if (!document.hidden) show((n) => n + 1); }, after); };
+  const got = (what, after) => { if (what) set(what); next(after); };
   useEffect(() => {
-    const look = () => hide(document.hidden);
+    const look = () => next(0), late = setTimeout(() => set((now) => (now === "waiting" ? "gone" : now)), PATIENCE);
     document.addEventListener("visibilitychange", look);
-    return () => document.removeEventListener("visibilitychange", look);
+    return () => { document.removeEventListener("visibilitychange", look); clearTimeout(late); clearTimeout(timer.current); };
   }, []);
-  useEffect(() => {
-    if (state === "seen") return undefined;
-    const timer = setTimeout(() => { set("gone"); if (state === "gone") again((n) => n + 1); }, PATIENCE);
-    return () => clearTimeout(timer);
-  }, [state, tries]);
   const faces = robotOf(name)?.seen?.faces ?? [];
   return html`<${Part} title=${t("see.camera")} kind="camera"><div class="picture">
-      ${hidden ? null : html`<img key=${tries} src="/camera/${encodeURIComponent(name)}?${tries}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT}
-        onLoad=${() => set("seen")} onError=${() => set("gone")} />`}
+      <img src="/camera/${encodeURIComponent(name)}?still=${number}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT}
+        onLoad=${() => got("seen", NEXT)} onError=${() => got(state === "seen" ? "gone" : "", AGAIN)} />
       <svg viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${faces.map((face) => html`<g><rect x=${face.x - BOX / 2} y=${face.y - BOX / 2} width=${BOX} height=${BOX} rx="4" />
         <text x=${face.x - BOX / 2} y=${face.y - BOX / 2 - 5}>${face.name || t("see.face")}</text></g>`)}</svg></div>
     ${state === "gone" && html`<p class="quiet" role="status">${t("see.none")}</p>`}
@@ -34,5 +32,5 @@ export default function SeePage({ name }) {
   const choose = (one) => { keep("lumen.see", one); set(one); };
   return html`<div class="page-head"><h1>${t("page.see")}</h1><fieldset class="choice"><legend class="hidden">${t("page.see")}</legend>${["camera", "hall"].map((one) => html`<label>
       <input type="radio" name="view" value=${one} checked=${view === one} onChange=${() => choose(one)} /><span>${t(`see.${one}`)}</span></label>`)}</fieldset></div>
-    ${view === "camera" ? html`<${Camera} name=${name} />` : html`<${Hall} name=${name} instead=${(why) => html`<p class="notice">${t(why)}</p><${Camera} name=${name} />`} />`}`;
+    ${view === "camera" ? html`<${Camera} name=${name} />` : html`<${Hall} name=${name} instead=${(why, reason) => html`<p class="notice">${t(why)} ${reason && html`<span lang="en">(${reason})</span>`}</p><${Camera} name=${name} />`} />`}`;
 }

@@ -1,22 +1,27 @@
 // Where the links of a robot are, as they move: what the view of the hall draws, and nothing of how.
-import { get } from "../live.js";
+import { parsed } from "../blocks.js";
+import { follow as read } from "../follow.js";
+import { get, live } from "../live.js";
 
 const AGAIN = 1000; // [ms]
 
-/** Tell `moved` of each pose, {link: [x, y, z, qw, qx, qy, qz]} in the hall [m], until what is returned is called. */
-export function follow(robot, moved) {
-  let stream = null, timer = 0, over = false;
-  const open = () => {
-    if (over || document.hidden) return;
-    stream = new EventSource(`/api/poses?robot=${encodeURIComponent(robot)}`);
-    stream.addEventListener("pose", (event) => { const { robot: of, links } = JSON.parse(event.data); if (of === robot) moved(links); });
-    stream.addEventListener("error", () => { stream.close(); clearTimeout(timer); timer = setTimeout(open, AGAIN); });
+/** Tell `moved` of each pose, {link: [x, y, z, qw, qx, qy, qz]} in the hall [m], and `failed` why there is none. */
+export function follow(robot, moved, failed) {
+  let leave = null, timer = 0;
+  const take = (block) => {
+    const [kind, data] = parsed(block) ?? [];
+    if (kind === "pose" && data.robot === robot) moved(data.links);
+    if (kind === "trouble") failed(data.reason);
   };
-  const seen = () => { stream?.close(); clearTimeout(timer); open(); };
-  document.addEventListener("visibilitychange", seen);
+  const open = () => {
+    end();
+    if (!document.hidden) leave = read(`/api/poses?robot=${encodeURIComponent(robot)}`, live.role, take, () => { timer = setTimeout(open, AGAIN); });
+  };
+  const end = () => { leave?.(); leave = null; clearTimeout(timer); };
+  document.addEventListener("visibilitychange", open);
   open();
-  return () => { over = true; stream?.close(); clearTimeout(timer); document.removeEventListener("visibilitychange", seen); };
+  return () => { end(); document.removeEventListener("visibilitychange", open); };
 }
 
 /** What the links look like: [{name, shapes: [...]}], and the stage. */
-export const shape = (robot) => get("/api/shape", { robot });
+export const shape = (robot) => get("/api/shape", { robot }, 60000);
