@@ -4,8 +4,11 @@
 
 The shipped tour with its visitor in real time; the console and the pages that listen are processes of their own. One of
 the pages never reads. A tick is late by as much as it comes after its 50th of a second: told are the 99th of a hundred
-and the latest, and how many came a whole period late, which a machine without a console has, too, where it is crowded:
-compare with the first row. Watchers look at the camera, as pages do that show what the robot sees.
+and the latest, and how many came a whole period late. A crowded machine has late ticks without a console, too. So they
+are measured in pairs: each run has a block without and one with it, one after the other, now this first and now that;
+`more` is by how much more ticks came late with the console than without in the same run, the median of the runs and the
+quarter on either side. Where nought lies between these two, the console makes none late that the machine does not.
+Watchers look at the camera, as pages do that show what the robot sees.
 """
 
 import argparse
@@ -54,45 +57,65 @@ class Round(NamedTuple):
     watcher: float
 
 
+class Pair(NamedTuple):
+    """The same run without a console, and `having` one."""
+
+    without: Round
+    having: Round
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--robot", choices=("recording", "simulation"), default="simulation")
     parser.add_argument("--clients", type=int, default=50, help="pages that listen, of which one never reads")
-    parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=8.0, help="how long a block is")
+    parser.add_argument("--rounds", type=int, default=5, help="runs of each kind, a block with and one without each")
     parser.add_argument("--listen", nargs=3, metavar=("PORT", "PAGES", "WATCHERS"), help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.listen:
         listen(*map(int, asked.listen))
         return
+    ticks = round(asked.seconds / TICK_PERIOD)
     print(
         f"{platform.machine()}, {os.cpu_count()} cores, CPython {platform.python_version()}, the {asked.robot} robot,"
     )
-    print(f"{asked.rounds} rounds of {asked.seconds:g} s, medians\n")
-    kinds = {"no console": None, "nobody looks": (0, 0), "1 page": (1, 0), f"{asked.clients} pages": (asked.clients, 0)}
+    print(f"medians of {asked.rounds} runs of a block without and one with it, {asked.seconds:g} s each\n")
+    kinds = {"nobody looks": (0, 0), "1 page": (1, 0), f"{asked.clients} pages": (asked.clients, 0)}
     if asked.robot == "simulation":
         kinds |= {f"and {WATCHERS} watchers": (asked.clients, WATCHERS)}
-    rounds: dict[str, list[Round]] = {kind: [] for kind in kinds}
-    for _ in range(asked.rounds):
+    rounds: dict[str, list[Pair]] = {kind: [] for kind in kinds}
+    for number in range(asked.rounds):
         for kind, lookers in kinds.items():
-            rounds[kind].append(live(asked.robot, lookers, asked.seconds))
-    columns = (
-        f"{'tick p99':>11}{'latest':>11}{'late':>6}  {'exhibition':>11}{'console':>9}{'a page':>11}{'a watcher':>12}"
-    )
-    print(" " * 16 + columns)
-    for kind, found in rounds.items():
-        one = Round(*map(statistics.median, zip(*found, strict=True)))
-        ticks = f"{one.p99 * 1000:>8.1f} ms{one.latest * 1000:>8.1f} ms{one.late:>6.0f}"
-        cpu = f"{one.exhibition:>11.1%}{one.console:>9.1%}"
-        print(f"{kind:16}{ticks}  {cpu}{one.page / 1000:>6.1f} kB/s{one.watcher / 1000:>7.1f} kB/s")
+            rounds[kind].append(paired(asked.robot, lookers, asked.seconds, console_first=number % 2 == 1))
+    head = f"{'':17}{'p99':>8}{'latest':>12}{f'late of {ticks}':>14}{'more':>19}"
+    print(f"{head}{'exhibition':>12}{'console':>9}{'a page':>12}")
+    for kind, pairs in rounds.items():
+        more = quartiles([one.having.late - one.without.late for one in pairs])
+        for name, found in (("  without", [one.without for one in pairs]), (kind, [one.having for one in pairs])):
+            one = Round(*map(statistics.median, zip(*found, strict=True)))
+            ticks_told = f"{one.p99 * 1000:>8.1f} ms{one.latest * 1000:>8.1f} ms{one.late:>12.0f}"
+            told = f"{round(more[1]):+d} ({round(more[0]):+d} to {round(more[2]):+d})" if name == kind else ""
+            page = f"{one.page / 1000:>7.1f} kB/s" if name == kind else ""
+            watcher = f", a watcher {one.watcher / 1000:.1f} kB/s" if one.watcher else ""
+            cpu = f"{one.exhibition:>11.1%}" + (f"{one.console:>9.1%}" if name == kind else "")
+            print(f"{name:17}{ticks_told}{told:>19} {cpu}{page}{watcher}")
 
 
-def live(robot: str, lookers: tuple[int, int] | None, seconds: float) -> Round:
-    """One run of the tour, with so many pages and watchers, None without a console."""
+def quartiles(values: list[float]) -> tuple[float, float, float]:
+    """The quarter, the middle and the three quarters of some values."""
+    if len(values) < 2:
+        return (values[0],) * 3
+    first, middle, third = statistics.quantiles(values, n=4, method="inclusive")
+    return first, middle, third
+
+
+def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_first: bool) -> Pair:
+    """One run of the tour: a block without a console, and one with so many pages and watchers."""
     folder = temporary_folder("lumen-console-")
     shutil.copy(ROOT / MAIN_FILE, folder)
     for name in PROJECT_FOLDERS:
         shutil.copytree(ROOT / name, folder / name)
+    found: dict[bool, Round] = {}
     try:
         project = lumen.load(folder)
         story = project.stories["visitor"]
@@ -100,12 +123,15 @@ def live(robot: str, lookers: tuple[int, int] | None, seconds: float) -> Round:
         with Exhibition(project, setup, story=story, run_directory=directory) as exhibition:
             directory.open(exhibition.node.bus, "memory://", project)
             exhibition.start()
-            if lookers is None:
-                return measured(exhibition, seconds, None, None)
-            with console(folder) as (server, port), listeners(port, *lookers) as pages:
-                return measured(exhibition, seconds, server, pages)
+            for with_it in (console_first, not console_first):
+                if with_it:
+                    with console(folder) as (server, port), listeners(port, *lookers) as pages:
+                        found[True] = measured(exhibition, seconds, server, pages)
+                else:
+                    found[False] = measured(exhibition, seconds, None, None)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+    return Pair(found[False], found[True])
 
 
 def measured(exhibition: Exhibition, seconds: float, server: Guarded[str] | None, pages: Guarded[str] | None) -> Round:
