@@ -12,6 +12,7 @@ from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
 from lumen.robots.naoqi.call_sequence import CallSequence
+from lumen.robots.naoqi.life import NaoqiLife
 from lumen.robots.naoqi.naoqi_events import FALLEN, FALLING, FULL, HealthAlerts, NaoqiEvents
 from lumen.robots.naoqi.preparing import halt, prepare
 from lumen.robots.naoqi.reconnector import Reconnector
@@ -52,6 +53,7 @@ class NaoqiRobot:
         self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
         self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
+        self._life = NaoqiLife(self._session.post, self._executor.owner, body)
         self._aimed: NaoqiCall = NaoqiCall()
         self._aim: Aim | None = None
         self._reconnector = Reconnector(self._session, self._take_over)
@@ -60,6 +62,7 @@ class NaoqiRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
+            self._life.layer.live(command)
             return
         if not isinstance(command, Aim):
             self._executor.start(id, command)
@@ -70,6 +73,7 @@ class NaoqiRobot:
             _log.warning("an aim was refused: %s", error)
         else:
             self._aim = command
+            self._life.led(command.angles, self._clock())
             self._turn()
 
     def cancel(self, id: str) -> None:
@@ -80,6 +84,7 @@ class NaoqiRobot:
         self._feel(now)
         self._turn()
         answers = self._executor.advance(now)
+        self._live(now)
         events = [*self._events, *answers]
         self._events.clear()
         return events
@@ -104,7 +109,9 @@ class NaoqiRobot:
     def _begin(self, command: RobotCommand, now: float) -> CallSequence:
         if not self._session.ready:
             raise RobotLostError(CONNECTION_LOST)
-        return self._skills.begin(command, now)
+        activity = self._skills.begin(command, now)
+        self._life.begins(command, now)
+        return activity
 
     def _take_over(self, again: bool) -> None:
         """Settle with NAOqi what has to be; on whichever thread connects."""
@@ -123,6 +130,8 @@ class NaoqiRobot:
         felt = self._senses[Sense.TACTILE].newest
         for name, value in self._naoqi_events.take(now, felt if isinstance(felt, Tactile) else None):
             if name in self.body.tactile:
+                if value:
+                    self._life.layer.touched(name, now)
                 self._events.append(Event("touched" if value else "released", {"sensor": name}, now))
             elif value and name in (FALLEN, *FALLING):
                 self._fall(name, now)
@@ -152,6 +161,13 @@ class NaoqiRobot:
             inside = self._skills.inside(free)
             speed = min(max(aim.speed, 0.01), 1.0)
             self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)
+
+    def _live(self, now: float) -> None:
+        """Move a little what nothing else moves."""
+        battery = self._senses[Sense.BATTERY].newest
+        percentage = battery.percentage if isinstance(battery, Battery) else 100
+        if self._session.ready and not self._skills.fallen:
+            self._life.tick(now, self._sensors.heat, percentage)
 
     def _echo(self) -> Sonar | None:
         echo = self._senses[Sense.SONAR].newest

@@ -1,0 +1,103 @@
+"""Life on a real NAO: head and arms, by `ALMotion.setAngles` ten times a second."""
+
+from collections.abc import Callable, Collection, Mapping
+
+from lumen.errors import RobotError
+from lumen.interpreters.life import vigour
+from lumen.language.commands import Posture, Rest, Say, Wake
+from lumen.language.life import STILL_STYLE
+from lumen.language.robots import Body
+from lumen.ports import RobotCommand
+from lumen.robots.body_parts import ARMS, HEAD, LEGS, VOICE, WHOLE_BODY
+from lumen.robots.command_table import speech_duration
+from lumen.robots.life_layer import LifeLayer
+from lumen.robots.naoqi.session import NaoqiCall
+
+SEND_PERIOD = 0.1
+"""How often it is sent where the joints are wanted [s]; NAOqi goes on evenly in between."""
+
+SPEED = 0.3
+"""The part of their greatest speed with which joints go there."""
+
+REST_AFTER = 0.5
+"""How long nothing else has to move the robot until it lives again [s]: NAOqi is still on its way."""
+
+
+class NaoqiLife:
+    """Adds the layer's offsets to where head and arms stood when the last command had ended.
+
+    Legs are left alone: nobody has shown on a real robot that swaying is safe. A robot lives from the first command
+    that has it stand until it rests. `post` calls NAOqi, `owner` names the command that moves a part.
+    """
+
+    def __init__(self, post: Callable[..., NaoqiCall], owner: Callable[[str], str], body: Body) -> None:
+        self.layer = LifeLayer(body)
+        self._post, self._owner, self._body = post, owner, body
+        self._joints = [joint for part in (HEAD, ARMS) for joint in body.parts.get(part, ())]
+        self._stands: dict[str, float] = {}
+        self._asked: NaoqiCall | None = None
+        self._sent, self._last, self._busy_at = NaoqiCall(), 0.0, 0.0
+        self._awake = False
+
+    def begins(self, command: RobotCommand, now: float) -> None:
+        """A command begins that may let it stand, rest or speak."""
+        match command:
+            case Rest():
+                self._awake = False
+                self.layer.still()
+            case Wake() | Posture():
+                self._awake = True
+            case Say(text, language):
+                self.layer.speech.say(text, language, speech_duration(text), now)
+
+    def led(self, joints: Collection[str], now: float) -> None:
+        """Somebody aims these joints: they stand elsewhere from now on."""
+        self.layer.led(joints, now)
+        for joint in joints:
+            self._stands.pop(joint, None)
+
+    def tick(self, now: float, heat: Mapping[str, float], percentage: float) -> None:
+        """Send where the joints are wanted at `now` [s], unless NAOqi is still busy with the last."""
+        free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
+        if not self._owner(VOICE):
+            self.layer.speech.hush(now)
+        if not self._awake or not {HEAD, ARMS, LEGS} <= free:
+            self._busy_at, self._asked = now, None
+            self._stands.clear()
+            self.layer.still()
+        elif now >= self._busy_at + REST_AFTER and self._sent.done and now >= self._last + SEND_PERIOD:
+            self._live(now, free, heat, percentage)
+
+    def _live(self, now: float, free: Collection[str], heat: Mapping[str, float], percentage: float) -> None:
+        still = self.layer.style == STILL_STYLE
+        if (still and not self._stands) or not self._known():
+            return
+
+        def level(part: str) -> float:
+            warmest = max((heat.get(joint, 0.0) for joint in self._body.parts[part]), default=0.0)
+            return vigour(warmest, percentage)
+
+        offsets = self.layer.advance(now, min(now - self._last, 2 * SEND_PERIOD), free, level)
+        self._last = now
+        if still and not offsets:
+            self._stands.clear()
+        goals = {j: self._inside(j, stands + offsets[j]) for j, stands in self._stands.items() if j in offsets}
+        if goals:
+            self._sent = self._post("ALMotion", "setAngles", list(goals), list(goals.values()), SPEED)
+
+    def _known(self) -> bool:
+        """Whether it is known where the joints stand, without what was added; it is asked for where it is not."""
+        if self._stands:
+            return True
+        if self._asked is None:
+            self._asked = self._post("ALMotion", "getAngles", self._joints, False)
+        if self._asked.done:
+            try:
+                self._stands = dict(zip(self._joints, map(float, self._asked.result()), strict=True))
+            except (RobotError, TypeError, ValueError):
+                self._asked = None
+        return bool(self._stands)
+
+    def _inside(self, joint: str, angle: float) -> float:
+        limits = self._body.joints[joint]
+        return min(max(angle, limits.minimum), limits.maximum)
