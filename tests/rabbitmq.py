@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import socket
@@ -32,6 +33,8 @@ START_TIMEOUT = 180.0
 STOP_TIMEOUT = 20.0
 """How long it may take to end in order [s]."""
 HASHING = "rabbit_password_hashing_sha256"
+NEEDLESS = re.compile(r"rabbitmq_(?!prelaunch|mqtt)")
+"""Plugins that no broker here enables: Erlang looks for each module in all their folders, a fifth of a start."""
 
 
 USERS = {
@@ -81,6 +84,7 @@ class RabbitMQ:
         (self.folder / "plugins").write_text("[rabbitmq_mqtt]." if self._speaks_mqtt else "[].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
         (self.folder / "definitions.json").write_text(json.dumps(_definitions(nowhere=self.certificate is not None)))
+        self._link_plugins()
         if self._names is None:
             # Begun by us, since the one that Erlang begins for itself makes itself a daemon, which outlives everybody.
             self._names = self._begin("epmd", "-address", "127.0.0.1", "-port", str(self.epmd))
@@ -89,6 +93,13 @@ class RabbitMQ:
         self._await(self._process, lambda: _speaks_amqp(self.port))
         if self._speaks_mqtt:
             self._await(self._process, lambda: _listens(self.mqtt))
+
+    def _link_plugins(self) -> None:
+        links = self.folder / "links"
+        links.mkdir(exist_ok=True)
+        for plugin in Path(self._script).parents[1].joinpath("plugins").iterdir():
+            if not NEEDLESS.match(plugin.name) and not (links / plugin.name).exists():
+                (links / plugin.name).symlink_to(plugin)
 
     def _begin(self, *command: str) -> Guarded[bytes]:
         with (self.folder / "log").open("ab") as log:
@@ -145,6 +156,7 @@ class RabbitMQ:
             "RABBITMQ_MNESIA_BASE": f"{folder}/data",
             "RABBITMQ_LOG_BASE": f"{folder}/logs",
             "RABBITMQ_PID_FILE": f"{folder}/pid",
+            "RABBITMQ_PLUGINS_DIR": f"{folder}/links",
             "RABBITMQ_ENABLED_PLUGINS_FILE": f"{folder}/plugins",
             "RABBITMQ_CONFIG_FILE": f"{folder}/rabbitmq.conf",
             "RABBITMQ_SERVER_ADDITIONAL_ERL_ARGS": "-kernel inet_dist_use_interface {127,0,0,1} +S 1:1 +sbwt none",
