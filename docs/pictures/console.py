@@ -1,6 +1,6 @@
-"""The pictures in docs/console.md: a tour, a why, a refused reload, a day, and a phone by which the robot rests.
+"""The pictures in docs/console.md: a tour, a why, a fall, a refused reload, a day, a phone, and a wall of three robots.
 
-    python docs/pictures/console.py
+    python -m docs.pictures.console
 
 `lumen run` and `lumen console` in a copy of the project, a visitor who says what stands below, and Chromium.
 """
@@ -21,6 +21,7 @@ from typing import Any
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
+from tests.rabbitmq import RabbitMQ
 
 ROOT = Path(__file__).parents[2]
 PARTS = ("behaviors", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
@@ -111,32 +112,66 @@ def running(folder: Path, *words: str) -> Iterator[None]:
         process.wait()
 
 
+def project(stack: ExitStack, name: str = "NAO") -> Path:
+    """A copy of the shipped exhibition, of a robot of that name."""
+    folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+    for part in PARTS:
+        (shutil.copytree if (ROOT / part).is_dir() else shutil.copy)(ROOT / part, folder / part)
+    settings = folder / "lumen.yaml"
+    settings.write_text(settings.read_text("utf-8").replace("{name: NAO,", f"{{name: {name},"), "utf-8")
+    return folder
+
+
 def main() -> None:
     with ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        for part in PARTS:
-            (shutil.copytree if (ROOT / part).is_dir() else shutil.copy)(ROOT / part, folder / part)
-        stack.enter_context(running(folder, "run", "--robot", "recording", "--speed", "1"))
-        stack.enter_context(running(folder, "console", "--port", str(PORT)))
         camera = Camera()
         stack.callback(camera.driver.quit)
-        visit("Budi", "Splendid, thank you")
-        hear("dance")
-        until("dance")
-        camera.look("")
-        camera.take("now")
-        camera.press(".entry:nth-child(2) button")
-        camera.take("why")
-        tour = folder / "behaviors/tour.yaml"
-        tour.write_text(tour.read_text("utf-8").replace("onDone: any_question", "onDone: any_qestion"), "utf-8")
-        time.sleep(8)
-        camera.look("robot/NAO/files")
-        camera.take("files")
-        camera.look("robot/NAO/day", (1400, 1250), dark=True)
-        camera.take("day")
-        camera.look("", PHONE, dark=True)
-        camera.press(".rest")
-        camera.take("phone")
+        with ExitStack() as tour:
+            take_tour(tour, camera)
+        take_wall(stack, camera)
+
+
+def take_wall(stack: ExitStack, camera: Camera) -> None:
+    """Three robots on one broker, of which one rests."""
+    broker = RabbitMQ()
+    broker.start()
+    stack.callback(broker.stop)
+    folders = [project(stack, name) for name in ("NAO", "Ani", "Budi")]
+    for folder in folders:
+        stack.enter_context(running(folder, "run", "--robot", "recording", "--speed", "1", "--bus", broker.url))
+    stack.enter_context(running(folders[0], "console", "--port", str(PORT), "--bus", broker.url))
+    until("ask_name")
+    command("rest", robot="Budi")
+    camera.look("")
+    camera.take("wall")
+
+
+def take_tour(stack: ExitStack, camera: Camera) -> None:
+    folder = project(stack)
+    stack.enter_context(running(folder, "run", "--robot", "recording", "--speed", "1"))
+    stack.enter_context(running(folder, "console", "--port", str(PORT)))
+    visit("Budi", "Splendid, thank you")
+    hear("dance")
+    until("dance")
+    camera.look("")
+    camera.take("now")
+    camera.press(".entry:nth-child(2) button")
+    camera.take("why")
+    tour = folder / "behaviors/tour.yaml"
+    tour.write_text(tour.read_text("utf-8").replace("onDone: any_question", "onDone: any_qestion"), "utf-8")
+    time.sleep(8)
+    camera.look("robot/NAO/files")
+    camera.take("files")
+    camera.look("robot/NAO/day", (1400, 1250), dark=True)
+    camera.take("day")
+    camera.look("", PHONE, dark=True)
+    camera.press(".rest")
+    camera.take("phone")
+    command("resume")
+    until("watching")
+    command("event", event="fallen", data=None)
+    camera.look("")
+    camera.take("fall")
 
 
 if __name__ == "__main__":

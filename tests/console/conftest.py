@@ -24,7 +24,7 @@ class Hosted:
     """An exhibition of a project on its own bus or a broker's, with a recording robot, in real time, until closed."""
 
     def __init__(self, root: Path, bus: str = "memory://") -> None:
-        self._ending = threading.Event()
+        self.root, self._ending = root, threading.Event()
         self.directory = RunDirectory(root)
         loaded = startup_project(root, self.directory, last_good=False, warn=print)
         self.exhibition = Exhibition(

@@ -1,6 +1,6 @@
 // Who is here: nobody, show, operator or author, and as what of these the page is shown.
 import { connect, live } from "./live.js";
-import { Dialog, html, keep, kept, redraw, t, useState } from "./ui.js";
+import { Dialog, html, keep, kept, redraw, t, useRedraw, useState } from "./ui.js";
 
 export const ROLES = ["nobody", "show", "operator", "author"];
 let asking = false;
@@ -20,6 +20,7 @@ export async function leave() {
 }
 
 export function SignIn() {
+  useRedraw();
   const [wrong, setWrong] = useState(""), [pin, setPin] = useState(""), [name, setName] = useState("");
   if (!asking) return null;
   const close = () => { asking = false; setPin(""); setWrong(""); redraw(); };

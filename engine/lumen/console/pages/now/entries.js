@@ -15,15 +15,17 @@ function Link({ link }) {
 /** Why something was done: asked of the robot when it opens. */
 export function Why({ robot, what, at, text, onClose }) {
   const [found, set] = useState(null), [failed, fail] = useState("");
-  useEffect(() => { get("/api/why", { robot, what, at }).then((one) => (one.chain ? set(one) : fail(one.reason ?? t("why.none"))), (error) => fail(error.message)); }, []);
+  const then = new Date(Date.parse(at) + 1).toISOString(); // what happened within that millisecond is meant, too
+  useEffect(() => { get("/api/why", { robot, what, at: then }).then((one) => (one.chain ? set(one) : fail(one.reason ?? t("why.none"))), (error) => fail(error.message)); }, []);
   return html`<${Dialog} title=${t("why.of", { text })} onClose=${onClose}>
     ${failed && html`<p class="bad" role="alert">${failed}</p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
     ${found && html`<ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${found.chain.map((link, n) => html`<${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
 }
 
-/** What `lumen why` is asked about for an entry: the command it made, else the state it entered. */
+/** What `lumen why` is asked about for an entry: what it said, else what it did, else the state it entered. */
 export function question(entry) {
-  return entry.what ?? entry.commands?.[0]?.id ?? entry.entered?.at(-1) ?? "";
+  const begun = (entry.commands ?? []).map((one) => one.Start).filter(Boolean);
+  return (begun.find((one) => one.command?.Say) ?? begun[0])?.id ?? entry.entered?.at(-1) ?? "";
 }
 
 export function Entry({ entry, onOpen, current = false }) {
