@@ -1,5 +1,6 @@
 """Many windows of one browser, which has six connections for a server: all of them are live, and Rest goes through."""
 
+import json
 from collections.abc import Iterator
 from threading import Event, Thread
 
@@ -78,6 +79,31 @@ def test_eight_windows_that_see_are_live_and_rest_goes_through(
     served.browser.command("mark", text="he has gone")
     position = served.browser.robots[0]["position"]
     until(lambda: _last(chromium) >= position, WAIT)
+
+
+@pytest.mark.slow
+def test_what_came_of_rest_is_told_by_the_next_page_too_where_nobody_could_read_it(
+    served: Served, hosted: Hosted, chromium: Chromium
+) -> None:
+    """Whoever presses and goes on at once sees the answer there; whoever has closed it is not told again."""
+    chromium.open(served.console.address)
+    chromium.rest()
+    until(lambda: "Rests" in chromium.said(), WAIT)
+    chromium.open(f"{served.console.address}robot/NAO/see")
+    until(lambda: chromium.run("return location.pathname") == "/robot/NAO/see", WAIT)
+    until(lambda: "Rests" in chromium.said(), WAIT)
+    assert [entry["command"] for entry in _commands(served)] == ["rest"]  # it is the same one
+    chromium.quiet()
+    chromium.open(f"{served.console.address}robot/NAO/files")
+    until(lambda: chromium.run("return location.pathname") == "/robot/NAO/files", WAIT)
+    until(lambda: _last(chromium) >= 0, WAIT)
+    assert chromium.said() == ""
+
+
+def _commands(served: Served) -> list[dict[str, str]]:
+    """The commands that were sent, as pages are told."""
+    blocks = [block.partition(b"data: ")[2] for _, block in served.console.site.streams.commands]
+    return [said for said in map(json.loads, blocks) if said["state"] == "sent"]
 
 
 def _last(chromium: Chromium) -> int:

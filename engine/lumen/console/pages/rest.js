@@ -28,6 +28,7 @@
   const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
   const ALARMS = ["unsent", "failed", "unknown"], RESTS = ["finished", "after_all"];
   const PRESSED = "lumen.pressed", FRESH = 10000; // a press that the next page is to tell of, for so long [ms]
+  const SEEN = 2000; // for which its answer stands on a page until it counts as seen there [ms]
   const root = document.documentElement;
 
   const kept = (key) => { try { return localStorage.getItem(key); } catch { return null; } };
@@ -90,7 +91,7 @@
       this.calm = make("p"), this.alarm = make("p"), this.sign = make("span", { className: "sign" });
       this.calm.setAttribute("role", "status"), this.alarm.setAttribute("role", "alert"), this.sign.setAttribute("aria-hidden", "true");
       this.close = make("button", { type: "button", className: "plain" });
-      this.close.addEventListener("click", () => { this.said.hidden = true; this.button.focus(); });
+      this.close.addEventListener("click", () => { this.said.hidden = true; this.forget(this.sent); this.button.focus(); });
       this.said.append(this.sign, this.calm, this.alarm, this.close);
       this.replaceChildren(this.button, this.said);
       this.speak();
@@ -113,9 +114,13 @@
       this.sent = sent;
       remember(sent);
       post({ id: sent.id, robot: sent.robot, command: "rest" }, (state, answer) => {
-        if (answer.status && remembered()?.id === sent.id) remember(null);
-        if (press === this.presses || state === "finished") this.show(state, answer);
+        if (answer.status) sent.answered = true, setTimeout(() => this.forget(sent), SEEN);
+        if (press === this.presses || (state === "finished" && !again)) this.show(state, answer);
       });
+    }
+
+    forget(sent) { // the next page need not tell of it
+      if (sent?.answered && remembered()?.id === sent.id) remember(null);
     }
 
     heed(robots) { // what they say of themselves: who was said not to rest may do so after all, and who rested may move again
