@@ -15,7 +15,6 @@ from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.model import Variation
 from tests.simulation.conftest import MODELS, answer
 
 START = (3.0, -3.0)
@@ -66,7 +65,7 @@ def any_robot(body: Body, seed: int, posture: str = "Stand", more: str = "") -> 
     """A robot whose links are up to 10 % lighter or heavier, each by its own, on a floor of friction 0.5 to 1.0."""
     draw = np.random.default_rng(seed)
     friction = draw.uniform(0.5, 1.0) / 0.8
-    robot = on_the_floor(body, more, seed=seed, posture=posture, variation=Variation(noise=1.0))
+    robot = on_the_floor(body, more, seed=seed, posture=posture)
     model = robot.world.model
     model.geom_friction *= friction
     for i in range(model.nbody):

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.language.events import Event
+from lumen.robots.simulation.imperfections import voltage
 
 BATTERY_CAPACITY = 48.6 * 3600
 """A full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
@@ -50,6 +51,11 @@ class BatteryAndHeat:
     @property
     def percentage(self) -> int:
         return max(0, round(100 * self._energy / BATTERY_CAPACITY))
+
+    @property
+    def voltage(self) -> float:
+        """What the battery gives [V]."""
+        return voltage(self._energy / BATTERY_CAPACITY)
 
     @property
     def charging(self) -> bool:

@@ -24,14 +24,10 @@ STAGE_SITE = "stage"
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """How this robot and its hall differ from the model: factors of all masses and of the ground's friction.
-
-    `noise` is that of encoders and gyrometer: 1 what such sensors have, 0 none.
-    """
+    """How this robot and its hall differ from the model: factors of all masses and of the ground's friction."""
 
     mass: float = 1.0
     friction: float = 1.0
-    noise: float = 0.0
 
 
 def load(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.RootElement:

@@ -1,12 +1,15 @@
 """The only way to a joint."""
 
+from collections import deque
 from collections.abc import Iterable, Mapping
 from math import isfinite
 
 import numpy as np
 
 from lumen.errors import BadCommandError
+from lumen.robots.simulation.imperfections import FULL_VOLTAGE, Imperfections
 from lumen.robots.simulation.joint_envelope import JointEnvelope, JointVector
+from lumen.robots.simulation.motor_torques import MotorTorques
 from lumen.robots.simulation.world import World
 
 LIMP_STIFFNESS = 0.5
@@ -17,11 +20,11 @@ class Motors:
     """Takes goals, and drives every joint there inside the body's limits and speeds.
 
     `goal` is where the joints are wanted, `command` what is sent to their servos: Shape (joints,), [rad; hands 0..1].
-    `effort` is the greatest torque of each motor [N m], 0 at a joint that shares another's.
+    `effort` is the greatest torque of each motor [N m], 0 at a joint that shares another's; `voltage` feeds them [V].
     """
 
-    def __init__(self, world: World) -> None:
-        body = world.body
+    def __init__(self, world: World, lacking: Imperfections | None = None) -> None:
+        body, lacking = world.body, lacking or Imperfections()
         self._world = world
         self.names = tuple(body.joints)
         self.index = {name: i for i, name in enumerate(self.names)}
@@ -29,12 +32,15 @@ class Motors:
         self._leader = dict(body.shared)
         self._limits = {joint.name: (joint.minimum, joint.maximum) for joint in body.joints.values()}
         self._effort = world.model.actuator_forcerange[world.actuators].copy()
+        self._torques = MotorTorques(world, self.envelope.speed[world.driven]) if lacking.torque_falls else None
+        self.voltage = FULL_VOLTAGE
         self.effort = np.zeros(len(self.names))
         self.effort[world.driven] = self._effort[:, 1]
         self.stiffness = np.ones(len(self.names))
         self.goal: JointVector = world.angles.copy()
         self.command: JointVector = self.goal.copy()
         self._sway = np.zeros(len(self.names))
+        self._sent = deque([self.command], maxlen=lacking.latency + 1)
 
     def aim(self, targets: Mapping[str, float]) -> None:
         """Want these joints there, or at their limit where it lies before.
@@ -77,11 +83,22 @@ class Motors:
         if self.stiffness.max() < LIMP_STIFFNESS:
             self.goal = np.clip(self._world.angles, self.envelope.low, self.envelope.high)
             self.command = self._world.angles.copy()
+            self._sent.clear()
         self.stiffness[:] = stiffness
-        self._world.model.actuator_forcerange[self._world.actuators] = stiffness * self._effort
+        self._limits_of_torque()
 
     def drive(self, trim: JointVector, dt: float) -> None:
         """Tell the servos where to be `dt` [s] from now; `trim` [rad] is added to the goal, not kept."""
         self.command = self.envelope.step(self.command, self.goal + trim + self._sway, dt)
         self._sway[:] = 0.0
-        self._world.data.ctrl[self._world.actuators] = self.command[self._world.driven]
+        self._sent.append(self.command)
+        self._world.data.ctrl[self._world.actuators] = self._sent[0][self._world.driven]
+        if self._torques:
+            self._limits_of_torque()
+
+    def _limits_of_torque(self) -> None:
+        """Let each motor give what its stiffness allows, and what it can at the speed it turns at."""
+        allowed = self.stiffness[self._world.driven, None] * self._effort
+        if self._torques:
+            allowed = self._torques.limit(allowed, self.voltage)
+        self._world.model.actuator_forcerange[self._world.actuators] = allowed

@@ -24,6 +24,7 @@ from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
 from lumen.robots.simulation.camera import TopCamera
 from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
+from lumen.robots.simulation.imperfections import Imperfections
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.model import Variation
@@ -56,7 +57,8 @@ class SimulatedRobot:
     """A NAO that stands on its stage and lives when `advance` is called, by the thread that calls it.
 
     `models` is the folder of the MJCF files and `hall` the name of one. The same seed and the same calls give the same
-    run. `stage` bounds where its feet may go. Raises RobotError where the models can't be used.
+    run. `imperfections` are those of a NAO where none are given; `stage` bounds where its feet may go. Raises
+    RobotError where the models can't be used.
     """
 
     def __init__(
@@ -68,12 +70,14 @@ class SimulatedRobot:
         seed: int = 0,
         posture: str = "Stand",
         variation: Variation | None = None,
+        imperfections: Imperfections | None = None,
         stage: Stage | None = None,
     ) -> None:
         self.body = body
         self.world = World(body, Path(models), hall, variation)
         self.world.set_up(body.postures[posture])
-        self.motors = Motors(self.world)
+        lacking = imperfections or Imperfections()
+        self.motors = Motors(self.world, lacking)
         self.lights = Lights(self.world.model)
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
@@ -81,7 +85,7 @@ class SimulatedRobot:
         self._aiming = AimController(self.motors)
         self._life = LifeLayer(body, seed)
         self._vigour = dict.fromkeys(body.parts, 1.0)
-        self._sensors = BodySensors(self.world, variation.noise if variation else 0.0, seed)
+        self._sensors = BodySensors(self.world, lacking, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
         self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile)
@@ -170,7 +174,7 @@ class SimulatedRobot:
             case Sense.IMAGE:
                 return self._camera.image(now)
             case Sense.JOINT:
-                angles, stiffness = self.world.angles.tolist(), self.motors.stiffness.tolist()
+                angles, stiffness = self._sensors.angles.tolist(), self.motors.stiffness.tolist()
                 heat = tuple(self.condition.temperatures.round(1).tolist())
                 felt = heat, self._sensors.inertial, self._force_sensors.weigh()
                 where = self._odometry.whereabouts
@@ -271,6 +275,7 @@ class SimulatedRobot:
         if self._ticks % _CONDITION_EVERY == 0:
             world = self.world
             world.check()
+            self.motors.voltage = self.condition.voltage
             self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * CONTROL_PERIOD, now)
             self._exhaust()
             self._calm()

@@ -6,11 +6,8 @@ import mujoco
 import numpy as np
 
 from lumen.interpreters.gait.poses import wrap
-from lumen.robots.simulation.joint_envelope import JointVector
+from lumen.robots.simulation.imperfections import Imperfections
 from lumen.robots.simulation.world import CONTROL_PERIOD, World
-
-ENCODER_NOISE, GYRO_NOISE = 0.0017, 0.03
-"""Standard deviations of an encoder [rad], whose step is 0.1 degrees, and of the gyrometer [rad/s]; at noise 1."""
 
 
 class BodySensors:
@@ -21,9 +18,11 @@ class BodySensors:
     the robot stands after it was down: the attitude follows the gyrometer, and where up is keeps it level.
     """
 
-    def __init__(self, world: World, noise: float = 0.0, seed: int = 0) -> None:
-        self._world, self._level = world, noise
+    def __init__(self, world: World, lacking: Imperfections, seed: int = 0) -> None:
+        self._world, self._lacking = world, lacking
         self._random = np.random.default_rng(seed)
+        self.angles = world.angles
+        """Where the encoders say the joints are."""
         self.gyro, self.turning = (0.0, 0.0), 0.0
         self.heading = 0.0
         self._attitude, self._axes, self._rates = np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3).ravel(), np.zeros(3)
@@ -46,20 +45,14 @@ class BodySensors:
         values = zip(("Angle", "Gyroscope", "Accelerometer"), (angles, turning, pushed), strict=True)
         return {f"{kind}{axis}": round(v, 4) for kind, three in values for axis, v in zip("XYZ", three, strict=True)}
 
-    @property
-    def angles(self) -> JointVector:
-        """Where the encoders say the joints are."""
-        measured = self._world.angles
-        return (
-            measured + self._random.normal(0, self._level * ENCODER_NOISE, measured.shape) if self._level else measured
-        )
-
     def feel(self) -> None:
-        """Read the gyrometer, once in each control period."""
-        roll, pitch, yaw = self._world.gyro
-        if self._level:
-            errors = self._random.normal(0, self._level * GYRO_NOISE, 3).tolist()
-            roll, pitch, yaw = roll + errors[0], pitch + errors[1], yaw + errors[2]
+        """Read encoders and gyrometer, once in each control period."""
+        lacking, angles = self._lacking, self._world.angles
+        errors = self._random.standard_normal(len(angles) + 3)
+        angles += lacking.encoder_noise * errors[3:]
+        self.angles = np.round(angles / lacking.encoder_step) * lacking.encoder_step if lacking.encoder_step else angles
+        wrong = (lacking.gyro_noise * errors[:3]).tolist()
+        roll, pitch, yaw = (rate + error for rate, error in zip(self._world.gyro, wrong, strict=True))
         self.gyro, self.turning = (roll, pitch), yaw
         self._turn(roll, pitch, yaw)
 

@@ -72,7 +72,7 @@ def subject(body: Body, models: Path, hall: str, brother: int) -> ExaminedRobot:
     if not brother:
         return ExaminedRobot(body, models, hall)
     draw = np.random.default_rng(brother)
-    variation = Variation(friction=draw.uniform(*FRICTION_RANGE) / USUAL_FRICTION, noise=1.0)
+    variation = Variation(friction=draw.uniform(*FRICTION_RANGE) / USUAL_FRICTION)
     robot = ExaminedRobot(body, models, hall, seed=brother, variation=variation)
     model = robot.world.model
     for i in range(model.nbody):

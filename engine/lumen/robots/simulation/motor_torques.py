@@ -1,0 +1,32 @@
+"""What torque a motor has left at the speed it turns at."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.robots.simulation.imperfections import NOMINAL_VOLTAGE
+from lumen.robots.simulation.world import World
+
+
+class MotorTorques:
+    """The lines from stall torque to no-load speed of all motors.
+
+    A motor whose actuator names no stall torque keeps its torque at every speed. `fastest`: no-load speeds [rad/s] at
+    the battery's nominal voltage, Shape (motors,).
+    """
+
+    def __init__(self, world: World, fastest: NDArray[np.float64]) -> None:
+        self._world, self._fastest = world, fastest
+        given = world.model.actuator_user[world.actuators]
+        stall = given[:, 0] if given.shape[1] else np.zeros(len(fastest))
+        self._stall = np.where(stall > 0.0, stall, np.inf)
+
+    def limit(self, allowed: NDArray[np.float64], volts: float) -> NDArray[np.float64]:
+        """Least and greatest torque [N m], Shape (motors, 2): those `allowed`, or what `volts` give at this speed."""
+        supply = volts / NOMINAL_VOLTAGE
+        turning = self._world.speeds[self._world.driven] / self._fastest
+        most = self._stall * np.maximum(supply - turning, 0.0)
+        least = -self._stall * np.maximum(supply + turning, 0.0)
+        limits: NDArray[np.float64] = np.stack(
+            (np.maximum(allowed[:, 0], least), np.minimum(allowed[:, 1], most)), axis=1
+        )
+        return limits
