@@ -132,7 +132,7 @@ def _gestures(project: Project, texts: Sequence[Say]) -> None:
     """How many texts have gestures, and how often one comes again too soon."""
     player = GesturePlayer(project.body)
     player.library = merged(project.gestures)
-    drawn = [player.say(text.text, text.language, speech_duration(text.text), 0.0) for text in texts]
+    drawn = [player.say(text, speech_duration(text.text), 0.0) for text in texts]
     soon = sum(bool(set(now) & {*before, *earlier}) for earlier, before, now in _threes(drawn))
     kinds = {name for names in drawn for name in names}
     print(

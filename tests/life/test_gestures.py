@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import lumen
 from lumen.interpreters.gestures import GESTURE_SHARE, gesture_offsets, peak_speeds, plan_gestures
 from lumen.language.actions import SayText
-from lumen.language.commands import Say
+from lumen.language.commands import Say, Start
 from lumen.language.gestures import merged
 from lumen.ports import Joints, Live, Sense
 from lumen.robots.body_parts import ARMS, HEAD
@@ -18,6 +18,7 @@ from lumen.robots.command_table import speech_duration
 from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.recording import RecordingRobot
 from lumen.rules.walk import action_sites
+from lumen.statechart import Machine, initial
 
 ROOT = Path(__file__).parents[2]
 PROJECT = lumen.load(ROOT)
@@ -75,7 +76,7 @@ def test_no_gesture_comes_twice_within_three_texts(texts: list[str]) -> None:
     player, said = GesturePlayer(BODY), []
     player.library = LIBRARY
     for i, text in enumerate(texts):
-        said.append(player.say(text, "en", speech_duration(text), 100.0 * i))
+        said.append(player.say(Say(text, "en"), speech_duration(text), 100.0 * i))
     for i, drawn in enumerate(said):
         before = [name for earlier in said[max(0, i - 2) : i] for name in earlier]
         assert not set(drawn) & set(before)
@@ -97,7 +98,7 @@ def test_every_gesture_is_within_limits_on_both_sides_and_not_too_fast() -> None
 def test_a_motion_that_has_the_arms_keeps_them() -> None:
     player = GesturePlayer(BODY)
     player.library = LIBRARY
-    player.say("Hello, I have two big friends over there, do you know them?", "en", 6.0, 0.0)
+    player.say(Say("Hello, I have two big friends over there, do you know them?", "en"), 6.0, 0.0)
     moved = {joint for tick in range(600) for joint in player.wanted(tick / 100, {ARMS, HEAD})}
     assert moved & set(BODY.parts[ARMS])
     assert not {joint for tick in range(600) for joint in player.wanted(tick / 100, {HEAD})} & set(BODY.parts[ARMS])
@@ -117,3 +118,15 @@ def test_the_arms_rise_while_the_robot_speaks_unless_a_state_says_none(gestures:
         angles = dict(zip(reading.names, reading.angles, strict=True))
         farthest = max(farthest, *(BODY.postures["Stand"][j] - angles[j] for j in ("LShoulderPitch", "RShoulderPitch")))
     assert (farthest > 0.3) == gestures
+
+
+def test_a_text_may_do_without(tmp_path: Path) -> None:
+    player = GesturePlayer(BODY)
+    player.library = LIBRARY
+    text = "Welcome, my friends, to all of our 27 big robots over there!"
+    assert player.say(Say(text, "en"), 6.0, 0.0)
+    assert not player.say(Say(text, "en", "none"), 6.0, 9.0)
+    file = tmp_path / "quiet.yaml"
+    file.write_text("id: quiet\nentry: {say: {en: Hello!, id: Halo!, gestures: none}}\nstates: {a: {}}\n")
+    said = [c.command for c in initial(Machine.load(file), language="id").commands if isinstance(c, Start)]
+    assert said == [Say("Halo!", "id", "none")]

@@ -73,8 +73,8 @@ def plain_properties(machine: MachineDefinition) -> dict[str, dict[str, Any]]:
 def plain_action(action: Action) -> ActionData:
     """One action: an object with its verb as the key."""
     match action:
-        case SayText(texts):
-            return {"say": _say(texts)}
+        case SayText(texts, gestures):
+            return {"say": {**_say(texts), **({"gestures": gestures} if gestures else {})}}
         case PublishBody(route, body):
             return {"publish": route if body is None else {"route": route, "body": plain_value(body)}}
         case Assign(values):

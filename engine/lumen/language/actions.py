@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Union  # a recursive alias needs it: `|` does not take names in quotes
 
-from lumen.language.commands import VerbCommand
+from lumen.language.commands import SaysGestures, VerbCommand
 from lumen.language.diagnostics import NodePath
 
 
@@ -47,9 +47,10 @@ ComputedValue = Union[Expression, None, bool, int, float, tuple["ComputedValue",
 
 @dataclass(frozen=True, slots=True)
 class SayText:
-    """`say`: for each language (or `""` for any) the alternatives, of which one is drawn."""
+    """`say`: for each language (or `""` for any) the alternatives, of which one is drawn; maybe without gestures."""
 
     texts: Mapping[str, tuple[Template, ...]]
+    gestures: SaysGestures = ""
 
 
 @dataclass(frozen=True, slots=True)

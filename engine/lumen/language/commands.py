@@ -11,12 +11,17 @@ from typing import Any, Literal
 Channel = Literal["all", "walk", "play", "say"]
 
 
+SaysGestures = Literal["none", ""]
+"""Whether a text is said without the gestures that would accompany it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Say:
     """Speak a text; `language` is one of the project's, or empty where it has none."""
 
     text: str
     language: str = ""
+    gestures: SaysGestures = ""
 
 
 @dataclass(frozen=True, slots=True)

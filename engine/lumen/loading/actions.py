@@ -19,10 +19,11 @@ from lumen.language.actions import (
     Wait,
     context_key,
 )
-from lumen.language.commands import VerbCommand
+from lumen.language.commands import SaysGestures, VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.durations import duration_hint
 from lumen.language.verbs import Quantity, Verb, verb_named
+from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
@@ -131,13 +132,18 @@ class Actions:
     def _say(self, body: Any, where: NodePath) -> SayText | None:
         table = {"any": body} if isinstance(body, str) else body
         texts: dict[str, tuple[Template, ...]] = {}
+        gestures: SaysGestures = "none" if "gestures" in table else ""
+        if table.keys() == {"gestures"}:
+            self.report(MISSING_KEY, where, "nothing is said here", hint="write `any:` and the text beside it")
         for language, said in table.items():
+            if language == "gestures":
+                continue
             place = where if isinstance(body, str) else (*where, language)
             rows = [(place, said)] if isinstance(said, str) else [((*place, i), t) for i, t in enumerate(said)]
             read = tuple(t for at, text in rows if (t := self.expressions.template(text, at)))
             if read:
                 texts["" if language == "any" else language] = read
-        return SayText(texts) if texts else None
+        return SayText(texts, gestures) if texts else None
 
     def _assign(self, body: Mapping[str, Any], where: NodePath) -> Assign | None:
         known = {k: v for k, v in body.items() if self.expressions.key(context_key(k), (*where, k))}

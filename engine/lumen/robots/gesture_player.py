@@ -5,6 +5,7 @@ from collections.abc import Collection
 
 from lumen.interpreters.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
 from lumen.interpreters.life import HEAD_YAW
+from lumen.language.commands import Say
 from lumen.language.gestures import NO_GESTURES, GestureLibrary
 from lumen.language.robots import Body
 from lumen.robots.body_parts import part_of
@@ -35,12 +36,13 @@ class GesturePlayer:
         self._recent: deque[frozenset[str]] = deque(maxlen=TEXTS_APART)
         self._offsets: dict[str, float] = {}
 
-    def say(self, text: str, language: str, duration: float, now: float) -> tuple[str, ...]:
+    def say(self, said: Say, duration: float, now: float) -> tuple[str, ...]:
         """A text begins, which takes `duration` [s]; the names of the gestures that it gets."""
+        library = NO_GESTURES if said.gestures == "none" else self.library
         self._texts += 1
         self._begin = now
         recent = frozenset[str]().union(*self._recent)
-        self._plan = plan_gestures(text, language, self.library, duration, recent, self._seed + self._texts)
+        self._plan = plan_gestures(said.text, said.language, library, duration, recent, self._seed + self._texts)
         names = tuple(planned.gesture.name for planned in self._plan)
         self._recent.append(frozenset(names))
         return names

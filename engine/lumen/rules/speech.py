@@ -201,7 +201,7 @@ def _written(report: DocumentReport, path: NodePath) -> set[str]:
     """The languages of a text as the file has them, those of broken texts too."""
     node = value_at(report, path)
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
-    return gone.union(node if isinstance(node, dict) else ())
+    return gone.union(node if isinstance(node, dict) else ()) - {"gestures"}
 
 
 def _is_missed(draft: ProjectDraft, language: str) -> bool:

@@ -41,7 +41,8 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
     for (_, path), report in found.items():
         value = value_at(report, path)
         if isinstance(value, Mapping) and value and value.keys().isdisjoint(("", "any")):
-            entries.append(LanguageEntry(report, path, value))
+            texts = {language: text for language, text in value.items() if language != "gestures"}
+            entries.append(LanguageEntry(report, path, texts))
     return entries
 
 

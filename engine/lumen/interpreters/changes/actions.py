@@ -73,7 +73,10 @@ def _tags(items: Sequence[T], pool: list[T]) -> list[int]:
 
 def _action(old: Action, new: Action, title: str, when: str, file: str) -> Iterator[Change]:
     match old, new:
-        case SayText(before), SayText(after):
+        case SayText(before, gestured), SayText(after, gestures):
+            if gestured != gestures:
+                how = "without" if gestures else "with"
+                yield Change("text", title, f"{title} speaks{when} {how} gestures now", Risk.COSMETIC, file)
             for language in dict.fromkeys((*before, *after)):
                 if before.get(language) != after.get(language):
                     yield _text(language, after.get(language), title, when, file)

@@ -23,7 +23,7 @@ from lumen.language.actions import (
     Template,
     Wait,
 )
-from lumen.language.commands import BodyCommand, GoTo, Language, Log, Publish, Say, VerbCommand
+from lumen.language.commands import BodyCommand, GoTo, Language, Log, Publish, Say, SaysGestures, VerbCommand
 from lumen.language.diagnostics import NodePath
 from lumen.language.durations import seconds
 from lumen.language.events import Event
@@ -72,8 +72,8 @@ def compile_action(action: Action) -> ActionFunction:
 def compile_command(action: SayText | VerbCommand) -> CommandFactory:
     """The command that a robot verb stands for."""
     match action:
-        case SayText(texts):
-            return _say(texts)
+        case SayText(texts, gestures):
+            return _say(texts, gestures)
         case Language(language):
 
             def speak(context: ActionContext) -> BodyCommand:
@@ -157,7 +157,7 @@ def _if(guard: Expression, then: CompiledBlock, otherwise: CompiledBlock) -> Act
     return choose
 
 
-def _say(texts: Mapping[str, tuple[Any, ...]]) -> CommandFactory:
+def _say(texts: Mapping[str, tuple[Any, ...]], gestures: SaysGestures) -> CommandFactory:
     spoken = {
         language: tuple(compile_template(template.text) for template in templates)
         for language, templates in texts.items()
@@ -168,6 +168,6 @@ def _say(texts: Mapping[str, tuple[Any, ...]]) -> CommandFactory:
         language = context.language if context.language in spoken else fallback
         alternatives = spoken[language]
         text = alternatives[context.draw(len(alternatives))](context.scope())
-        return Say(text, language or context.language)
+        return Say(text, language or context.language, gestures)
 
     return say

@@ -47,8 +47,8 @@ class NaoqiLife:
                 self.layer.still()
             case Wake() | Posture():
                 self._awake = True
-            case Say(text, language):
-                self.layer.speech.say(text, language, speech_duration(text), now)
+            case Say(text):
+                self.layer.speech.say(command, speech_duration(text), now)
 
     def led(self, joints: Collection[str], now: float) -> None:
         """Somebody aims these joints: they stand elsewhere from now on."""

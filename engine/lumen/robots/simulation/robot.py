@@ -225,7 +225,7 @@ class SimulatedRobot:
             raise RobotRefusedError("the battery is empty: plug the robot in")
         activity = self._skills.begin(command, now)
         if isinstance(command, Say) and isinstance(activity, SpeechActivity):
-            self._life.speech.say(command.text, command.language, activity.duration, now)
+            self._life.speech.say(command, activity.duration, now)
         return activity
 
     def _tick(self) -> None:
