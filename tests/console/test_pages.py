@@ -225,3 +225,21 @@ def test_a_button_that_is_held_does_it_and_one_that_is_only_pressed_does_not(vie
     viewer.shows("End the visit: done", ".told")
     viewer.shows("goodbye", ".leaf")
     assert viewer.complaints() == []
+
+
+def test_a_fork_shows_what_would_have_been_beside_what_was(viewer: Viewer, served: Served, hosted: Hosted) -> None:
+    hosted.send("face", {"x": 160, "y": 120})
+    until(lambda: "ask_name" in hosted.exhibition.configuration, WAIT)
+    hosted.send("heard", {"result": "my name is Budi", "language": "en"})
+    until(lambda: hosted.exhibition.context["visitor"] == "Budi", WAIT)
+    viewer.open(served.console.address, "robot/NAO/day", ready=".day .entry", mode="author")
+    choose = (
+        "const one = [...document.querySelectorAll('.entry button')].find((e) => e.textContent.includes('is Budi'));"
+    )
+    until(lambda: viewer.run(f"{choose} one?.click(); return Boolean(one)"), WAIT)
+    viewer.click(".fork input[list]")
+    viewer.type("operator.end")
+    viewer.click(".fork .strong")
+    viewer.shows("goodbye", ".beside > :last-child .differs")
+    viewer.shows("my name is Budi", ".beside > :first-child .differs")
+    assert "goodbye" not in viewer.text(".beside > :first-child")

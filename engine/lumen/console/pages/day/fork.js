@@ -9,10 +9,11 @@ async function ask(body) {
   return said;
 }
 
-function Column({ title, entries, other }) {
+function Column({ title, entries, other, from }) {
+  const when = (one) => new Date(Date.parse(from.at_time) + 1000 * (one.at - from.at)).toISOString();
   const there = new Set(other.map((entry) => entry.text));
   return html`<div><h3>${title}</h3><ol>${entries.filter((entry) => entry.text).map((entry) => html`<li class=${there.has(entry.text) ? "" : "differs"}>
-    <time>${clock(entry.at_time)}</time> ${there.has(entry.text) ? "" : html`<span class="badge" data-state="warn">≠</span> `}${entry.text}</li>`)}</ol></div>`;
+    <time>${clock(when(entry))}</time> ${there.has(entry.text) ? "" : html`<span class="badge" data-state="warn">≠</span> `}${entry.text}</li>`)}</ol></div>`;
 }
 
 export function Fork({ name, entry }) {
@@ -23,7 +24,7 @@ export function Fork({ name, entry }) {
     let body = null;
     try { body = event ? { name: event, data: JSON.parse(data || "{}") } : null; } catch { return tell(t("cue.data.wrong")); }
     tell(""), wait(true), show(null);
-    try { show(await ask({ robot: name, position: entry.position, event: body, bundle: saved ? "saved" : null })); } catch (error) { tell(error.message); }
+    try { show({ ...(await ask({ robot: name, position: entry.position, event: body, bundle: saved ? "saved" : null })), from: entry }); } catch (error) { tell(error.message); }
     wait(false);
   };
   const same = found && found.was.length === found.would.length && found.was.every((one, n) => one.text === found.would[n].text);
@@ -34,7 +35,7 @@ export function Fork({ name, entry }) {
       <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data} placeholder='{"result": "dance"}' onInput=${(e) => setData(e.target.value)} autocomplete="off" spellcheck=${false} /></label>
       <label class="check"><input type="checkbox" checked=${saved} onChange=${(e) => setSaved(e.target.checked)} /> ${t("fork.files")}</label>
       <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`}
-    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""}</div><p class="bad" role="alert">${wrong}</p>
-    ${found && html`<div class="beside" tabindex="0" role="group" aria-label=${t("fork")}><${Column} title=${t("fork.was")} entries=${found.was} other=${found.would} />
-      <${Column} title=${t("fork.would")} entries=${found.would} other=${found.was} /></div>`}</${Part}>`;
+    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""} ${found?.trouble ?? ""}</div><p class="bad" role="alert">${wrong}</p>
+    ${found && html`<div class="beside" tabindex="0" role="group" aria-label=${t("fork")}><${Column} title=${t("fork.was")} entries=${found.was} other=${found.would} from=${found.from} />
+      <${Column} title=${t("fork.would")} entries=${found.would} other=${found.was} from=${found.from} /></div>`}</${Part}>`;
 }
