@@ -13,6 +13,9 @@ from lumen.ports import Perform
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.walks import Push, any_robot
 
+SETTLE = 1.0
+"""How long a robot has stood before [s]."""
+
 AFTER = 3.0
 """How long a pushed robot is watched [s]."""
 
@@ -50,6 +53,7 @@ def upright(body: Body, doing: Doing, trial: PushTrial) -> bool:
     """Whether that robot, in Stand, still stands `AFTER` seconds after its push."""
     robot = any_robot(body, trial.seed)
     push = Push(10 * trial.impulse, trial.at, trial.to)
+    robot.advance(SETTLE)
     doing(robot)
     begin = robot.time
     while robot.time < begin + trial.at + AFTER and not robot.fallen:

@@ -29,7 +29,7 @@ def test_the_soles_feel_its_weight_and_where_it_rests(robot: SimulatedRobot) -> 
     for foot in ("LFoot", "RFoot"):
         corners = [fsr[f"{foot}/FSR/{end}{side}"] for end in ("Front", "Rear") for side in ("Left", "Right")]
         assert sum(corners) == pytest.approx(fsr[f"{foot}/FSR/TotalWeight"], abs=0.003)
-        assert min(corners) > 0
+        assert sorted(corners)[1] > 0, "a stiff sole rests on three corners at least"
 
 
 def test_a_foot_in_the_air_feels_nothing_and_the_other_one_all(robot: SimulatedRobot) -> None:

@@ -8,7 +8,7 @@ from lumen.language.robots import Body
 from tests.simulation.pushes import PushTrial, standing, upright
 
 
-@pytest.mark.parametrize("to", [0.0, pi / 2, -pi / 2, pi / 4, -pi / 4])
+@pytest.mark.parametrize("to", [0.0, pi / 2, -pi / 2, 0.8 * pi, pi, -0.8 * pi])
 def test_a_push_is_borne_standing(body: Body, to: float) -> None:
     assert upright(body, standing, PushTrial(5, 2.0, to))
 

@@ -1,9 +1,11 @@
-"""Steadies the robot on its feet."""
+"""Steadies the robot on its feet: with its ankles all the time, with hips and arms when it falls backwards."""
 
 import numpy as np
 
+from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.world import CONTROL_PERIOD
 
 BALANCE_GAIN = 0.05
 """Ankle angle for each unit of the torso's turning speed [rad per rad/s]: the toes press where it falls to."""
@@ -11,25 +13,74 @@ BALANCE_GAIN = 0.05
 MAX_TRIM = 0.15
 _SMOOTHING = 0.5
 
+LEAN, LEAN_RATE, LEAN_GAIN = 0.08, 0.1, 5.0
+"""How far ankles and hips lean forward at most [rad], how fast [rad/s], and that for each metre [rad/s per m]."""
+
+MIDDLE_OF_SOLES = 0.02
+"""In front of the ankles the weight is wanted there [m]."""
+
+HEEL_MARGIN = 0.01
+"""The DCM is falling backwards nearer than this to the heels' edge [m]."""
+
+ARM_SWING, HIP_STRETCH = 3.0, 0.3
+"""How far arms swing up and back, and hips stretch, against a fall [rad]."""
+
+ARM_SPEED, HIP_SPEED = 8.2, 6.0
+"""How fast they do [rad/s]: just inside the joints' greatest."""
+
+ARM_RETURN_TIME, HIP_RETURN_TIME = 1.0, 0.6
+"""How long they take back [s], slowly: what they gave they take again."""
+
 
 class BalanceController:
-    """Turns what the gyrometer feels into a trim of both ankles, but of the foot that is `lifted` (`L` or `R`)."""
+    """Trims the joints' goals by what gyrometer, encoders and inertial unit feel.
 
-    def __init__(self, motors: Motors) -> None:
+    `lifted` is the foot in the air (`L` or `R`), `walking` whether a walk shifts the weight itself; both for one trim.
+    """
+
+    def __init__(self, motors: Motors, falling: FallingSense) -> None:
         self._ankles = [[(s, motors.index[s + name]) for s in "LR"] for name in ("AnkleRoll", "AnklePitch")]
+        self._shoulders, self._hips = ([motors.index[s + n] for s in "LR"] for n in ("ShoulderPitch", "HipPitch"))
+        self._falling = falling
         self._trim = np.zeros(len(motors.names))
         self._felt = [0.0, 0.0]
+        self._lean = self._swing = self._stretch = 0.0
         self.lifted: str | None = None
+        self.walking = False
 
-    def trim(self, gyro: tuple[float, float]) -> JointVector:
+    def trim(self, gyro: tuple[float, float], *, standing: bool) -> JointVector:
         """What to add to the joints' goals [rad] while the torso rolls and pitches like this [rad/s].
 
-        Valid until called again; `lifted` is for this once.
+        Valid until called again. A robot that is not `standing` on its feet has nothing to lean or to catch.
         """
         for axis, rate in enumerate(gyro):
             felt = self._felt[axis] = _SMOOTHING * self._felt[axis] + (1 - _SMOOTHING) * rate
             angle = min(max(BALANCE_GAIN * felt, -MAX_TRIM), MAX_TRIM)
             for side, i in self._ankles[axis]:
                 self._trim[i] = 0.0 if side == self.lifted else angle
-        self.lifted = None
+        self._catch(standing and not self.walking)
+        self.lifted, self.walking = None, False
         return self._trim
+
+    def _catch(self, standing: bool) -> None:
+        """Carry the weight over the middle of the soles; swing arms and hips backwards where the robot falls there.
+
+        What turns backwards pushes the rest forward, over the feet: a NAO's heels end 45 mm behind its ankles, which a
+        push of 2 N s from the front carries the DCM beyond.
+        """
+        self._falling.feel()
+        over = standing and self._falling.behind_heels > -HEEL_MARGIN
+        rate = LEAN_GAIN * (MIDDLE_OF_SOLES - self._falling.ahead) if standing else -LEAN_RATE
+        self._lean += min(max(rate, -LEAN_RATE), LEAN_RATE) * CONTROL_PERIOD
+        self._lean = min(max(self._lean, 0.0), LEAN)
+        self._swing = _toward(over, self._swing, ARM_SPEED / ARM_SWING, ARM_RETURN_TIME)
+        self._stretch = _toward(over, self._stretch, HIP_SPEED / HIP_STRETCH, HIP_RETURN_TIME)
+        self._trim[self._shoulders] = -ARM_SWING * self._swing
+        self._trim[self._hips] = HIP_STRETCH * self._stretch + self._lean
+        for _, i in self._ankles[1]:
+            self._trim[i] -= self._lean
+
+
+def _toward(over: bool, part: float, rate: float, back: float) -> float:
+    """The part (0..1) of a movement against a fall, a control period later."""
+    return min(1.0, part + rate * CONTROL_PERIOD) if over else max(0.0, part - CONTROL_PERIOD / back)

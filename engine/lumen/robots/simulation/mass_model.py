@@ -27,6 +27,18 @@ class MassModel:
         self._data = mujoco.MjData(self._model)
         self._places = {name: self._model.joint(name).qposadr[0] for name in body.joints}
         self._torso = self._model.body("Torso").id
+        self._order = np.array(list(self._places.values()))
+        self._soles = [self._model.site(name).id for name in ("LSole", "RSole")]
+
+    def pose(self, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The centre of mass (3,) and the points of both soles below the ankles (2, 3) [m], in the torso's frame.
+
+        `angles` are those of all joints in the body's order [rad].
+        """
+        self._data.qpos[self._order] = angles
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        return self._data.subtree_com[self._torso], self._data.site_xpos[self._soles]
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
         """Where it is (3,) [m] in the torso's frame; joints that are not named [rad] stay as they were last."""

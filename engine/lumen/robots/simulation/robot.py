@@ -22,6 +22,7 @@ from lumen.robots.simulation.aim_controller import AimController
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
 from lumen.robots.simulation.camera import TopCamera
+from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.imperfections import Imperfections
@@ -81,11 +82,12 @@ class SimulatedRobot:
         self.lights = Lights(self.world.model)
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
-        self._balance = BalanceController(self.motors)
         self._aiming = AimController(self.motors)
         self._life = LifeLayer(body, seed)
         self._vigour = dict.fromkeys(body.parts, 1.0)
         self._sensors = BodySensors(self.world, lacking, seed)
+        mass_model = MassModel(body, Path(models))
+        self._balance = BalanceController(self.motors, FallingSense(self._sensors, mass_model))
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
         self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile)
@@ -97,7 +99,7 @@ class SimulatedRobot:
             self._balance,
             self._sensors,
             self._odometry,
-            MassModel(body, Path(models)),
+            mass_model,
             Hazards(self._sonars, self._pressed),
             self._free,
             lambda: self.condition.hot,
@@ -236,9 +238,10 @@ class SimulatedRobot:
         if not self.awake:
             self._life.still()
         else:
+            standing = self._skills.upright and not self.fallen
             gyro = self._sensors.gyro if self._skills.upright else (0.0, 0.0)
             self._live(now)
-            self.motors.drive(self._balance.trim(gyro), CONTROL_PERIOD)
+            self.motors.drive(self._balance.trim(gyro, standing=standing), CONTROL_PERIOD)
         self.world.step()
         self._ticks += 1
         self._watch(self.time)

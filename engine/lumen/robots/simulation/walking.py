@@ -133,6 +133,7 @@ class WalkActivity:
 
     def advance(self, now: float) -> bool:
         self._now = now
+        self._walker.balance.walking = True
         self._watch(now)
         if self._rising:
             return self._rise(self._rising, now)
