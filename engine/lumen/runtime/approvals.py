@@ -70,12 +70,7 @@ class Approvals:
 
     def use(self, machine: MachineDefinition, snapshot: Snapshot | None = None) -> None:
         """Go by this machine; what would not take a marked transition there any more stays."""
-        self.marked = any(
-            transition.approve
-            for _, inner in machines_in(machine)
-            for state in inner.states.values()
-            for transition in state.transitions
-        )
+        self.marked = marked_transitions(machine)
         self._passing.clear()
         if snapshot:
             self.look(machine, snapshot, RELOADED)
@@ -165,3 +160,13 @@ def _all_marked(machine: MachineDefinition, taken: Step) -> Iterator[MarkedTrans
             yield MarkedTransition(machine, transition, transition.approve)
     for id, inner in taken.invoked:
         yield from _all_marked(machine.invoked[behavior_of(machine, id, inner)], inner)
+
+
+def marked_transitions(machine: MachineDefinition) -> bool:
+    """Whether anything in a behaviour, or in those that it invokes, waits for GO."""
+    return any(
+        transition.approve
+        for _, inner in machines_in(machine)
+        for state in inner.states.values()
+        for transition in state.transitions
+    )

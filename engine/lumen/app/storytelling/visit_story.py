@@ -16,7 +16,8 @@ from lumen.interpreters.statechart import Snapshot, deserialize, initial
 from lumen.interpreters.wall_clock import zone
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.language.projects import Project
-from lumen.language.stories import Expect, Story, StoryPause, StoryStep, VisitorAction
+from lumen.language.stories import Expect, SetAutonomy, Story, StoryPause, StoryStep, VisitorAction
+from lumen.runtime.approvals import marked_transitions
 from lumen.runtime.loop import TICK_PERIOD
 
 USUAL_WITHIN = 30.0
@@ -69,13 +70,14 @@ def visit_story(
     stands = deserialize(old.machine, home.snapshot)
     blank = _blank(project, stands, visit, name, title, renamed)
     was = told([(entry.event.at, renamed(command)) for entry in visit.inputs for command in entry.commands])
+    approved = _approved(project, visit)
     best: tuple[int, Rendition, Sequence[TimedAction], Story] | None = None
     for way in WAYS:
         acts: Sequence[TimedAction] = [
             row._replace(action=_without(row.action, renamed)) for row in script(visit, project, faces=way.faces)
         ]
         robot = broken(visit, hanging=way.hanging, lasting=way.lasting)
-        draft = replace(blank, robot=robot, steps=tuple(_draft(acts, visit, clocked=way.clocked)))
+        draft = replace(blank, robot=robot, steps=(*approved, *_draft(acts, visit, clocked=way.clocked)))
         if not draft.steps:
             continue
         rendition = played(project, draft)
@@ -133,6 +135,13 @@ def _draft(acts: Sequence[TimedAction], visit: RecordedVisit, *, clocked: bool) 
     yield StoryStep(StoryPause(round(max(0.0, visit.inputs[-1].event.at - last) + 2 * TICK_PERIOD, 2)))
 
 
+def _approved(project: Project, visit: RecordedVisit) -> tuple[StoryStep, ...]:
+    """What was recorded of an event that waited for GO is when it went: in the story it does not wait once more."""
+    assert visit.home is not None
+    marked = marked_transitions(project.behaviors[visit.home.behavior])
+    return (StoryStep(SetAutonomy("alone")),) if marked else ()
+
+
 def _alike(was: Sequence[str], now: Sequence[str]) -> int:
     """How many of what was told come again, in their order from the beginning."""
     return next((i for i, row in enumerate(was) if i >= len(now) or now[i] != row), len(was))
@@ -140,11 +149,12 @@ def _alike(was: Sequence[str], now: Sequence[str]) -> int:
 
 def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequence[VisitorAction]) -> Story:
     """The story with what was noticed as what is expected; what can't be expected at that moment is left out."""
+    approved = [step for step in draft.steps if isinstance(step.action, SetAutonomy)]
     left_out = set[int]()
     for digits in (1, 2):
         for _ in range(TRIES):
             rows = list(_steps(rendition, acts, left_out, digits))
-            story = replace(draft, steps=tuple(StoryStep(action) for _, action in rows))
+            story = replace(draft, steps=(*approved, *(StoryStep(action) for _, action in rows)))
             again = played(project, story)
             failed = again.rehearsal.failed
             if failed is None:
