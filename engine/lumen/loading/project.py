@@ -226,10 +226,13 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
 
 
 def _accompany(found: ProjectDraft) -> None:
-    """The styles of life and the gestures of speech, which can be read only where the robot's body is known."""
+    """The styles of life and the gestures of speech, which can be built only where the robot's body is known."""
     if body := found.body:
         found.life = _built(_each(found, LIFE_FOLDER, partial(build_life, body=body), around=body))
         found.gestures = _built(_each(found, GESTURES_FOLDER, partial(build_gestures, body=body), around=body))
+    else:
+        for folder in (LIFE_FOLDER, GESTURES_FOLDER):
+            _each(found, folder, lambda data, report, name: None)
 
 
 def _messages(found: ProjectDraft) -> None:
