@@ -2,7 +2,8 @@
 
     python benchmarks/alive.py [--without] [STORY]
 
-A joint has moved where its angle, in steps of 0.1 degrees as encoders have them, is not that of the message before.
+A joint has moved where its angle, in steps of 0.1 degrees as encoders have them, is not that of the message before. The
+encoders are those of a robot without noise, which would count as movement.
 `--without` plays the same tour with a robot that does nothing of its own accord.
 """
 
@@ -17,16 +18,19 @@ from typing import Any
 
 import lumen
 from lumen.app.exhibition import Exhibition
-from lumen.app.setup import set_up
+from lumen.app.setup import set_up_with
 from lumen.buses.memory import MemoryBus
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.gestures import merged
 from lumen.language.projects import Project
+from lumen.loading.lending import model_files
 from lumen.ports import Message
 from lumen.robots.command_table import speech_duration
 from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.life_layer import LifeLayer
+from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.imperfections import PERFECT
 from lumen.runtime.loop import Observer
 
 ROOT = Path(__file__).parents[1]
@@ -107,7 +111,8 @@ def main() -> None:
             part.see(message.body, awake and not motions.playing)
 
     story = project.stories[given.story]
-    setup = set_up("simulation", project, "max", story)
+    robot = SimulatedRobot(project.body, *model_files(project), stage=project.stage, imperfections=PERFECT)
+    setup = set_up_with(robot)
     bus.subscribe(project.routes["joint"].key_for(project.robot), see)
     begin = process_time()
     with Exhibition(project, setup, bus, story) as exhibition:
