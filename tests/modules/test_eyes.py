@@ -58,6 +58,7 @@ def drawn(project: Project) -> Mapping[tuple[float, float], tuple[Pixels, tuple[
     """What the simulated camera sees of the hall's visitor at some places, and where the face is in truth [px]."""
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
     seen = {}
+    robot.advance(1.0)  # until it stands as it stands
     for x, y in ((1.0, 0.3), (1.2, 0.5), (1.5, 0.0), (2.0, -0.5)):
         robot.place(Visitor(x=x, y=y))
         robot.advance(0.02)

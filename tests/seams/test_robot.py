@@ -256,6 +256,7 @@ def test_a_move_goes_on_until_another_one_or_stop_ends_it(robot: Body) -> None:
 
 @pytest.mark.parametrize("angle", [nan, inf])
 def test_what_is_no_angle_moves_nothing(robot: Body, angle: float) -> None:
+    live(robot, 3.0)  # until it stands as it stands
     before = robot.read(Sense.JOINT)
     robot.start("", Aim({"HeadYaw": angle}, 0.5))
     robot.start("", Aim({"NoSuchJoint": 0.1}, 0.5))

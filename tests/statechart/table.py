@@ -62,7 +62,8 @@ def outcome(steps: list[Step], interpreter: Interpreter) -> dict[str, Any]:
 def shown(command: Command) -> str:
     match command:
         case Start(id, body):
-            values = [getattr(body, f.name) for f in fields(body) if f.metadata.get("yaml", True)]
+            told = [f.name for f in fields(body) if f.metadata.get("yaml", True)]
+            values = [getattr(body, name) for name in told if name != "gestures" or getattr(body, name)]
             words = [f"{round(v, 5)}" if isinstance(v, float) else str(v) for v in values]
             if type(body).__name__ == "Say":
                 words.reverse()

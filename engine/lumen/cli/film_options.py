@@ -33,19 +33,17 @@ MIN_FILM_SIDE, MAX_FILM_SIDE = 64, 4096
 
 def configure_size(parser: argparse.ArgumentParser) -> None:
     """`--size`, for a verb that has `--video`."""
-    shown = "x".join(map(str, FILM_SIZE))
-    parser.add_argument(
-        "--size", type=film_size, default=FILM_SIZE, metavar="WIDTHxHEIGHT", help=f"of the film [px] (default: {shown})"
-    )
+    usual = "x".join(map(str, FILM_SIZE))
+    parser.add_argument("--size", default=usual, metavar="WIDTHxHEIGHT", help=f"of the film [px] (default: {usual})")
 
 
 def film_size(text: str) -> tuple[int, int]:
-    """(width, height) [px] of `1280x720`. Raises ArgumentTypeError for what no film can have."""
+    """(width, height) [px] of `1280x720`. Raises UsageError for what no film can have."""
     match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
     sides = (int(match[1]), int(match[2])) if match else (0, 0)
     if any(side % 2 or not MIN_FILM_SIDE <= side <= MAX_FILM_SIDE for side in sides):
         wanted = f"1280x720 for one: even numbers from {MIN_FILM_SIDE} to {MAX_FILM_SIDE}"
-        raise argparse.ArgumentTypeError(f"`{text}` is no size of a film; {wanted}")
+        raise UsageError(f"--size: `{text}` is no size of a film; {wanted}")
     return sides
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.setup import SPEEDS, set_up
-from lumen.cli.film_options import configure_size, film_path
+from lumen.cli.film_options import configure_size, film_path, film_size
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.progress import ProgressListener, progress
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
     project = assemble(found, str(root.absolute()))
     video = film_path(options.video, "simulation")
     with one_object(options.format) as say:
-        say(_played(project, motion, options.speed, video, options.size))
+        say(_played(project, motion, options.speed, video, film_size(options.size)))
     return 0
 
 

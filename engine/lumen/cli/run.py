@@ -26,7 +26,7 @@ from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup, set_up
 from lumen.app.stories import home_of, stories_of
 from lumen.bus import connect
 from lumen.buses.validated import validated
-from lumen.cli.film_options import configure_size, film_path, film_progress
+from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.main import ready
 from lumen.cli.performance import Performance
@@ -125,7 +125,7 @@ def _whole(
     language: str,
 ) -> RunVerdict:
     """Run a whole exhibition in this process."""
-    video = film_path(options.video, options.robot)
+    video, size = film_path(options.video, options.robot), film_size(options.size)
     setup = set_up(options.robot, project, options.speed, story, options.robot_url)
     track = AudioTrack() if video else None
     silence = _voice(options, setup, language or project.languages[0], track)
@@ -142,7 +142,7 @@ def _whole(
         _heed_signals(node)
         try:
             if video:
-                node.add_film(video, track, size=options.size, progress=film_progress(project, story, period))
+                node.add_film(video, track, size=size, progress=film_progress(project, story, period))
             if project.console.wanted and options.speed != "max":
                 node.add(ConsolePart(run_directory.root, url, partial(performance.transcript.line, "console")))
             node.claim()

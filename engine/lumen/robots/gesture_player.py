@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Collection
 
 from lumen.interpreters.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
-from lumen.interpreters.life import HEAD_YAW
+from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW
 from lumen.language.commands import Say
 from lumen.language.gestures import NO_GESTURES, GestureLibrary
 from lumen.language.robots import Body
@@ -57,12 +57,12 @@ class GesturePlayer:
         self._plan = ()
 
     def wanted(self, now: float, free: Collection[str], *, led: bool = False) -> dict[str, float]:
-        """The offsets at `now` [s] of joints in the parts that are `free`; of a head that is `led` no turn."""
+        """The offsets at `now` [s] of joints in the parts that are `free`; none of a head that is `led`."""
         found: dict[str, float] = {}
         for planned in self._plan:
             since = now - self._begin - planned.at
             offsets = gesture_offsets(planned.gesture, since, other_side=planned.other_side)
-            barred = {HEAD_YAW} if led else ()
+            barred = (HEAD_YAW, HEAD_PITCH) if led else ()
             found |= {j: a for j, a in offsets.items() if self._part.get(j) in free and j not in barred}
         return found
 

@@ -67,6 +67,10 @@ class LifeLayer:
         if HEAD_YAW in joints or HEAD_PITCH in joints:
             self._led_at = now
 
+    def leading(self, now: float) -> bool:
+        """Whether somebody leads the head at `now` [s]: then it moves for nobody else."""
+        return now < self._led_at + LED_FOR
+
     def still(self) -> None:
         """The motors are off: nothing moves."""
         self._offsets.clear()
@@ -88,7 +92,7 @@ class LifeLayer:
             else:
                 self._offsets[joint] = offset
         free = {HEAD, ARMS} & set(free) if LEGS in free else set()
-        gestures = self.speech.advance(now, dt, free, led=now < self._led_at + LED_FOR)
+        gestures = self.speech.advance(now, dt, free, led=self.leading(now))
         return {j: self._offsets.get(j, 0.0) + gestures.get(j, 0.0) for j in self._offsets.keys() | gestures.keys()}
 
     def wanted(self, now: float, free: Collection[str], vigour: Callable[[str], float]) -> dict[str, float]:
@@ -98,6 +102,8 @@ class LifeLayer:
         legs live only where the legs are free, too: a robot that walks or sits down needs all of its balance.
         """
         alive = {part for part in free if part == HEAD or LEGS in free}
+        if self.leading(now):  # who looks where the head stands would be led astray by what it is moved by
+            alive.discard(HEAD)
         found = {j: angle for j, angle in sway(self.style, self._seed, now).items() if self._part.get(j) in alive}
         if HEAD in alive:
             for joint, angle in zip((HEAD_YAW, HEAD_PITCH), self._head(now), strict=True):
@@ -112,11 +118,9 @@ class LifeLayer:
         return "off" if blinks and eyes_closed(blinks, self._seed, now) else self.style.eyes
 
     def _head(self, now: float) -> tuple[float, float]:
-        """How far the head is turned and tilted; who leads it is not disturbed but by nods."""
+        """How far the head is turned and tilted."""
         style = self.style
         down = nod(style.nods, self._seed, now) if style.nods else 0.0
-        if now < self._led_at + LED_FOR:
-            return 0.0, down
         yaw, pitch = look_towards(self._attention, style.attention, now)
         if style.glances and not (yaw or pitch):
             yaw, pitch = glance(style.glances, self._seed, now)

@@ -104,6 +104,7 @@ class RecordingRobot:
         if isinstance(command, Live):
             self._life.live(command)
         elif isinstance(command, Aim):
+            self._life.led(command.angles, self.time)
             self._turn({n: a for n, a in command.angles.items() if self._free(n)})
         else:
             self._executor.start(id, command)
@@ -156,8 +157,10 @@ class RecordingRobot:
         if self._visitor is None:
             return None
         visitor = self._visitor
+        offsets = self._offsets()
         place = (visitor.x, visitor.y, visitor.height * FACE_HEIGHT_FRACTION - PODIUM_HEIGHT - TORSO_HEIGHT)
-        return seen(place, self.body.camera, self._angles.get("HeadYaw", 0.0), self._angles.get("HeadPitch", 0.0))
+        yaw, pitch = (self._angles.get(joint, 0.0) + offsets.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch"))
+        return seen(place, self.body.camera, yaw, pitch)
 
     def touch(self, sensor: str, pressed: bool) -> None:
         """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
@@ -201,7 +204,9 @@ class RecordingRobot:
         """How far its life has moved the joints from where commands want them."""
         free = {part for part in WHOLE_BODY if not self._executor.owner(part)}
         offsets = self._life.wanted(self.time, free, lambda _part: 1.0)
-        for joint, angle in self._life.speech.wanted(self.time, free if LEGS in free else ()).items():
+        for joint, angle in self._life.speech.wanted(
+            self.time, free if LEGS in free else (), led=self._life.leading(self.time)
+        ).items():
             offsets[joint] = offsets.get(joint, 0.0) + angle
         return offsets
 

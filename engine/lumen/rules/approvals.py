@@ -25,7 +25,7 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report("behaviors", name)
         for transition in marked:
             if event := next((event for event in SAFETY if hears(transition.event, event)), ""):
-                message = f"what the behaviour does after `{event}` waits until a person says GO"
+                message = f"`approve` lets what the behaviour does after `{event}` wait until a person says GO"
                 hint = "leave out `approve`: nobody may be near; ask for approval of what comes after it"
                 report(SAFETY_WAITS, (*transition.where, "approve"), message, hint, key=True)
             if event := next((event for event in sorted(own) if hears(transition.event, event)), ""):

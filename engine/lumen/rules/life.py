@@ -80,10 +80,11 @@ class _Judge:
         limits, stands = self._body.joints[joint], self._body.postures.get(POSTURE, {}).get(joint, 0.0)
         room = max(0.0, min(stands - limits.minimum, limits.maximum - stands))
         if angle > room:
-            message = f"`{joint}` would go {self._shown(joint, angle)} to either side of {POSTURE}, beyond its limit"
+            who = f"`{joint}` would go" if path[-1] == joint else f"`{path[-1]}` would turn `{joint}`"
+            message = f"{who} {self._shown(joint, angle)} to either side of {POSTURE}, beyond its limit"
             yield LIFE_TOO_FAR, path, message, f"at most {self._shown(joint, room)}"
 
     def _shown(self, joint: str, angle: float) -> str:
         if joint in self._body.hands:
             return f"{angle:.2g}"
-        return f"{angle / ANGLES[self._unit]:.2g} {self._unit}"
+        return f"{round(angle / ANGLES[self._unit], 1):g} {self._unit}"
