@@ -24,8 +24,8 @@ WARM = 0.3
 """The part of the day after which everything is as large as it gets: the latest 2,000 entries are kept."""
 MORE = 12.0
 """What it may have more at the end than then [MB]."""
-POOL = 10
-"""How many threads the console keeps for what takes long, however many tabs there are."""
+POOL = min(32, (os.cpu_count() or 1) + 4)
+"""How many threads asyncio keeps for what takes long, begun when first needed; Starlette has a pool, too."""
 HANDLES = 6
 """Connections that are just ending, and what asks for images."""
 PAGES = ("", "robot/NAO", "robot/NAO/day", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
@@ -115,7 +115,7 @@ def lived(house: House, events: int, tabs: int, looks: int) -> None:
         f"and {handles} handles, at the end {mb_then:.1f} MB, {threads_then} and {handles_then}\n"
     )
     assert mb_then <= mb + MORE
-    assert threads_then <= max(threads, POOL) + 2
+    assert threads_then <= threads + 2 * POOL, "however many tabs there are"
 
 
 def looked_at(house: House) -> None:
