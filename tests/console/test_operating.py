@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from selenium.webdriver import ActionChains
+from selenium.webdriver.common.keys import Keys
 
 from lumen.console.people import Role
 from tests.console.conftest import Hosted
@@ -200,11 +201,19 @@ def test_who_lets_it_go_alone_is_asked_no_more(viewer: Viewer, hall: Hosted) -> 
     viewer.shows("ask me: done", ".told")
 
 
-def test_every_button_of_a_page_is_reached_by_the_keyboard(viewer: Viewer, hall: Hosted) -> None:
+@pytest.mark.parametrize("page", ["", "/day", "/files", "/see"])
+def test_every_button_of_a_page_is_reached_by_the_keyboard(
+    viewer: Viewer, hall: Hosted, console: str, page: str
+) -> None:
     says(hall, "dance")
     viewer.shows("Waits for your GO", ".approvals")
-    wanted = "[...document.querySelectorAll('button, select, input, a[href]')].filter((one) => one.checkVisibility())"
-    viewer.run(f"document.body.focus(); window.missing = new Set({wanted}.filter((one) => one.type !== 'radio'))")
+    if page:
+        viewer.driver.get(f"{console}robot/NAO{page}")
+        until(lambda: viewer.all("main h1"), WAIT)
+    seen = "[...document.querySelectorAll('button, select, input, a[href]')].filter((one) => one.checkVisibility())"
+    wanted = f"{seen}.filter((one) => !one.disabled && one.type !== 'radio')"
+    viewer.run(f"document.body.focus(); window.missing = new Set({wanted})")
+    assert viewer.run("return missing.size") > 5
     for _ in range(150):
         viewer.type("\t")
         viewer.run("missing.delete(document.activeElement)")
@@ -212,3 +221,21 @@ def test_every_button_of_a_page_is_reached_by_the_keyboard(viewer: Viewer, hall:
         if not (left := viewer.run("return [...missing].map((one) => one.outerHTML)")):
             break
     assert left == []
+
+
+def test_radio_buttons_are_chosen_by_arrows_and_the_hall_without_webgl_gives_way_to_the_camera(
+    console: str,
+) -> None:
+    flat = Viewer("--disable-3d-apis")
+    try:
+        sign_in(flat, console, Role.OPERATOR)
+        flat.driver.get(f"{console}robot/NAO/see")
+        until(lambda: flat.all("input[name=view]:checked"), WAIT)
+        flat.run("document.querySelector('input[name=view]:checked').focus()")
+        flat.type(Keys.ARROW_RIGHT)
+        until(lambda: flat.all("input[name=view][value=hall]:checked"), WAIT)
+        flat.shows("draws no 3-D view", "main .notice")
+        until(lambda: flat.all(".part.camera img"), WAIT)
+        assert not flat.all("canvas")
+    finally:
+        flat.close()

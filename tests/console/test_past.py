@@ -5,7 +5,7 @@ from datetime import date
 import pytest
 
 from tests.console.conftest import Hosted
-from tests.console.pages import Browser
+from tests.console.pages import Browser, Stream
 from tests.waiting import until
 
 
@@ -36,6 +36,31 @@ def test_a_day_has_its_visits_and_numbers(visited: Browser) -> None:
     answer = visited.get("/api/day.csv")
     assert answer.headers["content-type"].startswith("text/csv")
     assert "asked,'=1+1,1" in answer.body.decode()
+
+
+def test_what_happens_between_visits_has_its_place_in_the_day(browser: Browser, hosted: Hosted) -> None:
+    hosted.send("heard", {"result": "is anybody there", "language": "en"})
+
+    def told() -> list[str]:
+        between = browser.get("/api/day").data["between"]
+        pages = [browser.get(f"/api/entries?from={one['from']}&to={one['to']}").data["entries"] for one in between]
+        return [entry["text"] for page in pages for entry in page]
+
+    until(lambda: any("is anybody there" in text for text in told()))
+    day = browser.get("/api/day").data
+    assert day["visits"] == []
+    assert day["between"][0]["began"] <= day["between"][-1]["ended"]
+
+
+def test_an_entry_has_one_time_whenever_it_is_asked_for(visited: Browser) -> None:
+    with Stream(visited, "/api/events?after=-1") as stream:
+        until(lambda: len(stream.of("entry")) > 3)
+    live = {event.data["position"]: event.data["at_time"] for event in stream.of("entry")}
+    for first in (0, max(live) - 1):
+        told = visited.get(f"/api/entries?from={first}&to={max(live)}").data["entries"]
+        assert {one["position"]: one["at_time"] for one in told} == {at: live[at] for at in live if at >= first}
+    [visit] = visited.get("/api/day").data["visits"]
+    assert live[visit["from"]][:-5] == visit["began"][:19]
 
 
 def test_what_is_asked_wrongly_is_said(browser: Browser) -> None:

@@ -5,6 +5,7 @@ import socket
 import pytest
 
 from lumen.console import gate
+from lumen.console.entry_clock import ToldPage
 from lumen.console.entry_ring import EntryRing
 from lumen.console.streams import positions_in
 from tests.console.conftest import Hosted
@@ -23,8 +24,8 @@ def test_positions_are_read_from_what_a_browser_sends() -> None:
 def test_a_ring_says_what_it_has_and_what_it_has_not() -> None:
     ring = EntryRing("NAO")
     ring.begin(9)
-    ring.add([{"position": 10 + number, "heard": "face", "at": number / 10} for number in range(3_000)])
-    ring.add([{"position": 3_009, "heard": "face", "at": 300.0}])
+    ring.add(ToldPage([{"position": 10 + number, "heard": "face", "at": number / 10} for number in range(3_000)]))
+    ring.add(ToldPage([{"position": 3_009, "heard": "face", "at": 300.0}]))
     assert (ring.first, ring.last) == (1_009, 3_009)
     assert ring.after(1_008) is None
     found = ring.after(1_009)

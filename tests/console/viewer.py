@@ -24,11 +24,11 @@ WAIT = 60.0
 
 
 class Viewer:
-    """A browser; `open` begins a page as somebody who was never here sees it."""
+    """A browser with these arguments besides; `open` begins a page as somebody who was never here sees it."""
 
-    def __init__(self) -> None:
+    def __init__(self, *more: str) -> None:
         options = ChromeOptions()
-        for argument in ARGUMENTS:
+        for argument in (*ARGUMENTS, *more):
             options.add_argument(argument)
         self._browser = DrivenBrowser(options, "browser", "performance")
         self.driver = self._browser.driver

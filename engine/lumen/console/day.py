@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from lumen.app.recording.happenings import FALLEN
 from lumen.app.replaying.replay_report import iso
-from lumen.console.entry_words import MARK
+from lumen.console.entry_words import ENDS, JUMPS, MARK, OFTEN
 from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.journal_clock import JournalClock
@@ -18,6 +18,8 @@ from lumen.language.modules import VISITOR_KEY
 
 HEARD = "heard"
 MAX_TEXT = 200
+MAX_STRETCH = 1_000
+"""Entries between two visits that are looked at as one."""
 MAX_ROWS = 1_000
 """Different texts of a kind that are told."""
 
@@ -58,12 +60,26 @@ class DayMark(NamedTuple):
 
 
 @dataclass
+class QuietStretch:
+    """Entries between two visits: their positions, and when they were [s since 1970]."""
+
+    first: int
+    last: int
+    began: float
+    ended: float
+
+    def to_json(self) -> dict[str, Any]:
+        return {"from": self.first, "to": self.last, "began": iso(self.began), "ended": iso(self.ended)}
+
+
+@dataclass
 class Day:
     """What happened on a day, and on which `dates` something did."""
 
     day: date
     dates: list[date]
     visits: list[DayVisit] = field(default_factory=list)
+    between: list[QuietStretch] = field(default_factory=list)
     asked: Counter[str] = field(default_factory=Counter)
     missed: Counter[str] = field(default_factory=Counter)
     answers: Counter[str] = field(default_factory=Counter)
@@ -85,8 +101,9 @@ class Day:
         rows = {name: getattr(self, name).most_common(MAX_ROWS) for name in COUNTED}
         return {
             "date": self.day.isoformat(), "dates": [one.isoformat() for one in self.dates],
-            "visits": [visit.to_json() for visit in self.visits], "marks": [mark.to_json() for mark in self.marks],
-            "numbers": numbers | rows,
+            "visits": [visit.to_json() for visit in self.visits],
+            "between": [stretch.to_json() for stretch in self.between],
+            "marks": [mark.to_json() for mark in self.marks], "numbers": numbers | rows,
         }  # fmt: skip
 
 
@@ -122,6 +139,8 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
             _name(visit, taken)
             if not watch.away:
                 visit = None
+        else:
+            _lie_between(today, entry, at)
     for one in days.values():
         one.languages = Counter(visit.language for visit in one.visits if visit.language)
     dates = sorted(one for one, day in days.items() if day.visits) or sorted(days)
@@ -129,6 +148,27 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
     found = days.get(chosen) or Day(chosen, [])
     found.dates = dates
     return found
+
+
+def _lie_between(day: Day, entry: RecordedEntry, at: float) -> None:
+    """Keep where something came of an entry that belongs to no visit, in stretches that no visit interrupts."""
+    if not _is_told(entry):
+        return
+    last = day.between[-1] if day.between else None
+    after = day.visits[-1].last if day.visits else -1
+    if last and last.first > after and entry.position - last.first < MAX_STRETCH:
+        last.last, last.ended = entry.position, at
+    else:
+        day.between.append(QuietStretch(entry.position, entry.position, at, at))
+
+
+def _is_told(entry: RecordedEntry) -> bool:
+    """Whether a page has a line for it, as `entry_words` has it."""
+    if isinstance(entry, JournalJump):
+        return bool(entry.said or JUMPS.get(entry.kind, entry.kind))
+    if entry.entered or entry.commands:
+        return True
+    return entry.event.name not in OFTEN and not entry.event.name.startswith(ENDS)
 
 
 def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep) -> None:

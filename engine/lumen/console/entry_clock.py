@@ -3,27 +3,33 @@
 import time
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.language.events import CLOCK_SET
 
 
-class EntryClock:
-    """Follows entries; until one of them says so, it is not known when the exhibition's time 0 was.
+class ToldPage(NamedTuple):
+    """Entries of a journal that follow each other, each with its `position`.
 
-    Then the next one that says so counts, and where there is none, the newest entry was made just now.
+    `epoch` is when the exhibition's time 0 was where the first of them was made [s since 1970], None where nobody says.
     """
 
-    def __init__(self) -> None:
-        self._epoch: float | None = None
+    entries: Sequence[Mapping[str, Any]]
+    epoch: float | None = None
 
-    def look_ahead(self, entries: Sequence[Mapping[str, Any]]) -> None:
-        """These are the next."""
-        if self._epoch is None and entries:
-            told = (epoch for entry in entries if (epoch := _epoch_in(entry)) is not None)
-            self._epoch = next(told, None)
-            if self._epoch is None:
-                self._epoch = time.time() - _number(entries[-1].get("at"))
+
+class EntryClock:
+    """Follows the entries of a page.
+
+    Where nobody says when time 0 was, the next entry that says so counts, and where there is none, the newest was made
+    just now.
+    """
+
+    def __init__(self, page: ToldPage) -> None:
+        told = (epoch for entry in page.entries if (epoch := _epoch_in(entry)) is not None)
+        self._epoch = page.epoch if page.epoch is not None else next(told, None)
+        if self._epoch is None and page.entries:
+            self._epoch = time.time() - _number(page.entries[-1].get("at"))
 
     def of(self, entry: Mapping[str, Any]) -> str:
         """When the next one was made, ISO 8601 in UTC."""

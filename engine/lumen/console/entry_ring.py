@@ -1,12 +1,12 @@
 """The latest entries of a robot's journal, each encoded once for all who listen."""
 
 from collections import deque
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import orjson
 
-from lumen.console.entry_clock import EntryClock
+from lumen.console.entry_clock import EntryClock, ToldPage
 from lumen.console.entry_words import kind_of, text_of
 
 KEPT = 2_000
@@ -33,7 +33,6 @@ class EntryRing:
         self.first = self.last = -1
         self.known = False
         self._kept: deque[EncodedEntry] = deque()
-        self._clock = EntryClock()
 
     def begin(self, after: int) -> None:
         """From now on the entries after that position are kept; those before are forgotten."""
@@ -41,10 +40,10 @@ class EntryRing:
         self.known, self.first, self.last = True, after, after
         self._kept.clear()
 
-    def add(self, entries: Sequence[Mapping[str, Any]]) -> int:
+    def add(self, page: ToldPage) -> int:
         """Keep what is new of a page of the journal; how many that is."""
-        new = [entry for entry in entries if entry["position"] > self.last]
-        for entry in self.encoded(new, self._clock):
+        new = [entry for entry in self.encoded(page) if entry.position > self.last]
+        for entry in new:
             self._kept.append(entry)
             self.last = entry.position
         while len(self._kept) > KEPT:
@@ -64,11 +63,10 @@ class EntryRing:
             skip = low
         return [self._kept[at] for at in range(skip, min(skip + PAGE, len(self._kept)))]
 
-    def encoded(self, entries: Sequence[Mapping[str, Any]], clock: EntryClock) -> list[EncodedEntry]:
-        """Entries that follow each other, each with its robot, its time (ISO 8601), a line for people and its kind."""
-        found = []
-        clock.look_ahead(entries)
-        for entry in entries:
+    def encoded(self, page: ToldPage) -> list[EncodedEntry]:
+        """The entries of a page, each with its robot, its time (ISO 8601), a line for people and its kind."""
+        found, clock = [], EntryClock(page)
+        for entry in page.entries:
             more = {"robot": self.robot, "at_time": clock.of(entry), "text": text_of(entry), "kind": kind_of(entry)}
             shown = {key: value for key, value in entry.items() if key != "snapshot"}
             found.append(EncodedEntry(entry["position"], orjson.dumps({**shown, **more})))

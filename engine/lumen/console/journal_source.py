@@ -4,7 +4,6 @@ from collections.abc import AsyncIterator
 
 import orjson
 
-from lumen.console.entry_clock import EntryClock
 from lumen.console.entry_ring import EncodedEntry
 from lumen.console.known_robot import KnownRobot
 from lumen.console.watch import Watch
@@ -25,15 +24,15 @@ class JournalSource:
         """The last entries of a robot, pages of them as JSON; nothing is kept here."""
         view = self._watch.robots[robot]
         begin, count = max(0, (view.position or view.entries.last) - MAX_REMOTE), 0
-        while count < MAX_REMOTE and (page := await self._watch.page(robot, begin)):
+        while count < MAX_REMOTE and (page := (await self._watch.page(robot, begin)).entries):
             count += len(page)
             begin = page[-1]["position"] + 1
             yield orjson.dumps(page)
 
     async def entries(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
         """The entries of a journal between two positions."""
-        found, clock = list[EncodedEntry](), EntryClock()
-        while first <= last and len(found) < MAX_SHOWN and (page := await self._watch.page(view.robot, first)):
-            found += view.entries.encoded([one for one in page if one["position"] <= last], clock)
-            first = page[-1]["position"] + 1
+        found = list[EncodedEntry]()
+        while first <= last and len(found) < MAX_SHOWN and (page := await self._watch.page(view.robot, first)).entries:
+            found += [one for one in view.entries.encoded(page) if first <= one.position <= last]
+            first = page.entries[-1]["position"] + 1
         return found

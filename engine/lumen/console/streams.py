@@ -5,7 +5,6 @@ from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from lumen.console.entry_clock import EntryClock
 from lumen.console.entry_ring import EncodedEntry
 from lumen.console.known_robot import KnownRobot
 from lumen.console.watch import Watch
@@ -123,7 +122,6 @@ class Streams:
 
     async def _entries(self, view: KnownRobot, cursor: ReadPosition) -> AsyncIterator[EncodedEntry]:
         """What is new of a robot's journal: from the ring, and what is not there any more from its exhibition."""
-        clock = EntryClock()
         while cursor.run >= 0 and not self.closing:
             found = view.entries.after(cursor.position)
             if found is None:
@@ -131,7 +129,7 @@ class Streams:
                     page = await self._watch.page(view.robot, cursor.position + 1)
                 except BusError:
                     return
-                found = view.entries.encoded([one for one in page if one["position"] > cursor.position], clock)
+                found = [one for one in view.entries.encoded(page) if one.position > cursor.position]
                 if not found:
                     cursor.position = view.entries.first
                     continue

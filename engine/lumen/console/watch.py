@@ -10,6 +10,7 @@ from typing import Any
 from lumen.app.reaching import Reached
 from lumen.console.bus_link import BusLink
 from lumen.console.changes import Changes
+from lumen.console.entry_clock import ToldPage
 from lumen.console.exchanges import Exchanges
 from lumen.console.known_robot import KnownRobot
 from lumen.console.robot_keys import PRESENCE, KeyBook
@@ -155,12 +156,16 @@ class Watch:
             return False
         return entries.add(await self.page(view.robot, entries.last + 1)) >= FULL_PAGE
 
-    async def page(self, robot: str, begin: int) -> list[Mapping[str, Any]]:
+    async def page(self, robot: str, begin: int) -> ToldPage:
         """Entries of the journal from a position on, some. Raises BusError where nobody answers."""
         question = {"ask": "journal", "from": begin}
         said = await self.exchanges.ask(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
-        entries = said.get("entries") if isinstance(said, dict) else None
-        return [one for one in entries or () if isinstance(one, dict) and type(one.get("position")) is int]
+        said = said if isinstance(said, dict) else {}
+        entries, epoch = said.get("entries"), said.get("epoch")
+        return ToldPage(
+            [one for one in entries or () if isinstance(one, dict) and type(one.get("position")) is int],
+            float(epoch) if isinstance(epoch, int | float) else None,
+        )
 
     async def _ask_files(self, view: KnownRobot) -> None:
         said = await self.exchanges.ask(self.keys.of(view.robot).config, {"command": "status"}, QUESTION_TIMEOUT)

@@ -5,7 +5,7 @@ import { Entry, Why, question } from "../now/entries.js";
 import { may } from "../session.js";
 import { Part, clock, html, span, t, useEffect, useRedraw, useState } from "../ui.js";
 import { Fork } from "./fork.js";
-import { Line, bounds } from "./line.js";
+import { Line, bounds, stretches } from "./line.js";
 import { Numbers } from "./numbers.js";
 
 const AROUND = 40; // entries that are shown around a moment
@@ -37,7 +37,7 @@ function Around({ name, visit, moment, chosen, choose }) {
   }, [visit]);
   const shown = entries ? nearest(entries, moment) : [];
   const now = shown.filter((entry) => Date.parse(entry.at_time) <= moment).at(-1);
-  return html`<${Part} title=${t("day.entries")} kind="entries" aside=${html`<b>${t("day.at", { time: clock(new Date(moment).toISOString()) })}</b>`}>
+  return html`<${Part} title=${t("day.entries")} kind="entries" aside=${html`<b>${visit && !visit.n ? `${t("day.between")}, ` : ""}${t("day.at", { time: clock(new Date(moment).toISOString()) })}</b>`}>
     ${failed && html`<p class="bad" role="alert">${failed}</p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
     <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
       current=${entry === (chosen ?? now)} onOpen=${choose} />`)}</ol>
@@ -57,14 +57,14 @@ export default function DayPage({ name }) {
     get("/api/day", { robot: name, date }, 60000).then((found) => {
       if (gone) return;
       set(found), mark(null);
-      const last = found.visits.at(-1);
+      const last = found.visits.at(-1) ?? stretches(found).at(-1);
       if (last) look(last); else choose(null);
     }, (error) => gone || fail(error.message));
     return () => { gone = true; };
   }, [date]);
   const scrub = (at) => {
     move(at), mark(null);
-    const inside = day.visits.filter((one) => Date.parse(one.began) <= at).at(-1) ?? day.visits[0];
+    const parts = stretches(day), inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
     if (inside && inside !== visit) choose(inside);
   };
   if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert">${failed}</p>`;

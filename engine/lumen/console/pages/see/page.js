@@ -18,7 +18,7 @@ function Camera({ name }) {
   }, []);
   const faces = robotOf(name)?.seen?.faces ?? [];
   return html`<${Part} title=${t("see.camera")} kind="camera"><div class="picture">
-      <img src="/camera/${encodeURIComponent(name)}?still=${number}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT}
+      <img src="/camera/${encodeURIComponent(name)}?still=${number}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT} class=${state === "seen" ? "" : "unseen"}
         onLoad=${() => got("seen", NEXT)} onError=${() => got(state === "seen" ? "gone" : "", AGAIN)} />
       <svg viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${faces.map((face) => html`<g><rect x=${face.x - BOX / 2} y=${face.y - BOX / 2} width=${BOX} height=${BOX} rx="4" />
         <text x=${face.x - BOX / 2} y=${face.y - BOX / 2 - 5}>${face.name || t("see.face")}</text></g>`)}</svg></div>

@@ -46,7 +46,7 @@ export default {
   "kind.goto": "person", 
   "cues": "Cues", "cue.motion": "Motion", "cue.motion.send": "Play", "cue.posture": "Posture", "cue.posture.send": "Take", "cue.goto": "State", "cue.goto.send": "Go there",
   "cue.event": "Event", "cue.event.send": "Raise", "cue.data": "Its data, as JSON", "cue.data.wrong": "This is no JSON: write it as {\"result\": \"hello\"}",
-  "day": "The day", "day.date": "Date", "day.visits": "Visits", "day.none": "Nothing is kept of that day.", "day.visit": "Visit {n}", "day.scrub": "Time of day", "day.at": "At {time}", "day.entries": "What happened around then",
+  "day": "The day", "day.date": "Date", "day.visits": "Visits", "day.none": "Nothing is kept of that day.", "day.visit": "Visit {n}", "day.between": "between visits", "day.scrub": "Time of day", "day.at": "At {time}", "day.entries": "What happened around then",
   "day.numbers": "Numbers", "day.csv": "As CSV", "day.longest": "longest", "day.mean": "mean length", "day.count": "visits", "day.falls": "falls", "day.table": "As a table", "day.languages": "Languages", "day.asked": "Asked",
   "day.missed": "Not understood", "day.answers": "Answers given", "day.hours": "Visits by the hour", "day.length": "Length of the visits", "day.what": "What", "day.times": "How often", "day.mark": "Set a mark now", "day.none.numbers": "none",
   "fork": "Fork from here", "fork.more": "What would have been from this moment on? The robot does nothing of it.", "fork.event": "With another event", "fork.files": "With the saved files", "fork.name": "Event", "fork.go": "Show it", "fork.was": "was", "fork.would": "would have been", "fork.same": "the same", "fork.choose": "Choose a moment first: an entry, or a time above.",
