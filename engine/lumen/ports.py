@@ -64,7 +64,8 @@ class Joints:
     """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`.
 
     If the robot measures them, also: each motor's `temperature` [degrees Celsius] in that order, the inertial unit and
-    the weight on its soles, with ALMemory's names and units, and the estimate of its position.
+    the weight on its soles, with ALMemory's names and units, and the estimate of its position. `life` is how far it has
+    moved joints of its own accord, beside where commands want them.
     """
 
     time: float
@@ -75,6 +76,7 @@ class Joints:
     inertial: Mapping[str, float] = field(default_factory=dict)
     fsr: Mapping[str, float] = field(default_factory=dict)
     position: Whereabouts | None = None
+    life: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,9 @@ Each sight moves the joints to where they stood *when the image was taken* plus 
 binding's gain. Adding the output to the angles last commanded instead overshoots as soon as camera and bus take time:
 the same error is then corrected again and again before its correction can be seen.
 
+What the robot's life adds to the joints beneath all commands is taken off poses and images before: a follower aims the
+head that it commands, and life moves it about there. Else each look would answer a glance, or take it for sag.
+
 A head that stands still stands a little beside where it was commanded to, for its weight and for friction. How far is
 learned while it stands, and added; else it would rest about as far beside the face.
 """
@@ -54,6 +57,7 @@ class Tracker:
         self._turn: JointAngles = {}
         self._poses = JointHistory(2.0 * controller.tracking.stale)
         self._commanded = JointHistory(2.0 * controller.tracking.stale)
+        self._lived = JointHistory(2.0 * controller.tracking.stale)
         self._seen = -inf
         self._lost_since: float | None = None
         self._held: JointAngles = {}
@@ -62,13 +66,18 @@ class Tracker:
     def succeed(self, before: "Tracker") -> None:
         """Go on where another one stood that moved the same joints: with the poses it knew, and what it saw last."""
         if set(self.joints) <= set(before.joints):
-            for mine, theirs in ((self._poses, before._poses), (self._commanded, before._commanded)):
+            pairs = (self._poses, before._poses), (self._commanded, before._commanded), (self._lived, before._lived)
+            for mine, theirs in pairs:
                 mine.known.extend((time, {j: angles[j] for j in self.joints}) for time, angles in theirs.known)
             self._seen, self._lost_since = before._seen, before._lost_since
             self._held = {joint: before._held[joint] for joint in self.joints if joint in before._held}
 
-    def pose(self, time: float, angles: Mapping[str, float], *, now: float = inf) -> None:
+    def pose(
+        self, time: float, angles: Mapping[str, float], *, now: float = inf, life: Mapping[str, float] | None = None
+    ) -> None:
         """Remember where the joints stand [rad], measured at `time`, as a message says that comes in at `now`.
+
+        `life` is how much of that the robot's life has added [rad]; what is no number there counts as nothing.
 
         It is no pose where one of `joints` is missing, where something is no number, or where it lies in the future:
         more than `MAX_CLOCK_LEAD` after `now`.
@@ -77,7 +86,9 @@ class Tracker:
         turned = {joint: angle for joint in self.joints if (angle := number(angles.get(joint))) is not None}
         if measured is None or measured > now + MAX_CLOCK_LEAD or len(turned) < len(self.joints):
             return
-        self._poses.add(measured, turned)
+        lived = {joint: number((life or {}).get(joint)) or 0.0 for joint in self.joints}
+        self._poses.add(measured, {joint: turned[joint] - lived[joint] for joint in self.joints})
+        self._lived.add(measured, lived)
 
     def see(
         self, fields: Mapping[str, Any], captured_at: float, route: str | None = None, *, now: float = inf
@@ -95,7 +106,7 @@ class Tracker:
             return None
         pose = self._poses.at(captured)
         try:
-            self._turn = self._servo.turn(self._inputs, pose)
+            self._turn = self._servo.turn(self._inputs, pose, self._lived.at(captured))
         except LumenError:
             return None
         target = self.clamped({joint: self._stood(joint, captured) + self._turn[joint] for joint in pose})

@@ -39,9 +39,15 @@ class VisualServo:
         self._across, self._down = _image_inputs(controller)
         self._previous: dict[str, float] = {}
 
-    def turn(self, inputs: Mapping[str, float], pose: Mapping[str, float]) -> JointAngles:
-        """How far to turn each joint [rad] for these inputs, seen with the joints at `pose` [rad]."""
+    def turn(self, inputs: Mapping[str, float], pose: Mapping[str, float], lived: Mapping[str, float]) -> JointAngles:
+        """How far to turn each joint [rad] for these inputs, seen with the joints at `pose` plus `lived` [rad].
+
+        What was `lived`, the robot does of its own accord: the turn is as if the image had been taken without it.
+        """
         turned = dict.fromkeys(pose, 0.0)
+        if any(lived.values()):
+            there = {joint: angle + lived[joint] for joint, angle in pose.items()}
+            inputs = self._after(inputs, there, {joint: -angle for joint, angle in lived.items()}) or inputs
         seen: Mapping[str, float] | None = inputs
         for _ in range(self._controller.tracking.looks):
             for joint, angle in self._once(seen).items() if seen else ():

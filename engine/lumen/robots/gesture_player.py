@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Collection
 
 from lumen.interpreters.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
-from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW
 from lumen.language.commands import Say
 from lumen.language.gestures import NO_GESTURES, GestureLibrary
 from lumen.language.robots import Body
@@ -56,19 +55,18 @@ class GesturePlayer:
         self._offsets.clear()
         self._plan = ()
 
-    def wanted(self, now: float, free: Collection[str], *, led: bool = False) -> dict[str, float]:
-        """The offsets at `now` [s] of joints in the parts that are `free`; none of a head that is `led`."""
+    def wanted(self, now: float, free: Collection[str]) -> dict[str, float]:
+        """The offsets at `now` [s] of joints in the parts that are `free`."""
         found: dict[str, float] = {}
         for planned in self._plan:
             since = now - self._begin - planned.at
             offsets = gesture_offsets(planned.gesture, since, other_side=planned.other_side)
-            barred = (HEAD_YAW, HEAD_PITCH) if led else ()
-            found |= {j: a for j, a in offsets.items() if self._part.get(j) in free and j not in barred}
+            found |= {joint: angle for joint, angle in offsets.items() if self._part.get(joint) in free}
         return found
 
-    def advance(self, now: float, dt: float, free: Collection[str], *, led: bool = False) -> dict[str, float]:
+    def advance(self, now: float, dt: float, free: Collection[str]) -> dict[str, float]:
         """The offsets at `now` [s], `dt` [s] after the last ones."""
-        goals = self.wanted(now, free, led=led) if self._plan else {}
+        goals = self.wanted(now, free) if self._plan else {}
         for joint in (*self._offsets, *(goals.keys() - self._offsets.keys())):
             offset, goal = self._offsets.get(joint, 0.0), goals.get(joint, 0.0)
             most = self._speeds[joint] * dt

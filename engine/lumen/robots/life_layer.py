@@ -39,7 +39,8 @@ class LifeLayer:
     """How far each joint is from where commands want it [rad; hands 0..1].
 
     It depends on the seed, on the times and calls since the beginning, and on nothing else. What it remembers is the
-    style, what asked for attention last, when the head was aimed last, and where the joints are on their way.
+    style, what asked for attention last, when the head was aimed last, and where the joints are on their way. `offsets`
+    is what was added last; any thread may look at it.
     """
 
     def __init__(self, body: Body, seed: int = 0) -> None:
@@ -51,6 +52,7 @@ class LifeLayer:
         self._wanted: Mapping[str, float] = {}
         self._computed: tuple[float, object] = (-LIFE_PERIOD, None)
         self._offsets: dict[str, float] = {}
+        self.offsets: Mapping[str, float] = {}
         self.speech = GesturePlayer(body, seed)
 
     def live(self, command: Live) -> None:
@@ -68,12 +70,13 @@ class LifeLayer:
             self._led_at = now
 
     def leading(self, now: float) -> bool:
-        """Whether somebody leads the head at `now` [s]: then it moves for nobody else."""
+        """Whether somebody leads the head at `now` [s]."""
         return now < self._led_at + LED_FOR
 
     def still(self) -> None:
         """The motors are off: nothing moves."""
         self._offsets.clear()
+        self.offsets = {}
         self.speech.still()
 
     def advance(
@@ -92,8 +95,10 @@ class LifeLayer:
             else:
                 self._offsets[joint] = offset
         free = {HEAD, ARMS} & set(free) if LEGS in free else set()
-        gestures = self.speech.advance(now, dt, free, led=self.leading(now))
-        return {j: self._offsets.get(j, 0.0) + gestures.get(j, 0.0) for j in self._offsets.keys() | gestures.keys()}
+        gestures = self.speech.advance(now, dt, free)
+        whole = self._offsets.keys() | gestures.keys()
+        self.offsets = {j: self._offsets.get(j, 0.0) + gestures.get(j, 0.0) for j in whole}
+        return self.offsets
 
     def wanted(self, now: float, free: Collection[str], vigour: Callable[[str], float]) -> dict[str, float]:
         """Where the offsets go to at `now` [s], without the way there.
@@ -102,8 +107,6 @@ class LifeLayer:
         legs live only where the legs are free, too: a robot that walks or sits down needs all of its balance.
         """
         alive = {part for part in free if part == HEAD or LEGS in free}
-        if self.leading(now):  # who looks where the head stands would be led astray by what it is moved by
-            alive.discard(HEAD)
         found = {j: angle for j, angle in sway(self.style, self._seed, now).items() if self._part.get(j) in alive}
         if HEAD in alive:
             for joint, angle in zip((HEAD_YAW, HEAD_PITCH), self._head(now), strict=True):

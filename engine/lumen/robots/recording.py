@@ -135,7 +135,8 @@ class RecordingRobot:
                 names = tuple(self.body.joints)
                 offsets = self._offsets()
                 angles = tuple(self._angles.get(name, 0.0) + offsets.get(name, 0.0) for name in names)
-                return Joints(self.time, names, angles, (1.0,) * len(names), position=self._reckoning.whereabouts)
+                where = self._reckoning.whereabouts
+                return Joints(self.time, names, angles, (1.0,) * len(names), position=where, life=offsets)
             case Sense.SONAR:
                 distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
                 return Sonar(self.time, distance, distance)
@@ -204,9 +205,7 @@ class RecordingRobot:
         """How far its life has moved the joints from where commands want them."""
         free = {part for part in WHOLE_BODY if not self._executor.owner(part)}
         offsets = self._life.wanted(self.time, free, lambda _part: 1.0)
-        for joint, angle in self._life.speech.wanted(
-            self.time, free if LEGS in free else (), led=self._life.leading(self.time)
-        ).items():
+        for joint, angle in self._life.speech.wanted(self.time, free if LEGS in free else ()).items():
             offsets[joint] = offsets.get(joint, 0.0) + angle
         return offsets
 

@@ -24,7 +24,7 @@ def encode_reading(reading: NumericReading) -> dict[str, Any]:
         case Joints(time, names, angles, stiffness):
             body = {"name": list(names), "angle": list(angles), "stiffness": list(stiffness), "time": time}
             felt: dict[str, Any] = {"temperature": list(reading.temperature)}
-            felt |= {"inertial": reading.inertial, "fsr": reading.fsr}
+            felt |= {"inertial": reading.inertial, "fsr": reading.fsr, "life": reading.life}
             if reading.position:
                 felt["position"] = reading.position._asdict()
             return body | {name: dict(v) if isinstance(v, Mapping) else v for name, v in felt.items() if v}
@@ -53,7 +53,8 @@ def decode_reading(sense: Sense, body: Any, names: Sequence[str]) -> Reading | N
                 stiffness = tuple(map(float, body["stiffness"]))
                 whole = known == tuple(names) and len(angles) == len(stiffness) == len(known)
                 felt = _felt(body, len(known))
-                return Joints(time, known, angles, stiffness, *felt, _position(body)) if whole else None
+                life = _named(body, "life")
+                return Joints(time, known, angles, stiffness, *felt, _position(body), life) if whole else None
             case Sense.SONAR:
                 return Sonar(time, float(body["leftSensor"]), float(body["rightSensor"]))
             case Sense.TACTILE:
@@ -76,8 +77,12 @@ def decode_reading(sense: Sense, body: Any, names: Sequence[str]) -> Reading | N
 def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
     """What else the robot feels of itself: motors' temperatures, inertial unit, soles; empty where nothing is said."""
     temperature = tuple(map(float, body.get("temperature", ())))
-    inertial, fsr = ({str(k): float(v) for k, v in dict(body.get(name, {})).items()} for name in ("inertial", "fsr"))
-    return temperature if len(temperature) == count else (), inertial, fsr
+    return temperature if len(temperature) == count else (), _named(body, "inertial"), _named(body, "fsr")
+
+
+def _named(body: Mapping[str, Any], key: str) -> dict[str, float]:
+    """The numbers under that key, by their names; empty where nothing is said."""
+    return {str(name): float(value) for name, value in dict(body.get(key, {})).items()}
 
 
 def _position(body: Mapping[str, Any]) -> Whereabouts | None:

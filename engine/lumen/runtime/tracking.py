@@ -69,7 +69,9 @@ class LocalTracking:
         for route, message in self._inbox.taken():
             for name, tracker in self._trackers.items():
                 if route == POSE_ROUTE and (angles := _angles(message.body, tracker.joints)):
-                    tracker.pose(_time(message.body, now), angles, now=now)
+                    life = message.body.get("life")
+                    lived = life if isinstance(life, Mapping) else None
+                    tracker.pose(_time(message.body, now), angles, now=now, life=lived)
                 elif route in tracker.routes and isinstance(message.body, Mapping):
                     captured = _time(message.body, now - self._project.routes[route].latency)
                     if (target := tracker.see(message.body, captured, route, now=now)) is not None:

@@ -50,11 +50,14 @@ class NaoqiLife:
             case Say(text):
                 self.layer.speech.say(command, speech_duration(text), now)
 
-    def led(self, joints: Collection[str], now: float) -> None:
-        """Somebody aims these joints: they stand elsewhere from now on."""
-        self.layer.led(joints, now)
-        for joint in joints:
-            self._stands.pop(joint, None)
+    def led(self, angles: Mapping[str, float], now: float) -> None:
+        """Somebody aims joints there [rad]: they stand elsewhere from now on; see `alive`."""
+        self.layer.led(angles, now)
+        self._stands |= {joint: angle for joint, angle in angles.items() if joint in self._stands}
+
+    def alive(self, angles: Mapping[str, float]) -> dict[str, float]:
+        """Where to send joints that somebody aims there [rad]: so much beside it as they live."""
+        return {joint: angle + self.layer.offsets.get(joint, 0.0) for joint, angle in angles.items()}
 
     def tick(self, now: float, heat: Mapping[str, float], percentage: float) -> None:
         """Send where the joints are wanted at `now` [s], unless NAOqi is still busy with the last."""
@@ -81,7 +84,9 @@ class NaoqiLife:
         self._last = now
         if still and not offsets:
             self._stands.clear()
-        goals = {j: self._inside(j, stands + offsets[j]) for j, stands in self._stands.items() if j in offsets}
+        led = self._body.parts.get(HEAD, ()) if self.layer.leading(now) else ()
+        own = {joint: stands for joint, stands in self._stands.items() if joint in offsets and joint not in led}
+        goals = {joint: self._inside(joint, stands + offsets[joint]) for joint, stands in own.items()}
         if goals:
             self._sent = self._post("ALMotion", "setAngles", list(goals), list(goals.values()), SPEED)
 

@@ -47,7 +47,9 @@ class NaoqiRobot:
         self._session = NaoqiSession(url, lambda reason: self._reconnector.lose(reason), patience)
         self._naoqi_events = NaoqiEvents(body.tactile)
         self._area = WalkingArea(stage, self._naoqi_events.pressed, self._echo)
-        self._sensors = NaoqiSensors(self._session, body, clock, self._area.whereabouts)
+        self._sensors = NaoqiSensors(
+            self._session, body, clock, self._area.whereabouts, lambda: self._life.layer.offsets
+        )
         self._alerts = HealthAlerts()
         self._events: list[Event] = []
         self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
@@ -158,7 +160,7 @@ class NaoqiRobot:
         self._aim = None
         free = {n: a for n, a in aim.angles.items() if not self._executor.owner(self._part.get(n, ""))}
         if free and self._session.ready:
-            inside = self._skills.inside(free)
+            inside = self._skills.inside(self._life.alive(free))
             speed = min(max(aim.speed, 0.01), 1.0)
             self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)
 

@@ -2,7 +2,7 @@
 
 import logging
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, assert_never
 
 from lumen.errors import RobotError, SenseError
@@ -66,7 +66,7 @@ class NaoqiSensors:
     """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read.
 
     `heat` is how hot each motor was when the joints were read last [degrees Celsius]. `place` makes of what
-    `ALMotion.getRobotPosition` says where the robot is on its stage.
+    `ALMotion.getRobotPosition` says where the robot is on its stage, `life` says how far its life moves joints.
     """
 
     def __init__(
@@ -75,8 +75,9 @@ class NaoqiSensors:
         body: Body,
         clock: Callable[[], float],
         place: Callable[[Sequence[float]], Whereabouts],
+        life: Callable[[], Mapping[str, float]],
     ) -> None:
-        self._session, self._body, self._clock, self._place = session, body, clock, place
+        self._session, self._body, self._clock, self._place, self._life = session, body, clock, place, life
         self.heat: dict[str, float] = {}
         self._numb = False
         self._names = list(body.joints)
@@ -127,7 +128,8 @@ class NaoqiSensors:
         now = self._clock()
         angles = self._numbers(self._session.ask("ALMotion", "getAngles", self._names, True), "getAngles")
         stiffness = self._numbers(self._session.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
-        return Joints(now, tuple(self._names), angles, stiffness, *self._feelings(), self._whereabouts())
+        felt = *self._feelings(), self._whereabouts(), self._life()
+        return Joints(now, tuple(self._names), angles, stiffness, *felt)
 
     def sonar(self) -> Sonar:
         if not self._session.has("ALSonar"):

@@ -179,8 +179,8 @@ class SimulatedRobot:
                 angles, stiffness = self._sensors.angles.tolist(), self.motors.stiffness.tolist()
                 heat = tuple(self.condition.temperatures.round(1).tolist())
                 felt = heat, self._sensors.inertial, self._force_sensors.weigh()
-                where = self._odometry.whereabouts
-                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt, where)
+                where, life = self._odometry.whereabouts, self._life.offsets
+                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt, where, life)
             case Sense.SONAR:
                 return Sonar(now, *self._sonars.measure()) if self._sonars else None
             case Sense.TACTILE:
