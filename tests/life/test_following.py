@@ -30,8 +30,8 @@ WITHIN = np.radians(1.0)
 
 def reach(style: LifeStyle) -> np.ndarray:
     """How far such a life moves yaw and pitch at most [rad]."""
-    glances, nods = style.glances, style.nods
-    turned = np.array([glances.yaw, glances.pitch] if glances else [0.0, 0.0])
+    turns, nods = [each for each in (style.glances, style.asides) if each], style.nods
+    turned = np.max([[0.0, 0.0], *([each.yaw, each.pitch] for each in turns)], axis=0)
     swayed = np.array([style.amplitudes.get(joint, 0.0) for joint in JOINTS])
     return turned + swayed + np.array([0.0, nods.pitch if nods else 0.0])
 

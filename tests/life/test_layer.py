@@ -1,6 +1,7 @@
 """The robot's life as the layer adds it: gentle, the same again, and never where a command moves the robot."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lumen
-from lumen.interpreters.life import SPEED_SHARE, vigour
-from lumen.language.life import STILL_STYLE, Glances, LifeStyle, Nods, Sway
+from lumen.interpreters.life import SETTLE_SLOPE, SPEED_SHARE, settle, vigour
+from lumen.language.commands import Say
+from lumen.language.life import STILL_STYLE, Asides, Glances, LifeStyle, Nods, Settles, Sway
 from lumen.robots.body_parts import ARMS, HEAD, LEGS, WHOLE_BODY
 from lumen.robots.life_layer import LifeLayer
 
@@ -33,6 +35,8 @@ STYLES = st.builds(
     ).map(tuple),
     st.none() | st.builds(Glances, st.floats(0.5, 9.0), st.floats(0, 1), st.floats(0, 0.5), st.floats(0, 2)),
     st.none() | st.builds(Nods, st.floats(0.8, 9.0), st.floats(0, 0.3)),
+    asides=st.none() | st.builds(Asides, st.floats(0, 1), st.floats(0, 0.5), st.floats(0, 2)),
+    settles=st.none() | st.builds(Settles, st.just({"RElbowRoll": 0.3, "HeadPitch": 0.2}), st.floats(0.1, 3.0)),
 )
 PARTS = st.frozensets(st.sampled_from(sorted(WHOLE_BODY)))
 
@@ -141,3 +145,56 @@ def test_the_eyes_blink_and_have_the_colour_of_the_style() -> None:
     seen = [layer.eyes(tick * DT) for tick in range(6000)]
     assert set(seen) == {"off", "deepskyblue"}
     assert 0.02 < seen.count("off") / len(seen) < 0.08
+
+
+def test_it_looks_aside_before_an_answer_and_not_before_the_next_sentence() -> None:
+    layer = lively()
+    free = {HEAD}
+    alone = replace(layer.style, sways=(), glances=None, settles=None)
+    layer.style = alone
+
+    def turned(now: float) -> tuple[float, float]:
+        wanted = layer.wanted(now, free, lambda _part: 1.0)
+        return abs(wanted["HeadYaw"]), wanted["HeadPitch"]
+
+    layer.say(Say("Let me see.", "en"), 2.0, 10.0)
+    assert alone.asides
+    assert turned(10.8) == pytest.approx((alone.asides.yaw, -alone.asides.pitch))
+    assert layer.eyes(10.8) in ("gold", "off")
+    assert layer.eyes(11.9) in ("turquoise", "off")
+    assert turned(11.7) == (0.0, 0.0)
+    layer.say(Say("It is over there.", "en"), 2.0, 12.1)
+    assert turned(12.9) == (0.0, 0.0)
+    layer.hush(14.0)
+    assert layer.eyes(14.1) in ("", "off")
+
+
+def test_it_nods_to_what_others_say_and_not_to_its_own_words() -> None:
+    layer = LifeLayer(BODY)
+    layer.style = LifeStyle("nods", nods=Nods(1.0, 0.1))
+
+    def nods(begin: float) -> float:
+        return max(layer.wanted(begin + t / 50, {HEAD}, lambda _part: 1.0)["HeadPitch"] for t in range(100))
+
+    layer.say(Say("Who are you?", "en"), 2.0, 10.0)
+    assert nods(10.0) == 0.0
+    assert nods(12.0) > 0.09
+
+
+@given(st.floats(0.3, 5.0), st.floats(0.0, 30.0))
+def test_what_settles_goes_a_tenth_beyond_its_rest_at_most(takes: float, since: float) -> None:
+    settles = Settles({"HeadPitch": 1.0}, takes)
+    level = settle(settles, since)["HeadPitch"]
+    assert 0.0 <= level <= 1.1
+    assert level == pytest.approx(1.0, abs=0.1) or since < takes
+    assert abs(settle(settles, since + 1e-3)["HeadPitch"] - level) <= SETTLE_SLOPE / takes * 1e-3 + 1e-9
+
+
+def test_arms_settle_once_a_motion_is_over() -> None:
+    layer = LifeLayer(BODY)
+    layer.style = LifeStyle("settles", settles=Settles({"LElbowRoll": -0.1}, 1.0))
+    assert live(layer, 0.0, 3.0, WHOLE_BODY)[-1]["LElbowRoll"] == pytest.approx(-0.1, abs=0.02)
+    assert not live(layer, 3.0, 3.0, {HEAD, LEGS})[-1]
+    back = [frame.get("LElbowRoll", 0.0) for frame in live(layer, 6.0, 3.0, WHOLE_BODY)]
+    assert abs(back[10]) < 0.02
+    assert back[-1] == pytest.approx(-0.1, abs=0.02)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lumen
-from lumen.language.commands import Rest
+from lumen.language.commands import Leds, Rest, Say
 from lumen.ports import Live, Perform
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.subject import subject
@@ -57,6 +57,33 @@ def test_a_motion_has_its_joints_to_itself_and_ends_as_without_life() -> None:
         assert np.abs(nao.motors.command - inside)[arms].max() < 1e-3
     nao.advance(motion.duration)
     assert any(event.name == "done.command.wave" for event in nao.poll())
+
+
+def test_its_eyes_say_what_it_does_unless_they_are_lit() -> None:
+    nao = robot("listening")
+
+    def eyes() -> list[tuple[float, ...]]:
+        return [tuple(nao.lights.shown("left_eye").round(2).tolist()), *seen(nao, "left_eye")]
+
+    def seen(nao: SimulatedRobot, light: str) -> list[tuple[float, ...]]:
+        material = nao.world.model.mat_rgba[nao.world.model.material(f"nao/{light}").id, :3]
+        return [tuple(material.round(2).tolist())]
+
+    nao.advance(0.5)
+    listens = eyes()[1]
+    nao.start("say", Say("Let me think about that for a while, my friend.", "en"))
+    nao.advance(0.6)
+    thinks = eyes()[1]
+    nao.advance(1.5)
+    speaks = eyes()[1]
+    assert len({listens, thinks, speaks}) == 3
+    nao.start("red", Leds({"eyes": "red"}))
+    nao.advance(0.3)
+    assert eyes()[0] == eyes()[1] not in (listens, thinks, speaks)
+    nao.advance(3.0)
+    nao.start("white", Leds({"eyes": "white"}))
+    nao.advance(0.3)
+    assert eyes()[1] == listens
 
 
 def test_a_robot_that_rests_is_still() -> None:

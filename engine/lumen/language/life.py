@@ -50,11 +50,38 @@ class Blinks:
 
 
 @dataclass(frozen=True, slots=True)
-class LifeStyle:
-    """A way to be alive. `attention` [s] is how long it looks where it was touched or spoken to; 0 for not at all.
+class Asides:
+    """As it begins to answer, the head turns by `yaw` [rad] to one side and up by `pitch` for `hold` [s], then back."""
 
-    `eyes` is the colour of the eyes while nothing else lights them, empty where they stay as they are.
+    yaw: float
+    pitch: float
+    hold: float = 0.6
+
+
+@dataclass(frozen=True, slots=True)
+class Settles:
+    """Where `joints` [rad; hands 0..1] sink to beside their posture once nothing moves them, within `takes` [s]."""
+
+    joints: Mapping[str, float]
+    takes: float = 1.5
+    where: NodePath = ("settles",)
+
+
+@dataclass(frozen=True, slots=True)
+class EyeColours:
+    """The colours of the eyes while nothing else lights them, empty where they stay as they are.
+
+    `thinking` is for while it looks aside before an answer.
     """
+
+    silent: str = ""
+    speaking: str = ""
+    thinking: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LifeStyle:
+    """A way to be alive. `attention` [s] is how long it looks where it was touched or spoken to; 0 for not at all."""
 
     name: str
     sways: tuple[Sway, ...] = ()
@@ -62,12 +89,15 @@ class LifeStyle:
     nods: Nods | None = None
     blinks: Blinks | None = None
     attention: float = 0.0
-    eyes: str = ""
+    eyes: EyeColours = EyeColours()
+    asides: Asides | None = None
+    settles: Settles | None = None
 
     @property
     def amplitudes(self) -> Mapping[str, float]:
-        """How far each joint sways at most [rad; hands 0..1]."""
-        found: dict[str, float] = {}
+        """How far each joint sways at most, where it has settled [rad; hands 0..1]."""
+        settles = self.settles.joints if self.settles else {}
+        found = {joint: abs(angle) for joint, angle in settles.items()}
         for sway in self.sways:
             for joint, angle in sway.joints.items():
                 found[joint] = found.get(joint, 0.0) + abs(angle)

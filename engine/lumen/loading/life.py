@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
-from lumen.language.life import STILL, Blinks, Glances, LifeStyle, Nods, Sway
+from lumen.language.life import STILL, Asides, Blinks, EyeColours, Glances, LifeStyle, Nods, Settles, Sway
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import UNKNOWN_JOINT
@@ -35,6 +35,7 @@ class _LifeReader:
 
     def read(self, data: Mapping[str, Any], name: str) -> LifeStyle:
         glances, nods, blinks = (data.get(key) or {} for key in ("glances", "nods", "blinks"))
+        eyes = data.get("eyes", "")
         return LifeStyle(
             name,
             tuple(self._sway(key, each) for key, each in (data.get("sways") or {}).items()),
@@ -49,8 +50,18 @@ class _LifeReader:
             Nods(self._every("nods", nods), self._factor * nods["pitch"]) if nods else None,
             Blinks(self._every("blinks", blinks), seconds(blinks.get("length", "150ms")) or 0.0) if blinks else None,
             seconds(data.get("attention")) or 0.0,
-            data.get("eyes", ""),
+            EyeColours(**eyes) if isinstance(eyes, Mapping) else EyeColours(eyes, eyes, eyes),
+            self._asides(data["asides"]) if "asides" in data else None,
+            self._settles(data["settles"]) if "settles" in data else None,
         )
+
+    def _asides(self, data: Mapping[str, Any]) -> Asides:
+        hold = seconds(data.get("hold", "600ms")) or 0.0
+        return Asides(self._factor * data["yaw"], self._factor * data["pitch"], hold)
+
+    def _settles(self, data: Mapping[str, Any]) -> Settles:
+        takes = self._time(("settles", "takes"), data.get("takes", "1.5s"))
+        return Settles(self._joints(data["joints"], ("settles", "joints")), takes)
 
     def _sway(self, name: str, data: Mapping[str, Any]) -> Sway:
         where = ("sways", name)

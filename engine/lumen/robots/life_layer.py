@@ -3,20 +3,24 @@
 A command never notices it: it is added to where joints are wanted, and taken back where a command begins.
 """
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from math import inf
 
 from lumen.interpreters.life import (
     HEAD_PITCH,
     HEAD_YAW,
     SPEED_SHARE,
     Attention,
+    aside,
     eyes_closed,
     glance,
     look_towards,
     nod,
+    settle,
     sway,
 )
 from lumen.interpreters.life.looking import TOUCHED
+from lumen.language.commands import Say
 from lumen.language.life import STILL_STYLE, LifeStyle
 from lumen.language.robots import Body
 from lumen.ports import Live
@@ -32,6 +36,9 @@ SETTLING = 0.25
 LED_FOR = 1.0
 """How long after an aim the head belongs to who aimed it [s]."""
 
+ANSWER_PAUSE = 1.0
+"""How long nothing was said before a text that is an answer [s]."""
+
 _REACHED = 1e-4
 
 
@@ -39,8 +46,8 @@ class LifeLayer:
     """How far each joint is from where commands want it [rad; hands 0..1].
 
     It depends on the seed, on the times and calls since the beginning, and on nothing else. What it remembers is the
-    style, what asked for attention last, when the head was aimed last, and where the joints are on their way. `offsets`
-    is what was added last; any thread may look at it.
+    style, what asked for attention last, when the head was aimed last, which text was said last and when, since when
+    parts are free, and where the joints are on their way. `offsets` is what was added last; any thread may look at it.
     """
 
     def __init__(self, body: Body, seed: int = 0) -> None:
@@ -49,6 +56,8 @@ class LifeLayer:
         self._speeds = {joint.name: SPEED_SHARE * joint.speed for joint in body.joints.values()}
         self._attention: Attention | None = None
         self._led_at = -LED_FOR
+        self._answers, self._answered_at, self._said_until = 0, -inf, -inf
+        self._free_since: dict[str, float] = {}
         self._wanted: Mapping[str, float] = {}
         self._computed: tuple[float, object] = (-LIFE_PERIOD, None)
         self._offsets: dict[str, float] = {}
@@ -64,6 +73,18 @@ class LifeLayer:
         if sensor in TOUCHED:
             self._attention = Attention(*TOUCHED[sensor], now)
 
+    def say(self, said: Say, duration: float, now: float) -> None:
+        """It begins to say that, which takes `duration` [s]."""
+        if now >= self._said_until + ANSWER_PAUSE:
+            self._answers, self._answered_at = self._answers + 1, now
+        self._said_until = now + duration
+        self.speech.say(said, duration, now)
+
+    def hush(self, now: float) -> None:
+        """Nothing is said any more."""
+        self._said_until = min(self._said_until, now)
+        self.speech.hush(now)
+
     def led(self, joints: Collection[str], now: float) -> None:
         """Somebody aims these joints: of the head they have it for a while."""
         if HEAD_YAW in joints or HEAD_PITCH in joints:
@@ -77,6 +98,7 @@ class LifeLayer:
         """The motors are off: nothing moves."""
         self._offsets.clear()
         self.offsets = {}
+        self._free_since.clear()
         self.speech.still()
 
     def advance(
@@ -108,6 +130,9 @@ class LifeLayer:
         """
         alive = {part for part in free if part == HEAD or LEGS in free}
         found = {j: angle for j, angle in sway(self.style, self._seed, now).items() if self._part.get(j) in alive}
+        self._free_since = {part: self._free_since.get(part, now) for part in alive}
+        for joint, angle in self._settled(now):
+            found[joint] = found.get(joint, 0.0) + angle
         if HEAD in alive:
             for joint, angle in zip((HEAD_YAW, HEAD_PITCH), self._head(now), strict=True):
                 if joint in self._part:
@@ -117,14 +142,32 @@ class LifeLayer:
 
     def eyes(self, now: float) -> str:
         """The colour of the eyes at `now` [s]: `off` where it blinks, empty where they stay as they are."""
-        blinks = self.style.blinks
-        return "off" if blinks and eyes_closed(blinks, self._seed, now) else self.style.eyes
+        blinks, colours = self.style.blinks, self.style.eyes
+        if blinks and eyes_closed(blinks, self._seed, now):
+            return "off"
+        if any(self._aside(now)):
+            return colours.thinking
+        return colours.speaking if now < self._said_until else colours.silent
+
+    def _settled(self, now: float) -> Iterator[tuple[str, float]]:
+        """How far joints have sunk since nothing moves them."""
+        settles = self.style.settles
+        for part, since in self._free_since.items() if settles else ():
+            sunk = settle(settles, now - since) if settles else {}
+            yield from ((joint, angle) for joint, angle in sunk.items() if self._part.get(joint) == part)
+
+    def _aside(self, now: float) -> tuple[float, float]:
+        """How far the head is turned away before an answer."""
+        asides, since = self.style.asides, now - self._answered_at
+        return aside(asides, self._seed, self._answers, since) if asides else (0.0, 0.0)
 
     def _head(self, now: float) -> tuple[float, float]:
-        """How far the head is turned and tilted."""
+        """How far the head is turned and tilted: it nods to what others say, not to its own words."""
         style = self.style
-        down = nod(style.nods, self._seed, now) if style.nods else 0.0
-        yaw, pitch = look_towards(self._attention, style.attention, now)
+        down = nod(style.nods, self._seed, now) if style.nods and now >= self._said_until else 0.0
+        yaw, pitch = self._aside(now)
+        if not (yaw or pitch):
+            yaw, pitch = look_towards(self._attention, style.attention, now)
         if style.glances and not (yaw or pitch):
             yaw, pitch = glance(style.glances, self._seed, now)
         return yaw, pitch + down

@@ -192,7 +192,7 @@ class RecordingRobot:
         usual = row.duration(command)
         until = now + (inf if behaves == "hangs" else usual if behaves is None else float(behaves))
         if isinstance(command, Say):
-            self._life.speech.say(command, until - now, now)
+            self._life.say(command, until - now, now)
         if isinstance(command, Perform):
             return _Playing(until, now, CueNotifier(command.motion, self._notice))
         if isinstance(command, Walk | Move):

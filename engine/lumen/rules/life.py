@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW, PEAK_SLOPE, SPEED_SHARE
+from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW, PEAK_SLOPE, SETTLE_SLOPE, SPEED_SHARE
 from lumen.language.diagnostics import ERROR, Code, NodePath
-from lumen.language.life import STILL, LifeStyle, Sway
+from lumen.language.life import STILL, LifeStyle, Settles, Sway
 from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.life import LIFE_FOLDER
@@ -50,6 +50,11 @@ class _Judge:
         for sway in self._style.sways:
             for joint in sway.joints:
                 yield from self._sway(sway, joint)
+        if settles := self._style.settles:
+            yield from self._settles(settles)
+        if asides := self._style.asides:
+            yield from self._head(HEAD_YAW, asides.yaw, ("asides", "yaw"))
+            yield from self._head(HEAD_PITCH, asides.pitch, ("asides", "pitch"))
         if glances := self._style.glances:
             yield from self._head(HEAD_YAW, glances.yaw, ("glances", "yaw"))
             yield from self._head(HEAD_PITCH, glances.pitch, ("glances", "pitch"))
@@ -70,6 +75,19 @@ class _Judge:
             yield LIFE_TOO_FAR, path, message, f"at most {self._shown(joint, MAX_LEG_SWAY)}, of all sways together"
             return
         yield from self._reach(joint, whole, path)
+
+    def _settles(self, settles: Settles) -> Iterator[_Fault]:
+        for joint, angle in settles.joints.items():
+            path = (*settles.where, "joints", joint)
+            speed, most = SETTLE_SLOPE * abs(angle) / settles.takes, SPEED_SHARE * self._body.joints[joint].speed
+            if speed > most:
+                message = f"`{joint}` would settle at up to {self._shown(joint, speed)}/s: too fast"
+                yield LIFE_TOO_FAST, path, message, f"at least {settles.takes * speed / most:.1f}s, or a smaller angle"
+            elif joint in self._body.parts.get("legs", ()):
+                message = f"`{joint}` would settle beside where balance needs it: that can tip the robot"
+                yield LIFE_TOO_FAR, path, message, "settle arms and head alone"
+            else:
+                yield from self._reach(joint, self._style.amplitudes[joint], path)
 
     def _head(self, joint: str, angle: float, path: NodePath) -> Iterator[_Fault]:
         if joint in self._body.joints:

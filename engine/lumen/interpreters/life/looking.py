@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from lumen.interpreters.life.chance import chance, moments
-from lumen.language.life import Glances, Nods
+from lumen.language.life import Asides, Glances, Nods
 
 HEAD_YAW, HEAD_PITCH = "HeadYaw", "HeadPitch"
 
@@ -53,6 +53,18 @@ def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[f
         return 0.0, 0.0
     part = pulse(t - attention.at, lasts)
     return part * attention.yaw, part * attention.pitch
+
+
+def aside(asides: Asides, seed: int, number: int, since: float) -> tuple[float, float]:
+    """How far the head is turned `since` so long [s] after answer `number` began: (yaw, pitch) [rad], (0, 0) after it.
+
+    People look away, mostly up, while they plan what to say; robots that do so look thoughtful (Andrist, Tan, Gleicher,
+    Mutlu: Conversational gaze aversion for humanlike robots, HRI 2014, on a NAO).
+    """
+    length = asides.hold + 2 * TURN_TIME
+    part = pulse(since, length) if 0.0 <= since < length else 0.0
+    side = 1 if chance(seed, "aside", number) < 0.5 else -1
+    return part * side * asides.yaw, -part * asides.pitch
 
 
 def pulse(since: float, length: float) -> float:

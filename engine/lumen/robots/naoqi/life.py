@@ -48,7 +48,7 @@ class NaoqiLife:
             case Wake() | Posture():
                 self._awake = True
             case Say(text):
-                self.layer.speech.say(command, speech_duration(text), now)
+                self.layer.say(command, speech_duration(text), now)
 
     def led(self, angles: Mapping[str, float], now: float) -> None:
         """Somebody aims joints there [rad]: they stand elsewhere from now on; see `alive`."""
@@ -63,7 +63,7 @@ class NaoqiLife:
         """Send where the joints are wanted at `now` [s], unless NAOqi is still busy with the last."""
         free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
         if not self._owner(VOICE):
-            self.layer.speech.hush(now)
+            self.layer.hush(now)
         if not self._awake or not {HEAD, ARMS, LEGS} <= free:
             self._busy_at, self._asked = now, None
             self._stands.clear()

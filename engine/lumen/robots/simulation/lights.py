@@ -20,6 +20,7 @@ PROPS = ("microphone",)
 """What the robot can hold for show; materials of the MJCF, invisible until then."""
 
 _SPEAKING = (0.4, 0.9, 1.0)
+_WHITE = tuple(channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big"))
 
 
 class Lights:
@@ -32,7 +33,7 @@ class Lights:
         self._ids = {name.removeprefix(prefix): i for name, i in names.items() if name.startswith(prefix)}
         self._first = self._colours.copy()
         self._unlit: dict[int, NDArray[np.float32]] = {}
-        self._worn = ""
+        self._worn: str | None = ""
 
     def show(self, colours: Mapping[str, object]) -> None:
         """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
@@ -55,15 +56,16 @@ class Lights:
     def wear_eyes(self, colour: str) -> None:
         """Draw the eyes in this colour, `off` where it blinks, unless it is empty; nobody has lit them for that.
 
-        Another colour than `off` is worn only by eyes that nobody has lit.
+        Another colour than `off` is worn only by eyes that nobody has lit, or that are white.
         """
         if colour == self._worn:
             return
         self._worn = colour
         for light in LIGHT_GROUPS["eyes"]:
-            i = self._ids.get(light)
-            lit = i is not None and not np.array_equal(self.shown(light), self._first[i, :3])
-            self._cover(light, rendered(colour) if colour == "off" or not lit else None)
+            if (i := self._ids.get(light)) is not None:
+                beneath = self.shown(light)
+                lit = not (np.allclose(beneath, self._first[i, :3]) or np.allclose(beneath, _WHITE))
+                self._cover(light, rendered(colour) if colour == "off" or not lit else None)
 
     def _cover(self, light: str, shown: tuple[float, float, float] | None) -> None:
         """Draw a light like this over what it is, until it is uncovered with None."""
@@ -96,6 +98,7 @@ class Lights:
         i = self._ids.get(light)
         if i is not None:
             self._unlit.get(i, self._colours[i])[:3] = shown
+            self._worn = None
 
 
 class LightFade:

@@ -227,7 +227,7 @@ class SimulatedRobot:
             raise RobotRefusedError("the battery is empty: plug the robot in")
         activity = self._skills.begin(command, now)
         if isinstance(command, Say) and isinstance(activity, SpeechActivity):
-            self._life.speech.say(command, activity.duration, now)
+            self._life.say(command, activity.duration, now)
         return activity
 
     def _tick(self) -> None:
@@ -253,7 +253,7 @@ class SimulatedRobot:
         if not self._skills.upright:
             free -= {ARMS, LEGS}
         if not owner(VOICE):
-            self._life.speech.hush(now)
+            self._life.hush(now)
         self.motors.sway(self._life.advance(now, CONTROL_PERIOD, free, self._vigour.__getitem__))
         self.lights.wear_eyes(self._life.eyes(now))
 
