@@ -11,7 +11,7 @@ import lumen
 from lumen.interpreters.gestures import GESTURE_SHARE, gesture_offsets, peak_speeds, plan_gestures
 from lumen.language.actions import SayText
 from lumen.language.commands import Say, Start
-from lumen.language.gestures import merged
+from lumen.language.gestures import WordTime, merged
 from lumen.ports import Joints, Live, Sense
 from lumen.robots.body_parts import ARMS, HEAD
 from lumen.robots.command_table import speech_duration
@@ -93,6 +93,15 @@ def test_every_gesture_is_within_limits_on_both_sides_and_not_too_fast() -> None
                 for joint, offset in gesture_offsets(gesture, tick / 100, other_side=other).items():
                     limits = BODY.joints[joint]
                     assert limits.minimum <= stand[joint] + offset <= limits.maximum, (gesture.name, joint)
+
+
+def test_a_voice_that_tells_when_it_says_each_word_has_the_stroke_there() -> None:
+    text = "We have 27 of them standing in the other building."
+    (guessed,) = plan_gestures(text, "en", LIBRARY, 8.0, (), 0)
+    words = [WordTime(text.index("have"), 0.4), WordTime(text.index("27"), 3.0), WordTime(text.index("of"), 3.4)]
+    (told,) = plan_gestures(text, "en", LIBRARY, 8.0, (), 0, words)
+    assert told.at + told.gesture.stroke == pytest.approx(3.0)
+    assert guessed.at + guessed.gesture.stroke == pytest.approx(8.0 * text.index("27") / len(text), abs=0.01)
 
 
 def test_a_motion_that_has_the_arms_keeps_them() -> None:

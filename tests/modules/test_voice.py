@@ -36,6 +36,18 @@ def peak(sound: Sound, begin: float, end: float) -> int:
     return max(map(abs, array("h", part)), default=0)
 
 
+def test_tells_when_each_word_is_heard() -> None:
+    text = "Halo, Ärztin Budi: we have 27 robots! Follow me."
+    sound, words = espeak().timed(text)
+    begins = [text[word.character :].split()[0] for word in words]
+    assert begins == ["Halo,", "Ärztin", "Budi:", "we", "have", "27", "7", "robots!", "Follow", "me."]
+    times = [word.at for word in words]
+    assert times == sorted(times)
+    assert 0.0 <= times[0] < times[-1] < sound.duration
+    follow = begins.index("Follow")
+    assert not loud(sound, times[follow] - 0.1, times[follow] - 0.05)
+
+
 def test_says_a_text_and_a_longer_one_for_longer() -> None:
     short, long = espeak().speak("Good morning!"), espeak().speak("Good morning! Welcome to the exhibition.")
     assert 0.4 < short.duration < long.duration < 6.0

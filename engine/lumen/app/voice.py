@@ -11,6 +11,7 @@ from typing import IO
 from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
+from lumen.language.gestures import WordTime
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
@@ -29,6 +30,7 @@ class Speaker:
         self._espeak, self._language, self._file = espeak(), language, file
         self._heard, self._track = heard, list[bytes]()
         self._length = 0
+        self.words: tuple[WordTime, ...] = ()
         self._cut: Callable[[float], None] | None = None
         self._saying: tuple[Sound, float] | None = None
         self._player = None if file else player_here()
@@ -42,9 +44,9 @@ class Speaker:
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
         try:
-            sound = self._espeak.speak(text, language or self._language)
+            sound, self.words = self._espeak.timed(text, language or self._language)
         except ModuleError:
-            sound = self._espeak.speak(text, self._language)
+            sound, self.words = self._espeak.timed(text, self._language)
         sound = sound.at_volume(volume)
         self._saying = (sound, now)
         self._cut = self._heard.add(sound, now) if self._heard is not None else None

@@ -2,8 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from lumen.language.diagnostics import NodePath
+
+
+class WordTime(NamedTuple):
+    """A word of a text: its first `character`, counted from 0, is heard `at` [s] after the beginning of the text."""
+
+    character: int
+    at: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,11 @@
 """The gestures that accompany what the robot says: planned when a text begins, and played beneath all commands."""
 
 from collections import deque
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from lumen.interpreters.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
 from lumen.language.commands import Say
-from lumen.language.gestures import NO_GESTURES, GestureLibrary
+from lumen.language.gestures import NO_GESTURES, GestureLibrary, WordTime
 from lumen.language.robots import Body
 from lumen.robots.body_parts import part_of
 
@@ -35,13 +35,16 @@ class GesturePlayer:
         self._recent: deque[frozenset[str]] = deque(maxlen=TEXTS_APART)
         self._offsets: dict[str, float] = {}
 
-    def say(self, said: Say, duration: float, now: float) -> tuple[str, ...]:
-        """A text begins, which takes `duration` [s]; the names of the gestures that it gets."""
+    def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> tuple[str, ...]:
+        """A text begins, which takes `duration` [s]; the names of the gestures that it gets.
+
+        `words` tells when each begins; without them it is where in the text it stands.
+        """
         library = NO_GESTURES if said.gestures == "none" else self.library
         self._texts += 1
         self._begin = now
         recent = frozenset[str]().union(*self._recent)
-        self._plan = plan_gestures(said.text, said.language, library, duration, recent, self._seed + self._texts)
+        self._plan = plan_gestures(said.text, said.language, library, duration, recent, self._seed + self._texts, words)
         names = tuple(planned.gesture.name for planned in self._plan)
         self._recent.append(frozenset(names))
         return names

@@ -3,7 +3,7 @@
 A command never notices it: it is added to where joints are wanted, and taken back where a command begins.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from math import inf
 
 from lumen.interpreters.life import (
@@ -21,6 +21,7 @@ from lumen.interpreters.life import (
 )
 from lumen.interpreters.life.looking import TOUCHED
 from lumen.language.commands import Say
+from lumen.language.gestures import WordTime
 from lumen.language.life import STILL_STYLE, LifeStyle
 from lumen.language.robots import Body
 from lumen.ports import Live
@@ -73,12 +74,12 @@ class LifeLayer:
         if sensor in TOUCHED:
             self._attention = Attention(*TOUCHED[sensor], now)
 
-    def say(self, said: Say, duration: float, now: float) -> None:
-        """It begins to say that, which takes `duration` [s]."""
+    def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> None:
+        """It begins to say that, which takes `duration` [s]; `words` tells when each begins, where that is known."""
         if now >= self._said_until + ANSWER_PAUSE:
             self._answers, self._answered_at = self._answers + 1, now
         self._said_until = now + duration
-        self.speech.say(said, duration, now)
+        self.speech.say(said, duration, now, words)
 
     def hush(self, now: float) -> None:
         """Nothing is said any more."""

@@ -5,13 +5,14 @@ is prepared before (McNeill's phases of gesture). A long part of a text without 
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 from lumen.interpreters.gestures.posing import BEAT
 from lumen.interpreters.life.chance import chance
-from lumen.language.gestures import Gesture, GestureLibrary
+from lumen.language.gestures import Gesture, GestureLibrary, WordTime
 
 LONG_PART = 18
 """Characters from which on a part of a text without a tag gets a beat."""
@@ -31,16 +32,22 @@ class PlannedGesture(NamedTuple):
 
 
 class _Mention(NamedTuple):
-    """A tag, and where in the text it is said, as a fraction of its length."""
+    """A tag, and with which character of the text it is said."""
 
     tag: str
     where: float
 
 
 def plan_gestures(
-    text: str, language: str, library: GestureLibrary, duration: float, recent: Collection[str], seed: int
+    text: str,
+    language: str,
+    library: GestureLibrary,
+    duration: float,
+    recent: Collection[str],
+    seed: int,
+    words: Sequence[WordTime] = (),
 ) -> tuple[PlannedGesture, ...]:
-    """The gestures of a text that takes `duration` [s] to say, one after another.
+    """The gestures of a text that takes `duration` [s] to say, one after another, on the `words` where they are known.
 
     None of those whose names are `recent` is among them, nor any twice; the seed draws among those that fit.
     """
@@ -53,8 +60,9 @@ def plan_gestures(
         if not fitting:
             continue
         gesture = fitting[int(chance(seed, "gesture", i) * len(fitting))]
-        at = max(free_from, mention.where * duration - gesture.stroke)
-        late = at + gesture.stroke - mention.where * duration
+        said = _said_at(mention.where, len(text), duration, words)
+        at = max(free_from, said - gesture.stroke)
+        late = at + gesture.stroke - said
         if at + gesture.duration > duration + TAIL or late > gesture.stroke + gesture.duration / 2:
             continue
         planned.append(PlannedGesture(gesture, at, gesture.mirrored and chance(seed, "side", i) < 0.5))
@@ -74,9 +82,19 @@ def _mentions(text: str, language: str, library: GestureLibrary) -> Iterator[_Me
         ]
         if found:
             start, tag = min(found)
-            yield _Mention(tag, (part.start() + start) / len(text))
+            yield _Mention(tag, part.start() + start)
         elif len(part[0]) >= LONG_PART:
-            yield _Mention(BEAT, (part.start() + len(part[0]) / 2) / len(text))
+            yield _Mention(BEAT, part.start() + len(part[0]) / 2)
+
+
+def _said_at(character: float, length: int, duration: float, words: Sequence[WordTime]) -> float:
+    """When that character of so many is said [s]: evenly between the beginnings of two words, else of the whole."""
+    known = (WordTime(0, 0.0), *words, WordTime(length, duration))
+    for before, after in pairwise(known):
+        if before.character <= character < after.character:
+            part = (character - before.character) / (after.character - before.character)
+            return before.at + part * (after.at - before.at)
+    return duration
 
 
 @lru_cache(maxsize=5_000)

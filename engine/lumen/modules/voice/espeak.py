@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 from lumen.errors import ModuleError
+from lumen.language.gestures import WordTime
 from lumen.modules.sound import Sound
 
 INSTALL_VOICE = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
@@ -17,7 +18,19 @@ MAX_TEXT_CHARACTERS = 1_000
 
 _SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS, _RATE = 2, 0x8000, 1, 1, 1
 
-_Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.c_void_p)
+_LIST_END, _WORD = 0, 1
+
+
+class _Event(ctypes.Structure):
+    """`espeak_EVENT`: `position` is a character of the text, counted from 1, `audio` a time in its sound [ms]."""
+
+    _fields_ = (
+        ("type", ctypes.c_int), ("id", ctypes.c_uint), ("position", ctypes.c_int), ("length", ctypes.c_int),
+        ("audio", ctypes.c_int), ("sample", ctypes.c_int), ("data", ctypes.c_void_p), ("name", ctypes.c_char * 8),
+    )  # fmt: skip
+
+
+_Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.POINTER(_Event))
 
 
 class Espeak:
@@ -30,6 +43,7 @@ class Espeak:
             raise ModuleError(f"espeak-ng can't be loaded ({error}): {INSTALL_VOICE}") from None
         self._lock = threading.Lock()
         self._parts: list[bytes] = []
+        self._words: list[WordTime] = []
         self._heard = _Callback(self._hear)
         self.rate = self._library.espeak_Initialize(_SYNCHRONOUS, 0, data and data.encode(), _DONT_EXIT)
         if self.rate <= 0:
@@ -45,6 +59,12 @@ class Espeak:
 
         Raises ModuleError for a language that it has no voice for.
         """
+        return self.timed(text, language, pace)[0]
+
+    def timed(
+        self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE
+    ) -> tuple[Sound, tuple[WordTime, ...]]:
+        """The same, and when each word begins; no words for a voice that does not tell."""
         said = "".join(sign if sign.isprintable() else " " for sign in text[:MAX_TEXT_CHARACTERS])
         data = said.encode("utf-8", "replace") + b"\0"
         with self._lock:
@@ -52,13 +72,19 @@ class Espeak:
                 raise ModuleError(f"espeak-ng has no voice for the language `{language}`")
             self._library.espeak_SetParameter(_RATE, pace, 0)
             self._parts.clear()
+            self._words.clear()
             if self._library.espeak_Synth(data, len(data), 0, _CHARACTERS, 0, _UTF8, None, None):
                 raise ModuleError("espeak-ng could not speak a text")
-            return Sound(self.rate, b"".join(self._parts))
+            return Sound(self.rate, b"".join(self._parts)), tuple(self._words)
 
-    def _hear(self, samples: Any, count: int, _: Any) -> int:
+    def _hear(self, samples: Any, count: int, events: Any) -> int:
         if samples and count > 0:
             self._parts.append(ctypes.string_at(samples, 2 * count))
+        number = 0
+        while events and events[number].type != _LIST_END:
+            if events[number].type == _WORD:
+                self._words.append(WordTime(events[number].position - 1, events[number].audio / 1000))
+            number += 1
         return 0
 
 

@@ -93,11 +93,12 @@ class MotionPlayback:
 
 
 class SpeechActivity:
-    """Saying a text, which takes `duration` [s]; the robot's ears glow meanwhile."""
+    """Saying a text, which takes `duration` [s]; the robot's ears glow meanwhile. `words` are the voice's."""
 
     def __init__(self, lights: Lights, voice: SpeechPlayback, said: Say, volume: float, now: float) -> None:
         self._lights, self._voice, self._now = lights, voice, now
         self.duration = voice.begin(said.text, said.language, volume, now)
+        self.words = voice.words
         self._until = now + self.duration
         lights.speak(True)
 

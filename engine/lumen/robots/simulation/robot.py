@@ -227,7 +227,7 @@ class SimulatedRobot:
             raise RobotRefusedError("the battery is empty: plug the robot in")
         activity = self._skills.begin(command, now)
         if isinstance(command, Say) and isinstance(activity, SpeechActivity):
-            self._life.say(command, activity.duration, now)
+            self._life.say(command, activity.duration, now, activity.words)
         return activity
 
     def _tick(self) -> None:

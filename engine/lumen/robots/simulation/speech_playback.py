@@ -2,11 +2,14 @@
 
 from typing import Protocol
 
+from lumen.language.gestures import WordTime
 from lumen.robots.command_table import speech_duration
 
 
 class SpeechPlayback(Protocol):
-    """Says texts in simulated time."""
+    """Says texts in simulated time; `words` tells when those of the last one begin, where the voice knows."""
+
+    words: tuple[WordTime, ...]
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
         """Say it from `now` [s] on, with a `volume` from 0 to 1; how long that takes [s]."""
@@ -19,6 +22,8 @@ class SpeechPlayback(Protocol):
 
 class SilentPlayback:
     """Says nothing, and takes its time for that."""
+
+    words: tuple[WordTime, ...] = ()
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
         return speech_duration(text)
