@@ -9,7 +9,6 @@ import hashlib
 import json
 import os
 import random
-import re
 import shutil
 import signal
 import socket
@@ -21,6 +20,7 @@ from typing import NoReturn
 
 import pytest
 
+from tests.erlang_modules import link_modules
 from tests.guarded import Guarded, TimeoutExpired, temporary_folder
 
 UNPACKED = Path(__file__).parents[1] / ".cache/debian"
@@ -33,10 +33,8 @@ START_TIMEOUT = 180.0
 STOP_TIMEOUT = 20.0
 """How long it may take to end in order [s]."""
 HASHING = "rabbit_password_hashing_sha256"
-NEEDLESS = re.compile(r"rabbitmq_(?!prelaunch|mqtt)")
-"""Plugins that no broker here enables: Erlang looks for each module in all their folders, a fifth of a start."""
 
-
+ERLANG_ARGUMENTS = "-kernel inet_dist_use_interface {127,0,0,1} +S 1:1 +sbwt none"
 USERS = {
     "guest": (".*", ".*"),
     "visual": (r"^lumen\.visual\.", r"^avatar\."),
@@ -84,7 +82,7 @@ class RabbitMQ:
         (self.folder / "plugins").write_text("[rabbitmq_mqtt]." if self._speaks_mqtt else "[].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
         (self.folder / "definitions.json").write_text(json.dumps(_definitions(nowhere=self.certificate is not None)))
-        self._link_plugins()
+        link_modules(self.folder, self._root / "usr/lib/erlang", Path(self._script).parents[1])
         if self._names is None:
             # Begun by us, since the one that Erlang begins for itself makes itself a daemon, which outlives everybody.
             self._names = self._begin("epmd", "-address", "127.0.0.1", "-port", str(self.epmd))
@@ -93,13 +91,6 @@ class RabbitMQ:
         self._await(self._process, lambda: _speaks_amqp(self.port))
         if self._speaks_mqtt:
             self._await(self._process, lambda: _listens(self.mqtt))
-
-    def _link_plugins(self) -> None:
-        links = self.folder / "links"
-        links.mkdir(exist_ok=True)
-        for plugin in Path(self._script).parents[1].joinpath("plugins").iterdir():
-            if not NEEDLESS.match(plugin.name) and not (links / plugin.name).exists():
-                (links / plugin.name).symlink_to(plugin)
 
     def _begin(self, *command: str) -> Guarded[bytes]:
         with (self.folder / "log").open("ab") as log:
@@ -124,6 +115,11 @@ class RabbitMQ:
             settings.append(f"listeners.ssl.1 = 127.0.0.1:{self.secure}")
             settings += [f"ssl_options.{option} = {self.certificate}/{file}" for option, file in names]
         return [*settings, ""]
+
+    @property
+    def runs(self) -> bool:
+        """Whether it was started, and nobody has ended it."""
+        return self._process is not None and self._process.poll() is None
 
     def kill(self) -> None:
         """End it as a power cut would."""
@@ -159,7 +155,7 @@ class RabbitMQ:
             "RABBITMQ_PLUGINS_DIR": f"{folder}/links",
             "RABBITMQ_ENABLED_PLUGINS_FILE": f"{folder}/plugins",
             "RABBITMQ_CONFIG_FILE": f"{folder}/rabbitmq.conf",
-            "RABBITMQ_SERVER_ADDITIONAL_ERL_ARGS": "-kernel inet_dist_use_interface {127,0,0,1} +S 1:1 +sbwt none",
+            "RABBITMQ_SERVER_ADDITIONAL_ERL_ARGS": f"-pa {folder}/modules {ERLANG_ARGUMENTS}",
             "ERL_EPMD_ADDRESS": "127.0.0.1",
             "ERL_EPMD_PORT": str(self.epmd),
         }

@@ -5,6 +5,11 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+IDLE = 9.0
+"""How many times as long as a look took nobody looks again,"""
+LONGEST_PAUSE = 0.25
+"""but no longer than this [s]."""
+
 
 class Collector:
     """A handler that keeps what it is handed, and lets a test wait for it."""
@@ -31,9 +36,17 @@ class Collector:
 
 
 def until(condition: Callable[[], object], timeout: float = 20.0, *, every: float = 0.01) -> None:
-    """Return once the condition holds, which is looked at `every` so often [s]; fails after `timeout` [s]."""
+    """Return once the condition holds, which is looked at `every` so often [s]; fails after `timeout` [s].
+
+    A look that takes long, as one through a browser does, is followed by a longer pause: who waits leaves the machine
+    to what is waited for.
+    """
     deadline = time.monotonic() + timeout
     pause = threading.Event()
-    while not condition():
-        assert time.monotonic() < deadline, f"it did not happen within {timeout:g} s"
-        pause.wait(every)
+    while True:
+        began = time.monotonic()
+        if condition():
+            return
+        now = time.monotonic()
+        assert now < deadline, f"it did not happen within {timeout:g} s"
+        pause.wait(max(every, min(IDLE * (now - began), LONGEST_PAUSE)))
