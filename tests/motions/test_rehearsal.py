@@ -8,24 +8,68 @@ import pytest
 import lumen
 from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.cli.main import main
-from lumen.rules.physics import DONE, Case, Outcome
+from lumen.rules.physics import DONE, FELL, Case, CaseResult, Outcome
 from lumen.rules.physics.cases import cases
+from lumen.rules.physics.verdict import findings
 from tests.motions.making import ROOT, SHIPPED
 
 
 def test_every_motion_and_every_passage_is_a_case() -> None:
     project = lumen.load(ROOT)
     found = cases(project)
-    assert {case.motion.name for case in found if not case.passage} == set(SHIPPED)
+    played = [case for case in found if not (case.passage or case.living)]
+    assert {case.motion.name for case in played} == set(SHIPPED)
     assert [case.motion for case in found if case.passage] == list(project.body.passages)
-    assert all(case.way == "from Stand" for case in found if not case.passage)
+    assert all(case.way == "from Stand" for case in played)
+    assert {case.file for case in found if case.living} == {f"motions/life/{name}.yaml" for name in project.life}
+
+
+def project_in(folder: Path) -> None:
+    """Copy the shipped project there."""
+    for name in ("models", "motions", "behaviors", "fuzzy", "schemas"):
+        shutil.copytree(ROOT / name, folder / name)
+    shutil.copy(ROOT / "lumen.yaml", folder)
+
+
+SWINGING = """units: {angle: deg}
+sways:
+  hands: {period: 2s, joints: {LHand: 0.1}}
+  all:
+    period: 5s
+    joints:
+      {LHipPitch: 2.8, RHipPitch: -2.8, LAnklePitch: 2.8, RAnklePitch: -2.8, LHipYawPitch: 2.8,
+       LHipRoll: 2.8, RHipRoll: 2.8, LAnkleRoll: 2.8, RAnkleRoll: 2.8}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.physics
+def test_a_style_that_could_tip_the_robot_is_found_at_its_sway(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project_in(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    style = Path("motions", "life", "calm.yaml")
+    style.write_text(SWINGING)
+    main(["lint", str(style), "--physics", "--robots", "0", "--format", "concise"])
+    found = capsys.readouterr().out
+    assert "motions/life/calm.yaml:4:3: warning[unsteady] the torso leans" in found
+    assert "when the robot lives like this" in found
+
+
+def test_a_robot_that_falls_as_it_lives_falls_at_its_sway() -> None:
+    project = lumen.load(ROOT)
+    case = next(case for case in cases(project) if case.file == "motions/life/lively.yaml")
+    (found,) = findings(CaseResult(case, [Outcome(FELL, 3.0, 60.0, 3.0)]), project.documents[case.file])
+    assert found.code == "falls"
+    assert "at 3.0 s, when it lives like this" in found.message
+    assert found.place.line == project.documents[case.file].place(("sways", "weight"), key=True).line
+    assert not findings(CaseResult(case, [Outcome(DONE, 20.0, 3.0, 3.0)]), project.documents[case.file])
 
 
 @pytest.mark.slow
 def test_what_is_known_is_kept_and_damage_is_as_good_as_nothing(tmp_path: Path) -> None:
-    for name in ("models", "motions", "behaviors", "fuzzy", "schemas"):
-        shutil.copytree(ROOT / name, tmp_path / name)
-    shutil.copy(ROOT / "lumen.yaml", tmp_path)
+    project_in(tmp_path)
     project = lumen.load(tmp_path)
     case: Case = cases(project)[0]
     outcome = Outcome(DONE, 1.0, 2.0, 0.5, slid={"L": (0.1, 0.002)})

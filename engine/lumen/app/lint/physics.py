@@ -76,7 +76,7 @@ def summary(rehearsals: Sequence[CaseResult]) -> str:
         name = case.motion.name if case.passage else f"{case.motion.name} {case.way}"
         leaned = "" if case.passage else f", leaned {max((o.tilt for o in tried), default=0.0):.1f} deg at most"
         slid = max((m[1] for o in tried for m in o.slid.values()), default=0.0)
-        slides = "" if case.passage else f", feet slid {1000 * slid:.0f} mm"
+        slides = "" if case.passage or case.living else f", feet slid {1000 * slid:.0f} mm"
         lines.append(f"{name:<28} {well} of {len(tried)} robots{leaned}{slides}")
     return "\n".join(lines)
 

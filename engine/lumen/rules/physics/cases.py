@@ -9,18 +9,24 @@ from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
-from lumen.ports import Perform, RobotCommand
+from lumen.ports import Live, Perform, RobotCommand
 
-MOTIONS, PASSAGES = "motions", "models/passages"
+MOTIONS, PASSAGES, LIFE = "motions", "models/passages", "motions/life"
 FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""
+
+LIVED = 20.0
+"""For how long a robot is alive in a style [s]: several of its sways."""
 
 Before = tuple[RobotCommand, ...]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A motion of `folder`, what the robot does before it, and the `command` that plays it."""
+    """A motion of `folder`, what the robot does before it, and the `command` that plays it.
+
+    A style of life is a motion without keyframes.
+    """
 
     folder: str
     motion: MotionDefinition
@@ -37,8 +43,15 @@ class Case:
         return self.folder == PASSAGES
 
     @property
+    def living(self) -> bool:
+        """Whether it is no motion, but a style of life."""
+        return self.folder == LIFE
+
+    @property
     def way(self) -> str:
-        """`from Stand`, `after photo`."""
+        """`from Stand`, `after photo`, `alive`."""
+        if self.living:
+            return "alive"
         match self.before[-1:]:
             case (Posture(posture),):
                 return f"from {posture}"
@@ -48,7 +61,7 @@ class Case:
 
 
 def cases(project: Project) -> list[Case]:
-    """Every motion from its start and from wherever the behaviours lead to it, then every passage."""
+    """Every motion from its start and from wherever the behaviours lead to it, every passage, every style of life."""
     motions = project.motions
     ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
     blocks = [block for machine in project.behaviors.values() for block in _blocks(machine)]
@@ -63,6 +76,8 @@ def cases(project: Project) -> list[Case]:
     for passage in project.body.passages:
         before = Posture(passage.start, 1.0)
         found.append(Case(PASSAGES, passage, (before,), Posture(passage.end, 1.0)))
+    for name, style in project.life.items():
+        found.append(Case(LIFE, MotionDefinition(name, LIVED, {}), (), Live(style)))
     return list({(case.file, case.way): case for case in found}.values())
 
 

@@ -6,7 +6,7 @@ from math import degrees, hypot
 from typing import Any, Self
 
 from lumen.language.events import Event
-from lumen.ports import RobotCommand, Sole, Strain, Subject
+from lumen.ports import Live, RobotCommand, Sole, Strain, Subject
 from lumen.rules.physics.cases import Case
 
 POLL_INTERVAL = 0.02
@@ -68,7 +68,7 @@ def attempt(case: Case, robot: Subject) -> Outcome:
         return Outcome()
     robot.advance(REST_BEFORE)
     robot.poll()
-    watch = _Watch(case.passage)
+    watch = _Watch(case.passage or case.living)
     watch.outcome.answer = _perform(robot, case.command, watch, case.motion.duration)
     return watch.closed(robot)
 
@@ -77,7 +77,8 @@ def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = Non
     """A command to its end: `done`, `fell`, or why not."""
     robot.start("it", command)
     waited = 0.0
-    while waited < duration + STUCK_AFTER:
+    lasts = duration if isinstance(command, Live) else duration + STUCK_AFTER
+    while waited < lasts:
         robot.advance(POLL_INTERVAL)
         waited += POLL_INTERVAL
         if watch:
@@ -88,7 +89,7 @@ def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = Non
         for event in events:
             if event.name.endswith(".command.it"):
                 return _answer(event)
-    return "it does not come to an end"
+    return DONE if isinstance(command, Live) else "it does not come to an end"
 
 
 def _answer(event: Event) -> str:

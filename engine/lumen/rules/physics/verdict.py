@@ -4,7 +4,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import degrees
 
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Places
+from lumen.language.life import Sway
 from lumen.language.motions import Keyframe
+from lumen.ports import Live
 from lumen.rules.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVERLOADED, SELF_COLLISION, UNSTEADY
 from lumen.rules.physics import FELL, CaseResult, Outcome
 from lumen.rules.physics.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
@@ -17,6 +19,9 @@ MAX_FULL_TORQUE_TIME = 0.3
 
 MAX_JOINT_LAG = 0.35
 """How far a joint may be from where the motion has it [rad]."""
+
+MAX_LIVING_TILT = 5.0
+"""How far the torso may lean of a robot that only lives [degrees]: shipped styles have 0.5."""
 
 MAX_FAILED_SHARE = 0.1
 """Of a passage, which the robot tries again, so many attempts may fail."""
@@ -46,11 +51,14 @@ class _Judge:
             yield from self._failure(failed, failed[0] is self._rehearsal.outcomes[0])
         if self._case.passage:
             return
-        if not failed and (leans := max(outcome.tilt for outcome in tried)) >= FALLING_TILT:
-            message = (
-                f"the torso leans {leans:.0f} deg when the robot plays this {self._case.way}: at 45 it counts as fallen"
-            )
-            most = max(tried, key=lambda outcome: outcome.tilt)
+        most = max(tried, key=lambda outcome: outcome.tilt)
+        if self._case.living:
+            if not failed and most.tilt >= MAX_LIVING_TILT:
+                message = f"the torso leans {most.tilt:.0f} deg when the robot lives like this: a push tips it"
+                yield self._found(UNSTEADY, message, "smaller sways, or slower ones", self._keys(most.leaned, _LEGS))
+            return
+        if not failed and most.tilt >= FALLING_TILT:
+            message = f"the torso leans {most.tilt:.0f} deg when the robot {self._when()}: at 45 it counts as fallen"
             yield self._found(UNSTEADY, message, "bow less deep", self._keys(most.leaned, _LEGS))
             return  # the rest comes of it
         worst = [*self._worst(SELF_COLLISION, lambda o: o.collisions, MAX_CONTACT_TIME)]
@@ -74,7 +82,7 @@ class _Judge:
             yield self._found(NOT_PLAYED, message, "", ())
             return
         if itself and worst.answer == FELL:
-            message = f"the robot falls here, at {worst.at:.1f} s, when it plays this {self._case.way}"
+            message = f"the robot falls here, at {worst.at:.1f} s, when it {self._when()}"
             hint = "slower, smaller, or with the weight over the foot that stands"
             yield self._found(FALLS, message, hint, self._keys(worst.at, _LEGS))
             return
@@ -83,7 +91,7 @@ class _Judge:
             return
         message = f"{len(failed)} of {tried} robots, each a little different, {_plural(what)} here"
         if not self._case.passage:
-            message += f" when they play this {self._case.way}"
+            message += f" when they {self._when(plural=True)}"
         hint = "it holds on the robot of the model alone: slower, or smaller, leaves a margin"
         yield self._found(UNSTEADY, message, hint, self._keys(worst.at, _LEGS))
 
@@ -115,8 +123,20 @@ class _Judge:
         joints = (what,) if code in _JOINTS else _LEGS if code == FEET_SLIDE else ()
         yield self._found(code, message, hint, self._keys(at, joints))
 
+    def _when(self, *, plural: bool = False) -> str:
+        """What the robot does, in words."""
+        if self._case.living:
+            return "live like this" if plural else "lives like this"
+        return f"{'play' if plural else 'plays'} this {self._case.way}"
+
     def _keys(self, at: float, joints: Iterable[str]) -> NodePath:
-        """Where the keyframe stands that the robot was on its way to; of these joints, where some of them move."""
+        """Where the keyframe stands that the robot was on its way to; of these joints, where some of them move.
+
+        Of a style of life it is the sway that moves the legs most, else the one that moves anything most.
+        """
+        if isinstance(self._case.command, Live):
+            sways = self._case.command.style.sways
+            return max(sways, key=_shaking).where if sways else ()
         tracks = self._case.motion.tracks
         chosen = [keys for name, keys in tracks.items() if any(part in name for part in joints)] or list(
             tracks.values()
@@ -126,7 +146,13 @@ class _Judge:
         return _keyframe(keys[0]) if keys else ()
 
     def _found(self, code: Code, message: str, hint: str, path: NodePath) -> Diagnostic:
-        return code.at(self._document.place(path), message, hint)
+        return code.at(self._document.place(path, key=self._case.living), message, hint)
+
+
+def _shaking(sway: Sway) -> tuple[float, float]:
+    """How fast a sway moves legs, and how fast anything, as far as that tells which one tips the robot."""
+    legs = sum(abs(angle) for joint, angle in sway.joints.items() if any(part in joint for part in _LEGS))
+    return legs / sway.period, sum(map(abs, sway.joints.values())) / sway.period
 
 
 def _words(code: Code, what: str, at: float, value: float) -> tuple[str, str]:
