@@ -20,7 +20,7 @@ from tests.rabbitmq import RabbitMQ
 
 PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
-SHARED = frozenset(("broker", "speaker"))
+SHARED = frozenset(("broker", "own_broker", "speaker"))
 """The fixtures that are a broker for several tests."""
 
 

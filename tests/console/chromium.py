@@ -54,6 +54,20 @@ class Chromium:
         self._browser = DrivenBrowser(options)
         self.driver = self._browser.driver
 
+    def forget(self) -> None:
+        """Be as somebody who was never here: with one empty window, and nothing kept of any page."""
+        first, *others = self.driver.window_handles
+        for window in others:
+            self.look(window)
+            self.driver.close()
+        self.look(first)
+        self.driver.get("about:blank")
+        for command, fields in (
+            ("Storage.clearDataForOrigin", {"origin": "*", "storageTypes": "all"}),
+            ("Network.clearBrowserCookies", {}),
+        ):
+            self.driver.execute("executeCdpCommand", {"cmd": command, "params": fields})
+
     def run(self, script: str, *arguments: Any) -> Any:
         """What a script in the page returns."""
         return self.driver.execute_script(script, *arguments)

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +12,20 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up
+from tests.console.chromium import Chromium
 from tests.console.house import House
 from tests.console.pages import Browser, Served
 from tests.rabbitmq import RabbitMQ
-from tests.tour.conftest import copy, project
+from tests.tour.conftest import copied, copy, project
 from tests.waiting import until
 
 __all__ = ["copy", "project"]
+
+
+EVIL = "evil.example"
+"""A name that somebody has bound to this machine."""
+SCRIPT_TIMEOUT = 60.0
+"""How long a script in a page may take on a crowded machine [s]."""
 
 
 class Hosted:
@@ -32,6 +40,7 @@ class Hosted:
         )
         self.directory.open(self.exhibition.node.bus, bus, loaded)
         self.exhibition.start()
+        self._begun = self._state
         self._thread = threading.Thread(target=self._live)
         self._thread.start()
 
@@ -43,6 +52,25 @@ class Hosted:
         """A message as a module would send it."""
         self.exhibition.send(route, body)
 
+    @property
+    def _state(self) -> tuple[object, ...]:
+        """What a test may have changed of it."""
+        one = self.exhibition
+        return (
+            one.configuration,
+            one.context,
+            one.node.robot.server.hold.stopped,
+            one.node.loop.runtime.approvals.autonomy,
+        )
+
+    def restored(self) -> bool:
+        """Whether it is as it was begun, at the latest once a robot that rests has gone on."""
+        if self.exhibition.node.robot.server.hold.stopped and self.exhibition.context == self._begun[1]:
+            self.exhibition.resume()
+            with suppress(AssertionError):
+                until(lambda: self._state == self._begun)
+        return self._state == self._begun
+
     def close(self) -> None:
         self._ending.set()
         self._thread.join()
@@ -50,19 +78,51 @@ class Hosted:
         self.directory.close(forget=True)
 
 
-@pytest.fixture
-def hosted(copy: Path) -> Iterator[Hosted]:
-    one = Hosted(copy)
+class Shared:
+    """An exhibition and its console for the tests of a module: each has them as they were begun, or new ones."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._hosted: Hosted | None = None
+        self._served: Served | None = None
+
+    def hosted(self) -> Hosted:
+        if self._hosted and not self._hosted.restored():
+            self.close()
+        if self._hosted is None:
+            self._hosted = Hosted(self._root)
+        return self._hosted
+
+    def served(self) -> Served:
+        if self._served is None or not self._served.serves:
+            self._served = Served(self._root)
+        one = self._served
+        until(lambda: [robot["connected"] for robot in one.browser.robots] == [True])
+        return one
+
+    def close(self) -> None:
+        if self._served and self._served.serves:
+            self._served.close()
+        if self._hosted:
+            self._hosted.close()
+        self._served = self._hosted = None
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shared]:
+    one = Shared(copied(tmp_path_factory.mktemp("shared")))
     yield one
     one.close()
 
 
 @pytest.fixture
-def served(copy: Path, hosted: Hosted) -> Iterator[Served]:
-    one = Served(copy)
-    until(lambda: any(robot["connected"] for robot in one.browser.robots))
-    yield one
-    one.close()
+def hosted(shared: Shared) -> Hosted:
+    return shared.hosted()
+
+
+@pytest.fixture
+def served(shared: Shared, hosted: Hosted) -> Served:
+    return shared.served()
 
 
 @pytest.fixture
@@ -76,15 +136,40 @@ def house(copy: Path) -> Iterator[House]:
     yield from lived_in(House(copy, speed="4"))
 
 
+@pytest.fixture(scope="session")
+def begun_chromium() -> Iterator[Chromium]:
+    one = Chromium(f"host-resolver-rules=MAP {EVIL} 127.0.0.1")
+    one.driver.set_script_timeout(SCRIPT_TIMEOUT)
+    yield one
+    one.close()
+
+
 @pytest.fixture
-def house_on_a_broker(copy: Path) -> Iterator[House]:
+def chromium(begun_chromium: Chromium) -> Iterator[Chromium]:
+    """A browser in which nobody was here before."""
+    yield begun_chromium
+    begun_chromium.forget()
+
+
+@pytest.fixture(scope="session")
+def begun_broker() -> Iterator[RabbitMQ]:
+    rabbitmq = RabbitMQ()
+    yield rabbitmq
+    rabbitmq.stop()
+
+
+@pytest.fixture
+def own_broker(begun_broker: RabbitMQ) -> RabbitMQ:
+    """A broker that a test may kill: it runs again for the next one."""
+    if not begun_broker.runs:
+        begun_broker.start()
+    return begun_broker
+
+
+@pytest.fixture
+def house_on_a_broker(copy: Path, own_broker: RabbitMQ) -> Iterator[House]:
     """The same in more processes, on a broker that a test may kill."""
-    broker = RabbitMQ()
-    broker.start()
-    try:
-        yield from lived_in(House(copy, broker, speed="4"))
-    finally:
-        broker.stop()
+    yield from lived_in(House(copy, own_broker, speed="4"))
 
 
 def lived_in(house: House) -> Iterator[House]:

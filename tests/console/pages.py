@@ -132,6 +132,11 @@ class Served:
         self._thread = threading.Thread(target=self.console.run)
         self._thread.start()
 
+    @property
+    def serves(self) -> bool:
+        """Whether nobody has closed it."""
+        return self._thread.is_alive()
+
     def close(self) -> None:
         self.console.end()
         self._thread.join(TIMEOUT)

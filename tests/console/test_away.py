@@ -5,7 +5,7 @@ What was taken is collected in the page itself, and compared with the journal, w
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from threading import Event, Thread
 from typing import Any
 
@@ -89,13 +89,6 @@ def journaled(house: House, first: int, last: int) -> list[int]:
     return [position for position in found if position <= last]
 
 
-@pytest.fixture
-def chromium() -> Iterator[Chromium]:
-    one = Chromium()
-    yield one
-    one.close()
-
-
 def away(house: House, chromium: Chromium, what: str, seconds: float, leave: Callable[[], object], back: Any) -> None:
     """Two pages are away and come back, while things happen; both have all of it, once and in order."""
     handles = (str(chromium.driver.current_window_handle), chromium.window())
@@ -144,7 +137,6 @@ def test_a_network_that_was_cut(house: House, chromium: Chromium) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("away")
 def test_a_server_that_was_started_again_before_its_broker_was_there(
     house_on_a_broker: House, chromium: Chromium
 ) -> None:

@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,15 +12,6 @@ from tests.console.pages import Served, Stream
 from tests.guarded import DEVNULL, PIPE, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
-
-
-@pytest.fixture(scope="module")
-def own_broker() -> Iterator[RabbitMQ]:
-    """A broker that may be killed."""
-    rabbitmq = RabbitMQ()
-    rabbitmq.start()
-    yield rabbitmq
-    rabbitmq.stop()
 
 
 def whole(positions: list[str]) -> bool:
@@ -52,8 +42,8 @@ def test_an_exhibition_that_is_begun_again_is_gone_on_with(copy: Path) -> None:
         served.close()
 
 
-def test_a_console_that_is_begun_again_goes_on_after_what_a_page_has(copy: Path, hosted: Hosted) -> None:
-    served = Served(copy)
+def test_a_console_that_is_begun_again_goes_on_after_what_a_page_has(hosted: Hosted) -> None:
+    served = Served(hosted.root)
     with Stream(served.browser, "/api/events?after=-1") as stream:
         until(lambda: stream.of("entry"))
         served.browser.command("rest")
@@ -61,7 +51,7 @@ def test_a_console_that_is_begun_again_goes_on_after_what_a_page_has(copy: Path,
     seen, port = stream.positions(), served.browser.port
     served.close()
     hosted.exhibition.resume()
-    again = Served(copy, port)
+    again = Served(hosted.root, port)
     try:
         with Stream(again.browser, Last_Event_ID=seen[-1]) as stream:
             until(lambda: "resume" in [event.data.get("heard") for event in stream.of("entry")])

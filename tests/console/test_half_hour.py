@@ -4,7 +4,7 @@ Whatever happens has to be seen on the pages, and mended from them; nothing else
 as a person would. `pytest -m soak` plays as many of them as fill half an hour.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from random import Random
 
 import pytest
@@ -87,13 +87,6 @@ class Operator:
         assert self._house.browser.command("event", event=event, robot="NAO").data["state"] == "finished"
 
 
-@pytest.fixture
-def chromium() -> Iterator[Chromium]:
-    one = Chromium()
-    yield one
-    one.close()
-
-
 def broken_visitors(house: House, operator: Operator) -> None:
     for body in BROKEN:
         house.send(HEARD, body)
@@ -123,6 +116,7 @@ def a_fall(house: House, operator: Operator) -> None:
     operator.sees("It fell.", "Keep visitors away", "I fell")
     operator.presses(".notice button")
     operator.sees_no(".notice button")
+    operator.sees("I am on my feet again")
     operator.sees_it_in("watching")
 
 
@@ -170,7 +164,6 @@ def begin(house: House, operator: Operator) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("rest on a broker")
 def test_whatever_happens_is_seen_on_the_pages_and_mended_from_them(
     house_on_a_broker: House, chromium: Chromium
 ) -> None:

@@ -86,12 +86,12 @@ def test_the_console_itself_has_neither_the_simulator_nor_numbers_in_it() -> Non
 
 
 def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
-    copy: Path, served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
+    served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The head is turned by as much as its joint on the bus says; what is about no joint is passed over."""
     monkeypatch.setattr("lumen.console.poses.LINGER", 0.1)
     poses, bus = served.console.site.sights.poses, hosted.exhibition.node.bus
-    names = list(lumen.load(copy).body.joints)
+    names = list(lumen.load(hosted.root).body.joints)
 
     def turned(angle: float) -> bool:
         """Whether the last pose has the head at that angle [rad] about z, by its quaternion w, i, j, k."""
@@ -121,7 +121,9 @@ def test_a_model_that_is_gone_is_said_and_what_draws_is_begun_anew(
     assert "the robot can't be drawn: " in stream.of("trouble")[0].data["reason"]
 
 
-def test_who_does_not_read_poses_is_given_the_newest_only(served: Served, hosted: Hosted) -> None:
+def test_who_does_not_read_poses_is_given_the_newest_only(
+    served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """However often the robot moves, of what it was not sent nothing is kept."""
     poses = served.console.site.sights.poses
     view = served.console.site.watch.robots["NAO"]
@@ -136,7 +138,7 @@ def test_who_does_not_read_poses_is_given_the_newest_only(served: Served, hosted
     async def placed(of: object) -> bytes:
         return b"%d" % view.moved
 
-    poses._placed = placed  # type: ignore[method-assign]
+    monkeypatch.setattr(poses, "_placed", placed)
     first, second = asyncio.run(read())
     assert int(second) == view.moved > int(first) + 900
 

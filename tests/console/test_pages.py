@@ -4,7 +4,6 @@ import json
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
-from pathlib import Path
 
 import pytest
 from selenium.webdriver import ActionChains
@@ -104,13 +103,13 @@ def test_a_server_that_is_silent_is_not_one_that_was_reached(viewer: Viewer, ser
         viewer.shows("NOT SENT", ".rest-said")
 
 
-def test_a_page_is_live_again_with_each_entry_once(viewer: Viewer, served: Served, hosted: Hosted, copy: Path) -> None:
+def test_a_page_is_live_again_with_each_entry_once(viewer: Viewer, served: Served, hosted: Hosted) -> None:
     viewer.open(served.console.address, ready=".leaf")
     served.close()
     viewer.shows("console does not answer", ".connection")
     hosted.exhibition.stop()
     with ExitStack() as stack:
-        again = Served(copy, served.browser.port)
+        again = Served(hosted.root, served.browser.port)
         stack.callback(again.close)
         until(lambda: viewer.text(".connection").startswith("live"), WAIT)
         viewer.click(".rest")

@@ -1,17 +1,20 @@
 """Days, entries, why and files, of an exhibition with visitors."""
 
+from contextlib import closing
 from datetime import date
+from pathlib import Path
 
 import pytest
 
-from tests.console.conftest import Hosted
-from tests.console.pages import Browser, Stream
+from tests.console.conftest import Hosted, Shared
+from tests.console.pages import Browser, Served, Stream
 from tests.waiting import until
 
 
-@pytest.fixture
-def visited(hosted: Hosted, browser: Browser) -> Browser:
+@pytest.fixture(scope="module")
+def browser(shared: Shared) -> Browser:
     """A visitor called a name that a page had better not believe says something that nobody expects."""
+    hosted, browser = shared.hosted(), shared.served().browser
     position = browser.robots[0]["position"]
     hosted.send("face", {"x": 160, "y": 120})
     until(lambda: "greet" in hosted.exhibition.configuration)
@@ -21,24 +24,30 @@ def visited(hosted: Hosted, browser: Browser) -> Browser:
     return browser
 
 
-def test_a_day_has_its_visits_and_numbers(visited: Browser) -> None:
-    until(lambda: len(visited.get("/api/day").data["numbers"]["asked"]) == 2)
-    day = visited.get("/api/day").data
+def test_a_day_has_its_visits_and_numbers(browser: Browser) -> None:
+    until(lambda: len(browser.get("/api/day").data["numbers"]["asked"]) == 2)
+    day = browser.get("/api/day").data
     assert day["date"] in day["dates"]
     [visit] = day["visits"]
     assert visit["n"] == 1
     assert day["numbers"]["visits"] == 1
     assert dict(day["numbers"]["asked"]) == {"<script>alert(1)</script>": 1, "=1+1": 1}
     assert day["numbers"]["answers"]
-    entries = visited.get(f"/api/entries?from={visit['from']}&to={visit['to']}").data["entries"]
+    entries = browser.get(f"/api/entries?from={visit['from']}&to={visit['to']}").data["entries"]
     assert [entry["position"] for entry in entries] == list(range(visit["from"], visit["to"] + 1))
     assert all(entry["at_time"].startswith(day["date"][:4]) for entry in entries)
-    answer = visited.get("/api/day.csv")
+    answer = browser.get("/api/day.csv")
     assert answer.headers["content-type"].startswith("text/csv")
     assert "asked,'=1+1,1" in answer.body.decode()
 
 
-def test_what_happens_between_visits_has_its_place_in_the_day(browser: Browser, hosted: Hosted) -> None:
+def test_what_happens_between_visits_has_its_place_in_the_day(copy: Path) -> None:
+    with closing(Hosted(copy)) as hosted, closing(Served(copy)) as served:
+        until(lambda: any(robot["connected"] for robot in served.browser.robots))
+        _told_between(served.browser, hosted)
+
+
+def _told_between(browser: Browser, hosted: Hosted) -> None:
     hosted.send("heard", {"result": "is anybody there", "language": "en"})
 
     def told() -> list[str]:
@@ -52,14 +61,14 @@ def test_what_happens_between_visits_has_its_place_in_the_day(browser: Browser, 
     assert day["between"][0]["began"] <= day["between"][-1]["ended"]
 
 
-def test_an_entry_has_one_time_whenever_it_is_asked_for(visited: Browser) -> None:
-    with Stream(visited, "/api/events?after=-1") as stream:
+def test_an_entry_has_one_time_whenever_it_is_asked_for(browser: Browser) -> None:
+    with Stream(browser, "/api/events?after=-1") as stream:
         until(lambda: len(stream.of("entry")) > 3)
     live = {event.data["position"]: event.data["at_time"] for event in stream.of("entry")}
     for first in (0, max(live) - 1):
-        told = visited.get(f"/api/entries?from={first}&to={max(live)}").data["entries"]
+        told = browser.get(f"/api/entries?from={first}&to={max(live)}").data["entries"]
         assert {one["position"]: one["at_time"] for one in told} == {at: live[at] for at in live if at >= first}
-    [visit] = visited.get("/api/day").data["visits"]
+    [visit] = browser.get("/api/day").data["visits"]
     assert live[visit["from"]][:-5] == visit["began"][:19]
 
 
@@ -71,11 +80,11 @@ def test_what_is_asked_wrongly_is_said(browser: Browser) -> None:
     assert date.fromisoformat(browser.get("/api/day").data["date"])
 
 
-def test_it_says_why_and_why_not(visited: Browser) -> None:
-    why = visited.get("/api/why?what=greet").data
+def test_it_says_why_and_why_not(browser: Browser) -> None:
+    why = browser.get("/api/why?what=greet").data
     assert why["chain"][0]["text"]
-    assert visited.get("/api/why-not?what=dance").data["reasons"]
-    assert visited.get("/api/why?what=moonwalk").status == 404
+    assert browser.get("/api/why-not?what=dance").data["reasons"]
+    assert browser.get("/api/why?what=moonwalk").status == 404
 
 
 def test_files_are_as_the_exhibition_says(browser: Browser) -> None:

@@ -41,8 +41,8 @@ TOOK = "return document.querySelector('rest-button[main]')?.told?.[1]?.seconds ?
 class Desk:
     """A person at a few windows of one console, who presses Rest, and what came of it."""
 
-    def __init__(self, house: House, draw: Random) -> None:
-        self.house, self.draw, self.chromium = house, draw, Chromium()
+    def __init__(self, house: House, chromium: Chromium, draw: Random) -> None:
+        self.house, self.draw, self.chromium = house, draw, chromium
         driver = self.chromium.driver
         self.windows = [str(driver.current_window_handle), *(self.chromium.window() for _ in PAGES[1:])]
         for window, page in zip(self.windows, PAGES, strict=True):
@@ -122,25 +122,19 @@ class Desk:
             until(lambda: RESTS.search(self.chromium.said()), SETTLES)
         return self.chromium.said()
 
-    def close(self) -> None:
-        self.chromium.close()
-
 
 @pytest.fixture
 def draw() -> Random:
     return Random(SEED)
 
 
-def pressed(house: House, draw: Random, troubles: tuple[Trouble, ...], presses: int) -> None:
+def pressed(house: House, chromium: Chromium, draw: Random, troubles: tuple[Trouble, ...], presses: int) -> None:
     """Live through so many moments, tell of them, and fail for each that was silent."""
-    desk = Desk(house, draw)
+    desk = Desk(house, chromium, draw)
     lived = Counter[str]()
-    try:
-        for trouble in drawn(troubles, draw, presses):
-            desk.live(trouble)
-            lived[trouble.name] += trouble.presses
-    finally:
-        desk.close()
+    for trouble in drawn(troubles, draw, presses):
+        desk.live(trouble)
+        lived[trouble.name] += trouble.presses
     p95 = quantiles(desk.times, n=20)[-1]
     lines = (
         f"Rest at {lived.total()} moments (seed {SEED}): silent failures {len(desk.silent)}",
@@ -154,23 +148,22 @@ def pressed(house: House, draw: Random, troubles: tuple[Trouble, ...], presses: 
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
-def test_rest_at_10_moments_on_the_local_bus(house: House, draw: Random) -> None:
-    pressed(house, draw, WITHOUT_BROKER, 10)
+def test_rest_at_10_moments_on_the_local_bus(house: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house, chromium, draw, WITHOUT_BROKER, 10)
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("rest")
-def test_rest_at_10_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
-    pressed(house_on_a_broker, draw, WITH_BROKER, 10)
+def test_rest_at_10_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 10)
 
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("rest")
-def test_rest_at_400_moments_on_the_local_bus(house: House, draw: Random) -> None:
-    pressed(house, draw, WITHOUT_BROKER, 400)
+def test_rest_at_400_moments_on_the_local_bus(house: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house, chromium, draw, WITHOUT_BROKER, 400)
 
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("rest on a broker")
-def test_rest_at_600_moments_on_a_broker(house_on_a_broker: House, draw: Random) -> None:
-    pressed(house_on_a_broker, draw, WITH_BROKER, 600)
+def test_rest_at_600_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 600)

@@ -47,9 +47,11 @@ def test_many_pages_hear_the_same(browser: Browser, hosted: Hosted) -> None:
             stream.close()
 
 
-def test_who_asks_once_gets_what_there_is_and_no_more(browser: Browser, hosted: Hosted) -> None:
+def test_who_asks_once_gets_what_there_is_and_no_more(served: Served, hosted: Hosted) -> None:
+    browser, view = served.browser, served.console.site.watch.robots["NAO"]
     browser.command("mark", text="he waved")
     last = browser.robots[0]["position"]
+    until(lambda: view.entries.last >= last)
     with Stream(browser, "/api/events?after=-1&once=1") as stream:
         until(stream.ended.is_set)
     got = [int(position) for position in stream.positions()]

@@ -4,7 +4,6 @@ import http.client
 import json
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from threading import Thread
 
 import pytest
@@ -12,11 +11,10 @@ import pytest
 from lumen.console.orders import NEEDS
 from lumen.console.people import Role
 from tests.console.chromium import Chromium
-from tests.console.conftest import Hosted
+from tests.console.conftest import EVIL, Hosted
 from tests.console.pages import JSON, Browser, Served, Stream
 from tests.waiting import until
 
-EVIL = "evil.example"
 PIN = "0500"
 NAME = "Zebulon"
 SCRIPT = "<script>alert(1)</script>"
@@ -25,7 +23,7 @@ WAIT = 60.0
 PAGES = ("", "robot/NAO", "robot/NAO/day", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
 ATTACK = """
 const [console, done] = [arguments[0], arguments[arguments.length - 1]];
-const body = JSON.stringify({ id: "evil", robot: "NAO", command: "rest" });
+const body = JSON.stringify({ id: `evil-${location.hostname}`, robot: "NAO", command: "rest" });
 const image = (path) => new Promise((told) => Object.assign(new Image(), {
   onload: () => told(true), onerror: () => told(false), src: console + path }));
 const read = (path, how) =>
@@ -41,7 +39,7 @@ Promise.all([
 ]).then(done);
 """
 OWN = """
-const body = JSON.stringify({ id: "own", robot: "NAO", command: "rest" }), done = arguments[arguments.length - 1];
+const [id, done] = arguments, body = JSON.stringify({ id, robot: "NAO", command: "rest" });
 fetch("/api/commands", { method: "POST", headers: { "Content-Type": "application/json" }, body })
   .then((answer) => answer.json()).then((said) => done(said.state));
 """
@@ -71,17 +69,9 @@ def foreign() -> Iterator[int]:
 
 
 @pytest.fixture
-def chromium() -> Iterator[Chromium]:
-    one = Chromium(f"host-resolver-rules=MAP {EVIL} 127.0.0.1")
-    one.driver.set_script_timeout(WAIT)
-    yield one
-    one.close()
-
-
-@pytest.fixture
-def locked(copy: Path, hosted: Hosted) -> Iterator[Browser]:
+def locked(hosted: Hosted) -> Iterator[Browser]:
     """A console that wants a PIN."""
-    served = Served(copy, pins={Role.OPERATOR: PIN})
+    served = Served(hosted.root, pins={Role.OPERATOR: PIN})
     until(lambda: any(robot["connected"] for robot in served.browser.robots))
     yield served.browser
     served.close()
@@ -107,7 +97,7 @@ def test_a_page_of_somebody_else_reads_nothing_and_does_nothing(
     assert hosted.exhibition.node.robot.server.hold.stopped is None
     chromium.open(served.console.address)  # and what it tried was no mistake
     chromium.find("rest-button[main] button.rest")
-    assert chromium.driver.execute_async_script(OWN) == "finished"
+    assert chromium.driver.execute_async_script(OWN, f"own-{host}") == "finished"
     assert hosted.exhibition.node.robot.server.hold.stopped
 
 
@@ -153,9 +143,9 @@ def test_a_thousand_tries_in_a_row_get_nobody_in_and_rest_goes_on(locked: Browse
     assert hosted.exhibition.node.robot.server.hold.stopped
 
 
-def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted, copy: Path) -> None:
+def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted) -> None:
     """All commands and paths that are not for that role are refused, also with what would be right for another."""
-    served = Served(copy, pins={Role.SHOW: PIN, Role.AUTHOR: f"{PIN}-author"})
+    served = Served(hosted.root, pins={Role.SHOW: PIN, Role.AUTHOR: f"{PIN}-author"})
     browser, show = served.browser, {"Authorization": f"Bearer {PIN}"}
     try:
         until(lambda: any(robot["connected"] for robot in browser.robots))
@@ -196,7 +186,7 @@ def tried(browser: Browser, number: int, source: str) -> int:
         connection.close()
 
 
-def test_nobody_hears_a_name_or_sees_an_image(locked: Browser, hosted: Hosted, copy: Path) -> None:
+def test_nobody_hears_a_name_or_sees_an_image(locked: Browser, hosted: Hosted) -> None:
     """What the robot says aloud is shown on a screen beside it, without the name: the hall heard that."""
     meet(hosted, NAME)
     signed_in = {"Authorization": f"Bearer {PIN}"}

@@ -19,7 +19,12 @@ def project() -> Project:
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """A copy of the shipped exhibition, to be changed."""
-    shutil.copy(ROOT / MAIN_FILE, tmp_path)
-    for folder in PROJECT_FOLDERS:
-        shutil.copytree(ROOT / folder, tmp_path / folder)
-    return tmp_path
+    return copied(tmp_path)
+
+
+def copied(folder: Path) -> Path:
+    """The folder, with the shipped exhibition in it."""
+    shutil.copy(ROOT / MAIN_FILE, folder)
+    for part in PROJECT_FOLDERS:
+        shutil.copytree(ROOT / part, folder / part)
+    return folder
