@@ -29,7 +29,8 @@ LONG = {
     *(("tour", f"endless_{what}") for what in ("motion", "song", "speech")),
     ("tour", "silent_visitors"),
     ("tour", "slow_speech"),
-    ("museum", "closing"),
+    *(("tour", name) for name in ("safety_endless_wake", "safety_resume")),
+    *(("museum", name) for name in ("closing", "german")),
 }
 """Stories of many minutes, or with several visits: `make soak` tries them, too."""
 SHIPPED = [

@@ -72,14 +72,16 @@ def visit_story(
     was = told([(entry.event.at, renamed(command)) for entry in visit.inputs for command in entry.commands])
     approved = _approved(project, visit)
     best: tuple[int, Rendition, Sequence[TimedAction], Story] | None = None
+    tried: list[Story] = []
     for way in WAYS:
         acts: Sequence[TimedAction] = [
             row._replace(action=_without(row.action, renamed)) for row in script(visit, project, faces=way.faces)
         ]
         robot = broken(visit, hanging=way.hanging, lasting=way.lasting)
         draft = replace(blank, robot=robot, steps=(*approved, *_draft(acts, visit, clocked=way.clocked)))
-        if not draft.steps:
+        if not draft.steps or draft in tried:
             continue
+        tried.append(draft)
         rendition = played(project, draft)
         alike = _alike(was, rendition.told)
         if rendition.rehearsal.failed is None and (best is None or alike > best[0]):
