@@ -57,6 +57,9 @@ class Operator:
     def sees_no(self, selector: str) -> None:
         until(lambda: not self._chromium.all(selector), WAIT, every=LOOK)
 
+    def sees_now(self, selector: str) -> bool:
+        return bool(self._chromium.all(selector))
+
     def sees_it_in(self, state: str) -> None:
         """One of the innermost states."""
         until(lambda: state in self._chromium.run(STATES), WAIT, every=LOOK)
@@ -116,8 +119,10 @@ def a_fall(house: House, operator: Operator) -> None:
     operator.sees("It fell.", "Keep visitors away", "I fell")
     operator.presses(".notice button")
     operator.sees_no(".notice button")
+    operator.looks_at()  # what somebody has read does not come again with the next page
     operator.sees("I am on my feet again")
     operator.sees_it_in("watching")
+    assert not operator.sees_now(".notice button")
 
 
 def a_robot_that_is_gone(house: House, operator: Operator) -> None:

@@ -1,12 +1,22 @@
 // What is wrong with a robot and what helps, above all else on its page: until it is over, or somebody has read it.
 import { get, live } from "../live.js";
-import { Since, clock, html, redraw, t, useEffect, useState } from "../ui.js";
+import { Since, clock, html, keep, kept, redraw, t, useEffect, useState } from "../ui.js";
 
 const PART = "robot"; // that moves it, as `lumen run --only robot` says
 const BODY = { "fallen": "trouble.fallen", "battery.low": "trouble.battery", "motors.hot": "trouble.hot" };
 const TROUBLES = /^(fallen|battery\.low|motors\.hot|[a-z]+\.lost|error\..*)$/;
 const RECENT = 600000, AGAIN = 3000; // [ms] for how long a fall is new; how often it is asked why nobody answers
+const READ = "lumen.read", MANY = 50; // what somebody has read stays read on the next page: so many
 const read = new Set();
+
+const named = (entry) => `${entry.robot} ${entry.at_time}`;
+const isRead = (entry) => read.has(named(entry)) || (kept(READ) ?? "").split("\n").includes(named(entry));
+
+function haveRead(entry) {
+  read.add(named(entry)); // a private window keeps nothing
+  keep(READ, [...(kept(READ) ?? "").split("\n"), named(entry)].slice(-MANY).join("\n"));
+  redraw();
+}
 
 /** Whether an entry is about something that went wrong. */
 export const isTrouble = (entry) => TROUBLES.test(entry.heard ?? "");
@@ -28,7 +38,7 @@ export const waitsForResume = (robot) => !robot.stopped && (robot.ways ?? []).so
 function felt(robot) {
   const last = new Map();
   for (const entry of live.told) if (entry.robot === robot.robot && entry.heard in BODY) last.set(entry.heard, entry);
-  return [...last.values()].filter((one) => !read.has(one.position) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
+  return [...last.values()].filter((one) => !isRead(one) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
 }
 
 function Away({ robot }) {
@@ -47,5 +57,5 @@ export function Troubles({ robot }) {
   return html`${robot.connected === false && html`<${Away} robot=${robot} />`}
     ${lost && html`<div class="notice bad"><p role="alert"><b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p><p>${t("heard.ago")} <${Since} at=${lost.heard} skew=${0} /></p></div>`}
     ${felt(robot).map((one) => html`<div class="notice bad" key=${one.position}><p role="alert"><b>${clock(one.at_time)} ${t(BODY[one.heard], one.data ?? {})}</b> ${t(`${BODY[one.heard]}.do`)}</p>
-      <button type="button" onClick=${() => { read.add(one.position); redraw(); }}>${t("trouble.read")}</button></div>`)}`;
+      <button type="button" onClick=${() => haveRead(one)}>${t("trouble.read")}</button></div>`)}`;
 }
