@@ -1,45 +1,125 @@
 """The NAO as a building block of dm_control's composer, for worlds and tasks of others."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from dm_control import composer, mjcf
+import numpy as np
+from dm_control import mjcf
+from dm_control.locomotion.walkers import base, legacy_base
+from dm_control.locomotion.walkers.initializers import WalkerInitializer
 
 from lumen.language.robots import Body
 from lumen.robots.simulation.model import ROBOT_PREFIX, alone
+from lumen.robots.simulation.observables import NaoObservables
+
+SIDES = "LR"
 
 
-class Nao(composer.Entity):  # type: ignore[misc]  # dm_control has no types
-    """The robot alone: body, motors, sensors and cameras; no controller, no hall.
+class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
+    """The robot alone, a legged Walker: body, motors, sensors and cameras; no controller, no hall.
 
     `body` and `models` are those of a project (`project.body`, the folder of its MJCF), `name` tells several apart.
-    Attach it with `arena.add_free_entity(nao)`, or its `mjcf_model` to a world of plain MJCF. Raises RobotError where
-    the model can't be used.
+    Attach it with `nao.create_root_joints(arena.attach(nao))`, or its `mjcf_model` to a world of plain MJCF. An action
+    is an angle for each of the `actuators` [rad], an opening for hands (0..1). A task that begins an episode with
+    `reinitialize_pose` begins in the posture Stand, or as `initializer` has it. Raises RobotError where the model can't
+    be used.
     """
 
-    def _build(self, body: Body, models: str | Path, name: str = ROBOT_PREFIX) -> None:
-        self.body = body
-        self._root = alone(body, Path(models))
-        self._root.model = name
+    def _build(
+        self,
+        body: Body,
+        models: str | Path,
+        name: str = ROBOT_PREFIX,
+        initializer: WalkerInitializer | Sequence[WalkerInitializer] | None = None,
+    ) -> None:
+        super()._build(initializer=initializer)
+        self.body, self._models, self._taken = body, Path(models), dict[str, base.WalkerPose]()
+        self._mjcf_root = alone(body, Path(models))
+        self._mjcf_root.model = name
+        # No sensor of NAO's: dm_control's tasks reward by it.
+        self._mjcf_root.sensor.add("velocimeter", name="velocimeter", site="imu")
+        self._prev_action = np.zeros(self.action_spec.shape)
+
+    def _build_observables(self) -> NaoObservables:
+        return NaoObservables(self)
 
     @property
     def mjcf_model(self) -> mjcf.RootElement:
-        return self._root
+        return self._mjcf_root
 
     @property
     def joints(self) -> list[mjcf.Element]:
         """The joints in NAOqi's order."""
-        return [self._root.find("joint", name) for name in self.body.joints]
+        return self._named("joint", list(self.body.joints))
+
+    @property
+    def observable_joints(self) -> list[mjcf.Element]:
+        return self.joints
 
     @property
     def actuators(self) -> list[mjcf.Element]:
         """The motors, which take angles [rad] and openings, in NAOqi's order; RHipYawPitch has none of its own."""
-        return [self._root.find("actuator", name) for name in self.body.joints if name not in self.body.shared]
+        return self._named("actuator", [name for name in self.body.joints if name not in self.body.shared])
+
+    @property
+    def root_body(self) -> mjcf.Element:
+        return self._mjcf_root.find("body", "Torso")
+
+    @property
+    def end_effectors(self) -> list[mjcf.Element]:
+        """Hands and feet."""
+        return self._named("body", [f"{side}{part}" for part in ("WristYaw", "AnkleRoll") for side in SIDES])
+
+    @property
+    def ground_contact_geoms(self) -> list[mjcf.Element]:
+        """The soles."""
+        return self._named("geom", [f"{side}Sole" for side in SIDES])
+
+    @property
+    def egocentric_camera(self) -> mjcf.Element:
+        return self._mjcf_root.find("camera", "CameraTop")
+
+    @property
+    def upright_pose(self) -> base.WalkerPose:
+        """The posture Stand, soles on the ground."""
+        return self.pose("Stand")
 
     def take(self, physics: mjcf.Physics, posture: str) -> None:
         """Be in that posture at once, upright, soles on the ground, and tell the motors to stay: for a beginning."""
+        qpos, xpos, xquat = self.pose(posture)
+        self.configure_joints(physics, qpos)
+        self.set_pose(physics, position=xpos, quaternion=xquat)
+        self.set_velocity(physics, velocity=np.zeros(3), angular_velocity=np.zeros(3))
+        physics.bind(self.actuators).ctrl = self.action_of(posture)
+
+    def action_of(self, posture: str) -> np.ndarray:
+        """What the motors are told in that posture, in the order of `actuators`."""
         angles = self.body.postures[posture]
-        physics.bind(self.joints).qpos = list(angles.values())
-        physics.bind(self.actuators).ctrl = [a for name, a in angles.items() if name not in self.body.shared]
-        self.set_pose(physics, position=(0.0, 0.0, 1.0), quaternion=(1.0, 0.0, 0.0, 0.0))
-        lowest = min(physics.bind(self._root.find("site", f"{side}Sole")).xpos[2] for side in "LR")
-        self.set_pose(physics, position=(0.0, 0.0, 1.0 - float(lowest)))
+        return np.array([angle for name, angle in angles.items() if name not in self.body.shared])
+
+    def apply_action(self, physics: mjcf.Physics, action: np.ndarray, random_state: np.random.RandomState) -> None:
+        super().apply_action(physics, action, random_state)
+        self._prev_action[:] = action
+
+    @property
+    def prev_action(self) -> np.ndarray:
+        return self._prev_action
+
+    def aliveness(self, physics: mjcf.Physics) -> float:
+        """0 upright, -1 upside down."""
+        return (float(physics.bind(self.root_body).xmat[-1]) - 1.0) / 2.0
+
+    def pose(self, posture: str) -> base.WalkerPose:
+        """Where every joint of the model is in that posture, thumbs with their hands, and the torso over the ground."""
+        if posture not in self._taken:
+            root = alone(self.body, self._models)  # ours may stand in a world by now
+            physics, joints = mjcf.Physics.from_mjcf_model(root), root.find_all("joint")
+            angles = self.body.postures[posture]
+            qpos = [angles[j.name] if j.name in angles else angles[f"{j.name[0]}Hand"] for j in joints]
+            physics.bind(joints).qpos = qpos
+            lowest = min(float(physics.bind(root.find("site", f"{side}Sole")).xpos[2]) for side in SIDES)
+            self._taken[posture] = base.WalkerPose(qpos=qpos, xpos=(0.0, 0.0, -lowest))
+        return self._taken[posture]
+
+    def _named(self, kind: str, names: Sequence[str]) -> list[mjcf.Element]:
+        return [self._mjcf_root.find(kind, name) for name in names]
