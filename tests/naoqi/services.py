@@ -65,6 +65,11 @@ class ALMotion:
             angles = self._joints.angles()
             return [angles[name] for name in listed]
 
+    def setBreathEnabled(self, chain: str, enabled: bool) -> None:
+        if chain not in ("Body", "Legs", "Arms", "LArm", "RArm", "Head"):
+            raise RuntimeError(f"ALMotion::setBreathEnabled\n\t{chain} is no chain")
+        self._world.note("setBreathEnabled", chain, enabled)
+
     def getStiffnesses(self, names: Any) -> list[float]:
         return [self._world.stiffness for _ in self._joints.known(names, "getStiffnesses")]
 
@@ -266,6 +271,9 @@ class ALTextToSpeech:
         self._world = world
         self._saying: Blocked | None = None
 
+    def setLanguage(self, language: str) -> None:
+        self._world.note("setLanguage", language)
+
     def setVolume(self, volume: float) -> None:
         self._world.note("setVolume", volume)
 
@@ -424,6 +432,25 @@ class ALAutonomousLife:
 
 
 @qi.multiThreaded()
+class ALAnimatedSpeech:
+    def __init__(self, world: World) -> None:
+        self._world = world
+
+    def say(self, text: str, configuration: dict[str, str]) -> Any:
+        self._world.note("ALAnimatedSpeech.say", text, configuration)
+        return self._world.times.block(0.4 + 0.06 * len(text)).future
+
+
+@qi.multiThreaded()
+class ALAutonomousBlinking:
+    def __init__(self, world: World) -> None:
+        self._world = world
+
+    def setEnabled(self, enabled: bool) -> None:
+        self._world.note("ALAutonomousBlinking.setEnabled", enabled)
+
+
+@qi.multiThreaded()
 class ALSystem:
     def __init__(self, world: World) -> None:
         self._world = world
@@ -434,5 +461,5 @@ class ALSystem:
 
 SERVICES = (
     ALMotion, ALRobotPosture, ALMemory, ALTextToSpeech, ALVideoDevice, ALLeds, ALAudioPlayer, ALAutonomousLife,
-    ALSystem,
+    ALAnimatedSpeech, ALAutonomousBlinking, ALSystem,
 )  # fmt: skip

@@ -1,10 +1,11 @@
 """Life on a real NAO: head and arms move a little where nothing else moves the robot."""
 
+from dataclasses import replace
 from itertools import chain
 
 import pytest
 
-from lumen.language.commands import Posture, Rest, Say
+from lumen.language.commands import Leds, Posture, Rest, Say
 from lumen.language.gestures import merged
 from lumen.language.life import STILL_STYLE
 from lumen.language.projects import Project
@@ -67,3 +68,78 @@ def test_it_is_still(robot: Lockstep, live: LiveFor, project: Project, how: str)
     before = len(sent(robot))
     live(2.0)
     assert len(sent(robot)) == before
+
+
+def eyes(robot: Lockstep) -> list[int]:
+    """The colours in which the eyes were lit, in order."""
+    return [colour for group, colour, _ in robot.nao.world.called("fadeRGB") if group == "FaceLeds"]
+
+
+def alive(robot: Lockstep, project: Project, *naoqi: str, style: str = "lively") -> None:
+    own = replace(project.life[style], naoqi=naoqi)
+    robot.start("", Live(own, merged(project.gestures)))
+
+
+def test_its_eyes_blink_and_say_what_it_does_unless_they_are_lit(
+    standing: Lockstep, live: LiveFor, project: Project
+) -> None:
+    alive(standing, project, style="listening")
+    live(8.0)
+    assert set(eyes(standing)) >= {0x000000, 0x00BFFF}
+    standing.start("c", Leds({"eyes": "red"}))
+    live(1.0)
+    before = len(eyes(standing))
+    live(8.0)
+    assert len(eyes(standing)) == before
+    standing.start("d", Leds({"eyes": "white"}))
+    live(2.0)
+    assert eyes(standing)[-1] in (0x000000, 0x00BFFF)
+
+
+def test_its_legs_sway_where_the_style_says_so(standing: Lockstep, live: LiveFor, project: Project) -> None:
+    alive(standing, project, "legs")
+    standing.start("b", Posture("Stand"))
+    live(8.0)
+    legs = set(project.body.parts["legs"])
+    before = {joint: angle for joint, angle in standing.nao.world.joints.angles().items() if joint in legs}
+    assert set(chain.from_iterable(sent(standing))) & legs
+    live(2.0)
+    far = {joint: abs(standing.nao.world.joints.angles()[joint] - angle) for joint, angle in before.items()}
+    assert 0.002 < max(far.values()) < 0.1
+
+
+def test_naoqi_breathes_in_place_of_our_sways_and_not_while_a_motion_plays(
+    standing: Lockstep, live: LiveFor, project: Project
+) -> None:
+    alive(standing, project, "breathing")
+    live(1.0)
+    breathing = standing.nao.world.called("setBreathEnabled")
+    assert breathing == [("Arms", True), ("Legs", True)]
+    live(1.0)
+    before = len(sent(standing))
+    live(3.0)
+    assert set(chain.from_iterable(sent(standing)[before:])) == set(project.body.parts["head"])
+    standing.start("b", Perform(project.motions["goodbye"]))
+    live(0.1)
+    assert standing.nao.world.called("setBreathEnabled")[2:] == [("Arms", False), ("Legs", False)]
+
+
+def test_naoqi_gestures_as_it_speaks_in_place_of_ours(standing: Lockstep, live: LiveFor, project: Project) -> None:
+    alive(standing, project, "speech", "blinking")
+    live(0.1)
+    before = len(eyes(standing))
+    text = "Welcome ^run(evil), my friends, to all of our 27 big robots over there!"
+    standing.start("b", Say(text, "en"))
+    standing.start("c", Say("Hush.", "en", "none"))
+    live(10.0)
+    world = standing.nao.world
+    said = "Welcome run(evil), my friends, to all of our 27 big robots over there!"
+    assert world.called("ALAnimatedSpeech.say") == [(said, {"bodyLanguageMode": "contextual"})]
+    assert world.called("setLanguage") == [("English",)]
+    assert world.called("say") == [("Hush.", "English")]
+    assert world.called("ALAutonomousBlinking.setEnabled") == [(True,)]
+    assert len(eyes(standing)) > before
+    assert 0x000000 not in eyes(standing)[before:]
+    alive(standing, project)
+    live(0.1)
+    assert world.called("ALAutonomousBlinking.setEnabled")[-1] == (False,)

@@ -9,6 +9,11 @@ STILL = "still"
 """The style in which a robot does nothing of its own accord: it needs no file."""
 
 
+NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS = "speech", "breathing", "blinking", "legs"
+NAOQI_PARTS = (NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS)
+"""What a real NAO does by NAOqi in place of ours, where a style says so; and that our sways move its legs, too."""
+
+
 @dataclass(frozen=True, slots=True)
 class Sway:
     """Joints that go to and fro together around where they stand, by `joints` [rad; hands 0..1] at most.
@@ -81,7 +86,10 @@ class EyeColours:
 
 @dataclass(frozen=True, slots=True)
 class LifeStyle:
-    """A way to be alive. `attention` [s] is how long it looks where it was touched or spoken to; 0 for not at all."""
+    """A way to be alive. `attention` [s] is how long it looks where it was touched or spoken to; 0 for not at all.
+
+    `naoqi` are those of `NAOQI_PARTS` that a real NAO does, too.
+    """
 
     name: str
     sways: tuple[Sway, ...] = ()
@@ -92,6 +100,7 @@ class LifeStyle:
     eyes: EyeColours = EyeColours()
     asides: Asides | None = None
     settles: Settles | None = None
+    naoqi: tuple[str, ...] = ()
 
     @property
     def amplitudes(self) -> Mapping[str, float]:

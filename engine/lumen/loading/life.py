@@ -53,6 +53,7 @@ class _LifeReader:
             EyeColours(**eyes) if isinstance(eyes, Mapping) else EyeColours(eyes, eyes, eyes),
             self._asides(data["asides"]) if "asides" in data else None,
             self._settles(data["settles"]) if "settles" in data else None,
+            tuple(data.get("naoqi", ())),
         )
 
     def _asides(self, data: Mapping[str, Any]) -> Asides:

@@ -1,20 +1,26 @@
-"""Life on a real NAO: head and arms, by `ALMotion.setAngles` ten times a second."""
+"""Life on a real NAO: head and arms by `ALMotion.setAngles`, its eyes, and NAOqi's own where a style says so."""
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
 
 from lumen.errors import RobotError
 from lumen.interpreters.life import vigour
 from lumen.language.commands import Posture, Rest, Say, Wake
-from lumen.language.life import STILL_STYLE
+from lumen.language.gestures import NO_GESTURES
+from lumen.language.life import NAOQI_BLINKING, NAOQI_BREATHING, NAOQI_SPEECH, OWN_LEGS, STILL_STYLE
 from lumen.language.robots import Body
-from lumen.ports import RobotCommand
+from lumen.ports import Live, RobotCommand
 from lumen.robots.body_parts import ARMS, HEAD, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.command_table import speech_duration
 from lumen.robots.life_layer import LifeLayer
-from lumen.robots.naoqi.session import NaoqiCall
+from lumen.robots.naoqi.eyes import NaoqiEyes
+from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession
 
 SEND_PERIOD = 0.1
 """How often it is sent where the joints are wanted [s]; NAOqi goes on evenly in between."""
+
+BREATHING_CHAINS = ("Arms", "Legs")
+"""What NAOqi's breathing moves: the head is ours."""
 
 SPEED = 0.3
 """The part of their greatest speed with which joints go there."""
@@ -26,21 +32,34 @@ REST_AFTER = 0.5
 class NaoqiLife:
     """Adds the layer's offsets to where head and arms stood when the last command had ended.
 
-    Legs are left alone: nobody has shown on a real robot that swaying is safe. A robot lives from the first command
-    that has it stand until it rests. `post` calls NAOqi, `owner` names the command that moves a part.
+    Legs are left alone unless the style says `naoqi: [legs]`: nobody has shown on a real robot that swaying is safe. A
+    robot lives from the first command that has it stand until it rests. `owner` names the command that moves a part.
     """
 
-    def __init__(self, post: Callable[..., NaoqiCall], owner: Callable[[str], str], body: Body) -> None:
+    def __init__(self, session: NaoqiSession, owner: Callable[[str], str], body: Body) -> None:
         self.layer = LifeLayer(body)
-        self._post, self._owner, self._body = post, owner, body
-        self._joints = [joint for part in (HEAD, ARMS) for joint in body.parts.get(part, ())]
+        self._session, self._post, self._owner, self._body = session, session.post, owner, body
+        self._eyes = NaoqiEyes(session.post)
+        self._joints = [j for part in (HEAD, ARMS, LEGS) for j in body.parts.get(part, ()) if j not in body.shared]
+        self._legs = frozenset(body.parts.get(LEGS, ()))
+        self._breathes = self._blinks = False
         self._stands: dict[str, float] = {}
         self._asked: NaoqiCall | None = None
         self._sent, self._last, self._busy_at = NaoqiCall(), 0.0, 0.0
         self._awake = False
 
+    @property
+    def body_language(self) -> bool:
+        """Whether NAOqi gestures as it speaks, in place of us."""
+        return self._has(NAOQI_SPEECH, "ALAnimatedSpeech")
+
+    def live(self, command: Live) -> None:
+        """Be alive like this from now on."""
+        self.layer.live(replace(command, gestures=NO_GESTURES) if NAOQI_SPEECH in command.style.naoqi else command)
+
     def begins(self, command: RobotCommand, now: float) -> None:
-        """A command begins that may let it stand, rest or speak."""
+        """A command begins that may let it stand, rest or speak, or light its eyes."""
+        self._eyes.begins(command, now)
         match command:
             case Rest():
                 self._awake = False
@@ -49,6 +68,11 @@ class NaoqiLife:
                 self._awake = True
             case Say(text):
                 self.layer.say(command, speech_duration(text), now)
+
+    def lose(self) -> None:
+        """The connection broke: NAOqi may have been restarted since, and neither breathes nor blinks."""
+        self._breathes = self._blinks = False
+        self._sent = NaoqiCall()
 
     def led(self, angles: Mapping[str, float], now: float) -> None:
         """Somebody aims joints there [rad]: they stand elsewhere from now on; see `alive`."""
@@ -64,11 +88,15 @@ class NaoqiLife:
         free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
         if not self._owner(VOICE):
             self.layer.hush(now)
-        if not self._awake or not {HEAD, ARMS, LEGS} <= free:
+        lives = self._awake and {HEAD, ARMS, LEGS} <= free
+        self._switch(lives=lives and now >= self._busy_at + REST_AFTER)
+        if not lives:
             self._busy_at, self._asked = now, None
             self._stands.clear()
             self.layer.still()
-        elif now >= self._busy_at + REST_AFTER and self._sent.done and now >= self._last + SEND_PERIOD:
+        else:
+            self._look(now)
+        if lives and now >= self._busy_at + REST_AFTER and self._sent.done and now >= self._last + SEND_PERIOD:
             self._live(now, free, heat, percentage)
 
     def _live(self, now: float, free: Collection[str], heat: Mapping[str, float], percentage: float) -> None:
@@ -80,15 +108,37 @@ class NaoqiLife:
             warmest = max((heat.get(joint, 0.0) for joint in self._body.parts[part]), default=0.0)
             return vigour(warmest, percentage)
 
-        offsets = self.layer.advance(now, min(now - self._last, 2 * SEND_PERIOD), free, level)
+        offsets = self.layer.advance(now, min(now - self._last, 2 * SEND_PERIOD), self._ours(free), level)
         self._last = now
         if still and not offsets:
             self._stands.clear()
         led = self._body.parts.get(HEAD, ()) if self.layer.leading(now) else ()
-        own = {joint: stands for joint, stands in self._stands.items() if joint in offsets and joint not in led}
+        barred = {*led, *(() if OWN_LEGS in self.layer.style.naoqi else self._legs)}
+        own = {joint: stands for joint, stands in self._stands.items() if joint in offsets and joint not in barred}
         goals = {joint: self._inside(joint, stands + offsets[joint]) for joint, stands in own.items()}
         if goals:
             self._sent = self._post("ALMotion", "setAngles", list(goals), list(goals.values()), SPEED)
+
+    def _look(self, now: float) -> None:
+        """Have the eyes in the colour of the moment; it is NAOqi that blinks, where the style says so."""
+        colour = self.layer.eyes(now)
+        if self._session.has("ALLeds") and not (colour == "off" and self._blinks):
+            self._eyes.wear(colour, now)
+
+    def _switch(self, *, lives: bool) -> None:
+        """Let NAOqi breathe and blink, or not: only where nothing else moves the robot."""
+        breathes = lives and NAOQI_BREATHING in self.layer.style.naoqi
+        if breathes != self._breathes:
+            self._breathes = breathes
+            for chain in BREATHING_CHAINS:
+                self._post("ALMotion", "setBreathEnabled", chain, breathes)
+        blinks = self._has(NAOQI_BLINKING, "ALAutonomousBlinking")
+        if blinks != self._blinks:
+            self._blinks = blinks
+            self._post("ALAutonomousBlinking", "setEnabled", blinks)
+
+    def _has(self, part: str, service: str) -> bool:
+        return part in self.layer.style.naoqi and self._session.has(service)
 
     def _known(self) -> bool:
         """Whether it is known where the joints stand, without what was added; it is asked for where it is not."""
@@ -102,6 +152,10 @@ class NaoqiLife:
             except (RobotError, TypeError, ValueError):
                 self._asked = None
         return bool(self._stands)
+
+    def _ours(self, free: Collection[str]) -> Collection[str]:
+        """The parts that we move: the head alone where NAOqi breathes."""
+        return {HEAD} & set(free) if self._breathes else free
 
     def _inside(self, joint: str, angle: float) -> float:
         limits = self._body.joints[joint]

@@ -55,7 +55,7 @@ class NaoqiRobot:
         self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
         self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
-        self._life = NaoqiLife(self._session.post, self._executor.owner, body)
+        self._life = NaoqiLife(self._session, self._executor.owner, body)
         self._aimed: NaoqiCall = NaoqiCall()
         self._aim: Aim | None = None
         self._reconnector = Reconnector(self._session, self._take_over)
@@ -64,7 +64,8 @@ class NaoqiRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
-            self._life.layer.live(command)
+            self._life.live(command)
+            self._skills.body_language = self._life.body_language
             return
         if not isinstance(command, Aim):
             self._executor.start(id, command)
@@ -128,6 +129,7 @@ class NaoqiRobot:
         for name, seconds, reason in self._reconnector.changes():
             if name == "robot.lost":
                 self._executor.fail(f"the robot is lost: {reason}")
+                self._life.lose()
             self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
         felt = self._senses[Sense.TACTILE].newest
         for name, value in self._naoqi_events.take(now, felt if isinstance(felt, Tactile) else None):

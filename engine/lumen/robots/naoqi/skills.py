@@ -49,13 +49,14 @@ class NaoqiSkills:
         self._part = part_of(body)
         self._unspoken: set[str] = set()
         self.fallen = False
+        self.body_language = False
 
     def begin(self, command: RobotCommand, now: float) -> CallSequence:
         """The command under way. Raises RobotError where the robot can't."""
         check_command(command, self._body)
         match command:
-            case Say(text, language):
-                return CallSequence(self._say(text, language), lambda: [self._post("ALTextToSpeech", "stopAll")])
+            case Say():
+                return CallSequence(self._say(command), lambda: [self._post("ALTextToSpeech", "stopAll")])
             case Record():
                 return self._microphones.begin(command)
             case Rest():
@@ -97,7 +98,8 @@ class NaoqiSkills:
             found[name] = float(min(max(angle, joint.minimum), joint.maximum))
         return found
 
-    def _say(self, text: str, language: str) -> CallSteps:
+    def _say(self, said: Say) -> CallSteps:
+        text, language = said.text, said.language
         spoken = yield self._post("ALTextToSpeech", "getAvailableLanguages")
         name = language_of(language, list(map(str, spoken or ()))) if language else ""
         if language and not name and language not in self._unspoken:
@@ -106,8 +108,14 @@ class NaoqiSkills:
                 "the robot has no voice for `%s` (it has %s): it reads the text in the language that it is set to",
                 language, ", ".join(map(str, spoken or ())) or "none",
             )  # fmt: skip
-        if said := words(text):
-            yield self._post("ALTextToSpeech", "say", said, *([name] if name else []))
+        if not (spelt := words(text)):
+            return
+        if not self.body_language or said.gestures == "none":
+            yield self._post("ALTextToSpeech", "say", spelt, *([name] if name else []))
+            return
+        if name:
+            yield self._post("ALTextToSpeech", "setLanguage", name)
+        yield self._post("ALAnimatedSpeech", "say", spelt, {"bodyLanguageMode": "contextual"})
 
     def _volume(self, level: float) -> CallSteps:
         yield self._post("ALTextToSpeech", "setVolume", level)

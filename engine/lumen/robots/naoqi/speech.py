@@ -12,12 +12,13 @@ LANGUAGE_NAMES = {
 
 
 def words(text: str) -> str:
-    r"""The text without anything that the voice would take for an order to itself, such as `\vol=100\`.
+    r"""The text without anything that the voice would take for an order to itself, such as `\vol=100\` or `^run(…)`.
 
-    Visitors' names are in what is said, and `\…\` would change volume, speed or language from then on.
+    Visitors' names are in what is said, and `\…\` would change volume, speed or language from then on; `^…(…)` would
+    have ALAnimatedSpeech start behaviours.
     """
-    printable = "".join(sign if sign.isprintable() else " " for sign in text)
-    return " ".join(printable.replace("\\", " ").split())
+    printable = "".join(sign if sign.isprintable() and sign not in "\\^" else " " for sign in text)
+    return " ".join(printable.split())
 
 
 def language_of(code: str, spoken: Sequence[str]) -> str:
