@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from lumen.app.recording.happenings import FALLEN
 from lumen.app.replaying.replay_report import iso
-from lumen.console.entry_words import ENDS, JUMPS, MARK, OFTEN
+from lumen.console.entry_words import ENDS, ENGLISH, MARK, OFTEN
 from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.journal_clock import JournalClock
@@ -165,7 +165,7 @@ def _lie_between(day: Day, entry: RecordedEntry, at: float) -> None:
 def _is_told(entry: RecordedEntry) -> bool:
     """Whether a page has a line for it, as `entry_words` has it."""
     if isinstance(entry, JournalJump):
-        return bool(entry.said or JUMPS.get(entry.kind, entry.kind))
+        return bool(entry.said or ENGLISH.jump(entry.kind))
     if entry.entered or entry.commands:
         return True
     return entry.event.name not in OFTEN and not entry.event.name.startswith(ENDS)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import orjson
 
 from lumen.console.entry_clock import EntryClock, ToldPage
-from lumen.console.entry_words import kind_of, text_of
+from lumen.console.entry_words import told_of
 
 KEPT = 2_000
 """Entries."""
@@ -67,7 +67,7 @@ class EntryRing:
         """The entries of a page, each with its robot, its time (ISO 8601), a line for people and its kind."""
         found, clock = [], EntryClock(page)
         for entry in page.entries:
-            more = {"robot": self.robot, "at_time": clock.of(entry), "text": text_of(entry), "kind": kind_of(entry)}
+            more = {"robot": self.robot, "at_time": clock.of(entry), **told_of(entry)}
             shown = {key: value for key, value in entry.items() if key != "snapshot"}
             found.append(EncodedEntry(entry["position"], orjson.dumps({**shown, **more})))
         return found

@@ -1,6 +1,7 @@
-"""An entry of the journal as a line for people, and what kind of entry it is."""
+"""An entry of the journal as a line for people, in each language of the pages, and what kind of entry it is."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
 from typing import Any
 
 from lumen.interpreters.replay.command_data import started
@@ -14,17 +15,46 @@ PERSON = "person"
 MARK, NOTE = "mark", "note"
 OFTEN, ENDS = ("face", CLOCK_SET), ("done.command.", "cancelled.command.", "lost.command.")
 """What comes again and again, and after each command: told where something comes of it."""
-JUMPS = {
-    "start": "the behaviour begins",
-    "reload": "other files run from here on",
-    "rollback": "the files before run again",
-    "resume": "goes on where the run before ended",
-    "forget": "somebody is forgotten",
-    "dropped timer": "a timer is given up",
-    "dropped event": "an event is given up",
-    "gap": "some of what happened was lost",
-    "keyframe": "",
-}
+
+
+@dataclass(frozen=True)
+class EntryPhrases:
+    """What lines about entries are made of, in one language."""
+
+    says: str = "says “{}”"
+    plays: str = "plays {}"
+    by: str = "{}, by {}"
+    sent: str = "sent to {}"
+    late: str = "time is up"
+    mark: str = "mark"
+    start: str = "the behaviour begins"
+    reload: str = "other files run from here on"
+    rollback: str = "the files before run again"
+    resume: str = "goes on where the run before ended"
+    forget: str = "somebody is forgotten"
+    dropped_timer: str = "a timer is given up"
+    dropped_event: str = "an event is given up"
+    gap: str = "some of what happened was lost"
+    keyframe: str = ""
+
+    def jump(self, kind: str) -> str:
+        """A jump of that kind; the kind itself where it is one that is not known here."""
+        name = kind.replace(" ", "_")
+        return str(getattr(self, name)) if name in KNOWN else kind
+
+
+KNOWN = frozenset(field.name for field in fields(EntryPhrases))
+ENGLISH = EntryPhrases()
+OTHERS = {
+    "id": EntryPhrases(
+        says="berkata “{}”", plays="memainkan {}", by="{}, oleh {}", sent="dikirim ke {}", late="waktu habis",
+        mark="tanda", start="perilaku dimulai", reload="mulai sini berkas lain yang berjalan",
+        rollback="berkas sebelumnya berjalan lagi", resume="melanjutkan dari akhir jalannya yang lalu",
+        forget="seseorang dilupakan", dropped_timer="sebuah pewaktu dilepas", dropped_event="sebuah peristiwa dilepas",
+        gap="sebagian dari yang terjadi hilang",
+    )
+}  # fmt: skip
+"""The languages of the pages besides English."""
 
 
 def kind_of(entry: Mapping[str, Any]) -> str:
@@ -48,13 +78,20 @@ def kind_of(entry: Mapping[str, Any]) -> str:
     return STATE if entry.get("entered") else next((how for how in HOWS if how in entry), "heard")
 
 
-def text_of(entry: Mapping[str, Any]) -> str:
+def told_of(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """What a page shows of an entry: its `kind`, its `text`, and its `texts` in other languages where they differ."""
+    text = text_of(entry)
+    others = {code: other for code, words in OTHERS.items() if text and (other := text_of(entry, words)) != text}
+    return {"text": text, "kind": kind_of(entry), **({"texts": others} if others else {})}
+
+
+def text_of(entry: Mapping[str, Any], words: EntryPhrases = ENGLISH) -> str:
     """What happened and what came of it; empty where nothing did that anybody would miss, as for another face."""
-    if words := _words(_said(entry)):
-        return words
+    if told := _noted(_said(entry), words):
+        return told
     if "jump" in entry:
-        return JUMPS.get(str(entry["jump"]), str(entry["jump"]))
-    came, did = _came(entry), [*_did(entry)]
+        return words.jump(str(entry["jump"]))
+    came, did = _came(entry, words), [*_did(entry, words)]
     if came.startswith(ENDS):
         return ", ".join(did)[:MAX_TEXT]
     if not did and entry.get("heard") in OFTEN:
@@ -67,41 +104,47 @@ def _said(entry: Mapping[str, Any]) -> Mapping[str, Any]:
     return said if isinstance(said, Mapping) and "jump" in entry else {}
 
 
-def _words(said: Mapping[str, Any]) -> str:
+def _noted(said: Mapping[str, Any], words: EntryPhrases) -> str:
     """What somebody marked, or did to the robot themselves; empty where nobody did."""
     what = next((key for key in (MARK, NOTE) if key in said), "")
     if not what:
         return ""
-    text = f"{what}: {said[what]}".removesuffix(": ") if what == MARK else str(said[what])
-    return f"{text}, by {said.get('by', '')}"[:MAX_TEXT]
+    text = f"{words.mark}: {said[what]}".removesuffix(": ") if what == MARK else str(said[what])
+    return words.by.format(text, said.get("by", ""))[:MAX_TEXT]
 
 
-def _came(entry: Mapping[str, Any]) -> str:
+def _came(entry: Mapping[str, Any], words: EntryPhrases) -> str:
     how = next((how for how in HOWS if how in entry), "")
     name, data = str(entry.get(how, "")), entry.get("data")
     cause = entry.get("cause")
-    by = f", by {cause[3]}" if isinstance(cause, list) and len(cause) > 3 and cause[0] == PERSON and cause[3] else ""
     match data:
-        case {"result": str(words)} if how == "heard":
-            return f"{name} “{words}”{by}"
+        case {"result": str(heard)} if how == "heard":
+            text = f"{name} “{heard}”"
         case {"state": str(state)} if how == "goto":
-            return f"sent to {state}{by}"
+            text = words.sent.format(state)
         case {"reason": str(reason)} if reason and name.startswith(ERROR):
-            return f"{name}: {reason}{by}"
+            text = f"{name}: {reason}"
         case _:
-            return ("time is up" if how == "timer" else name) + by
+            text = words.late if how == "timer" else name
+    return text + _by(cause, words)
 
 
-def _did(entry: Mapping[str, Any]) -> Iterator[str]:
+def _by(cause: object, words: EntryPhrases) -> str:
+    """Which person it was, as the end of a line."""
+    person = isinstance(cause, list) and len(cause) > 3 and cause[0] == PERSON and cause[3]
+    return words.by.format("", person) if person else ""
+
+
+def _did(entry: Mapping[str, Any], words: EntryPhrases) -> Iterator[str]:
     entered = entry.get("entered")
     if isinstance(entered, list) and entered:
         yield f"→ {entered[-1]}"
     for kind, said in _begun(entry):
         match said:
             case {"text": str(text)} if kind == "Say":
-                yield f"says “{text}”"
+                yield words.says.format(text)
             case {"motion": str(motion)}:
-                yield f"plays {motion}"
+                yield words.plays.format(motion)
             case {"posture": str(posture)} | {"name": str(posture)}:
                 yield f"{kind.lower()} {posture}"
             case _:

@@ -9,7 +9,7 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from lumen.app.answering import WHY, WHY_NOT
-from lumen.console.entry_words import kind_of, text_of
+from lumen.console.entry_words import told_of
 from lumen.console.job_promises import NOTHING
 from lumen.console.jobs import Jobs
 from lumen.console.journal_source import JournalSource
@@ -66,7 +66,7 @@ class Past:
             reason = said.get("reason") if said.get("verdict") == "refused" else None
             raise DeniedError(400, str(reason or "this exhibition's Lumen does not know that: it is an older one"))
         for key in ("was", "would"):
-            said[key] = [{**one, "text": text_of(one), "kind": kind_of(one)} for one in said[key]]
+            said[key] = [{**one, **told_of(one)} for one in said[key]]
         return as_json(said)
 
     async def _day(self, request: Request) -> Response:

@@ -20,6 +20,9 @@ export function t(name, values = {}) {
 /** A map of texts by language, as YAML writes them: the page's, else the first. */
 export const inLanguage = (texts) => (typeof texts === "object" && texts ? texts[language()] ?? Object.values(texts)[0] : texts) ?? "";
 
+/** The line about an entry of the journal, in the page's language where there is one. */
+export const lineOf = (entry) => entry.texts?.[language()] ?? entry.text;
+
 export function keep(key, value) {
   try { value === null ? localStorage.removeItem(key) : localStorage.setItem(key, value); } catch { /* a private window */ }
 }

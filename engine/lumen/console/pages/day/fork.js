@@ -1,6 +1,6 @@
 // Fork from here: what would have been, with another event or with the saved files; beside what was.
 import { robotOf } from "../live.js";
-import { Part, clock, html, t, useState } from "../ui.js";
+import { Part, clock, html, lineOf, t, useState } from "../ui.js";
 
 async function ask(body) {
   const answer = await fetch("/api/fork", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal: AbortSignal.timeout(60000) });
@@ -13,7 +13,7 @@ function Column({ title, entries, other, from }) {
   const when = (one) => new Date(Date.parse(from.at_time) + 1000 * (one.at - from.at)).toISOString();
   const there = new Set(other.map((entry) => entry.text));
   return html`<div><h3>${title}</h3><ol>${entries.filter((entry) => entry.text).map((entry) => html`<li class=${there.has(entry.text) ? "" : "differs"}>
-    <time>${clock(when(entry))}</time> ${there.has(entry.text) ? "" : html`<span class="badge" data-state="warn">≠</span> `}${entry.text}</li>`)}</ol></div>`;
+    <time>${clock(when(entry))}</time> ${there.has(entry.text) ? "" : html`<span class="badge" data-state="warn">≠</span> `}${lineOf(entry)}</li>`)}</ol></div>`;
 }
 
 export function Fork({ name, entry }) {
@@ -29,7 +29,7 @@ export function Fork({ name, entry }) {
   };
   const same = found && found.was.length === found.would.length && found.was.every((one, n) => one.text === found.would[n].text);
   return html`<${Part} title=${t("fork")} kind="fork"><p class="quiet">${entry ? t("fork.more") : t("fork.choose")}</p>
-    ${entry && html`<form class="cue" onSubmit=${go}><p class="grow"><b>${clock(entry.at_time)}</b> ${entry.text}</p>
+    ${entry && html`<form class="cue" onSubmit=${go}><p class="grow"><b>${clock(entry.at_time)}</b> ${lineOf(entry)}</p>
       <label class="grow"><span>${t("fork.event")}</span><input list="fork-events" value=${event} onInput=${(e) => setEvent(e.target.value)} autocomplete="off" /></label>
       <datalist id="fork-events">${(robotOf(name)?.events ?? []).map((one) => html`<option value=${one} />`)}</datalist>
       <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data} placeholder='{"result": "dance"}' onInput=${(e) => setData(e.target.value)} autocomplete="off" spellcheck=${false} /></label>

@@ -3,7 +3,7 @@ import { command } from "../commands.js";
 import { get } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
 import { may } from "../session.js";
-import { Part, clock, html, span, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Part, clock, html, lineOf, span, t, useEffect, useRedraw, useState } from "../ui.js";
 import { Fork } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
 import { Numbers } from "./numbers.js";
@@ -41,9 +41,9 @@ function Around({ name, visit, moment, chosen, choose }) {
     ${failed && html`<p class="bad" role="alert">${failed}</p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
     <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
       current=${entry === (chosen ?? now)} onOpen=${choose} />`)}</ol>
-    ${chosen && html`<div class="chosen"><p><time datetime=${chosen.at_time}>${clock(chosen.at_time)}</time> ${chosen.text}</p>
+    ${chosen && html`<div class="chosen"><p><time datetime=${chosen.at_time}>${clock(chosen.at_time)}</time> ${lineOf(chosen)}</p>
       <button type="button" onClick=${() => ask(chosen)}>${t("why")}</button></div>`}
-    ${why && html`<${Why} robot=${name} what=${question(why)} at=${why.at_time} text=${why.text} onClose=${() => ask(null)} />`}</${Part}>`;
+    ${why && html`<${Why} robot=${name} what=${question(why)} at=${why.at_time} text=${lineOf(why)} onClose=${() => ask(null)} />`}</${Part}>`;
 }
 
 export default function DayPage({ name }) {

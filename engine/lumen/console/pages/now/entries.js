@@ -1,6 +1,6 @@
 // The latest of what happened; each opens its why.
 import { get, live } from "../live.js";
-import { Dialog, Part, Place, clock, html, t, useEffect, useState } from "../ui.js";
+import { Dialog, Part, Place, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
 import { isTrouble } from "./troubles.js";
 
 const SHOWN = 80;
@@ -30,7 +30,7 @@ export function question(entry) {
 
 export function Entry({ entry, onOpen, current = false }) {
   return html`<li class="entry" data-kind=${entry.kind} data-trouble=${isTrouble(entry) || null}><button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
-    <span class="entry-when"><time datetime=${entry.at_time}>${clock(entry.at_time)}</time> <span class="entry-kind">${t(`kind.${entry.kind}`)}</span></span><span class="entry-text">${entry.text}</span></button></li>`;
+    <span class="entry-when"><time datetime=${entry.at_time}>${clock(entry.at_time)}</time> <span class="entry-kind">${t(`kind.${entry.kind}`)}</span></span><span class="entry-text">${lineOf(entry)}</span></button></li>`;
 }
 
 export function Entries({ robot }) {
@@ -39,5 +39,5 @@ export function Entries({ robot }) {
   return html`<${Part} title=${t("entries")} kind="entries">
     ${mine.length ? html`<ol class="entry-list bounded" reversed tabindex="0" aria-label=${t("entries")}>${mine.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`
       : html`<p class="quiet">${t("entries.none")}</p>`}
-    ${opened && html`<${Why} robot=${robot.robot} what=${question(opened)} at=${opened.at_time} text=${opened.text} onClose=${() => open(null)} />`}</${Part}>`;
+    ${opened && html`<${Why} robot=${robot.robot} what=${question(opened)} at=${opened.at_time} text=${lineOf(opened)} onClose=${() => open(null)} />`}</${Part}>`;
 }
