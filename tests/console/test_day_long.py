@@ -152,7 +152,7 @@ def leave(page: Stream) -> int:
 
 @pytest.mark.slow
 def test_an_hour_of_it(busy_house: House) -> None:
-    lived(busy_house, 7_000, 18, 2)
+    lived(busy_house, 5_000, 14, 2)
 
 
 @pytest.mark.soak

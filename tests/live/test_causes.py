@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -23,13 +24,30 @@ def bus() -> Iterator[Bus]:
     bus.close()
 
 
-def test_a_tour_knows_the_cause_of_each_event(bus: Bus) -> None:
-    steps: list[Step] = []
-    said = Collector()
-    bus.subscribe("lumen.audio.text.stream", said)
-    with lumen.open(robot="recording", bus="memory://causes", story="visitor") as show:
-        show.observe(steps.append)
+class Tour(NamedTuple):
+    """The shipped story, played: its steps, what was said, and what was told of its state."""
+
+    project: Project
+    steps: list[Step]
+    said: Collector
+    told: Collector
+
+
+@pytest.fixture(scope="module")
+def tour() -> Iterator[Tour]:
+    bus = connect("memory://tour", sender="ears")
+    with lumen.open(robot="recording", bus="memory://tour", story="visitor") as show:
+        found = Tour(show.project, [], Collector(), Collector())
+        bus.subscribe("lumen.audio.text.stream", found.said)
+        bus.subscribe("lumen.NAO.state", found.told)
+        show.observe(found.steps.append)
         show.run()
+    yield found
+    bus.close()
+
+
+def test_a_tour_knows_the_cause_of_each_event(tour: Tour) -> None:
+    steps, said = tour.steps, tour.said
     causes = {step.event.cause for step in steps if step.event}
     assert None not in causes
     assert {cause.kind for cause in causes if cause} >= {"message", "person", "timer", "command"}
@@ -95,13 +113,9 @@ def test_what_nobody_named_a_cause_of_has_one(event: Event, cause: Cause) -> Non
     assert caused(event) == event._replace(cause=cause)
 
 
-def test_the_state_says_where_the_transition_stands_and_what_caused_it(bus: Bus) -> None:
-    told = Collector()
-    bus.subscribe("lumen.NAO.state", told)
-    with lumen.open(robot="recording", bus="memory://causes", story="visitor") as show:
-        show.run()
-        project = show.project
-    bodies = [message.body for message in told.messages]
+def test_the_state_says_where_the_transition_stands_and_what_caused_it(tour: Tour) -> None:
+    project = tour.project
+    bodies = [message.body for message in tour.told.messages]
     steps = [body for body in bodies if body.get("transitions")]
     assert [body["step"] for body in steps] == sorted({body["step"] for body in steps})
     heard = next(body for body in steps if body["event"] == "heard")

@@ -85,7 +85,7 @@ def test_a_robot_that_was_stopped_long_ago_waits_for_a_person(
     data = json.loads(home.read(SNAPSHOT_FILE) or b"")
     home.write(SNAPSHOT_FILE, json.dumps({**data, "time": time.time() - 50 * LATELY}).encode())
     home.remove(ALIVE_FILE)
-    assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "10min", *words]) == 0
+    assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "3min", *words]) == 0
     told = capsys.readouterr().out
     assert "until you say `lumen resume`" in told
     assert "stopped, paused  (stop" in told

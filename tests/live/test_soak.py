@@ -14,8 +14,8 @@ def holds(found: Outcome) -> None:
 
 
 @pytest.mark.slow
-def test_twenty_five_edits_under_load() -> None:
-    holds(soak(25, quiet=0.12))
+def test_fifteen_edits_under_load() -> None:
+    holds(soak(15, quiet=0.12))
 
 
 @pytest.mark.soak
