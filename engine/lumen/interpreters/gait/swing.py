@@ -25,10 +25,10 @@ class Swing:
 
     def at(self, part: float) -> Placed:
         """Where the foot is after that part (0..1) of its time."""
-        done = _smooth((part - _LEAVES) / (_ARRIVES - _LEAVES))
+        done = smooth((part - _LEAVES) / (_ARRIVES - _LEAVES))
         goal = self.goal
         if self.old:
-            goal = self.old.toward(goal, _smooth((part - self.turned) / (_ARRIVES - self.turned)))
+            goal = self.old.toward(goal, smooth((part - self.turned) / (_ARRIVES - self.turned)))
         return Placed(self.start.toward(goal, done), self.lift * (1 - cos(2 * pi * min(part, 1.0))) / 2)
 
     def turn(self, part: float, goal: Pose) -> None:
@@ -36,6 +36,7 @@ class Swing:
         self.old, self.turned, self.goal = self.goal, part, goal
 
 
-def _smooth(u: float) -> float:
+def smooth(u: float) -> float:
+    """From 0 to 1 along a minimum jerk curve."""
     u = min(max(u, 0.0), 1.0)
     return u * u * u * (10 - 15 * u + 6 * u * u)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from lumen.interpreters.gait import Side
 from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.motors import Motors
@@ -36,6 +37,7 @@ class BalanceController:
     """Trims the joints' goals by what gyrometer, encoders and inertial unit feel.
 
     `lifted` is the foot in the air (`L` or `R`), `walking` whether a walk shifts the weight itself; both for one trim.
+    `catching` is whether steps catch a fall; `falling` has to feel before each trim.
     """
 
     def __init__(self, motors: Motors, falling: FallingSense) -> None:
@@ -45,8 +47,8 @@ class BalanceController:
         self._trim = np.zeros(len(motors.names))
         self._felt = [0.0, 0.0]
         self._lean = self._swing = self._stretch = 0.0
-        self.lifted: str | None = None
-        self.walking = False
+        self.lifted: Side | None = None
+        self.walking = self.catching = False
 
     def trim(self, gyro: tuple[float, float], *, standing: bool) -> JointVector:
         """What to add to the joints' goals [rad] while the torso rolls and pitches like this [rad/s].
@@ -58,7 +60,7 @@ class BalanceController:
             angle = min(max(BALANCE_GAIN * felt, -MAX_TRIM), MAX_TRIM)
             for side, i in self._ankles[axis]:
                 self._trim[i] = 0.0 if side == self.lifted else angle
-        self._catch(standing and not self.walking)
+        self._catch(standing and not (self.walking or self.catching))
         self.lifted, self.walking = None, False
         return self._trim
 
@@ -68,7 +70,6 @@ class BalanceController:
         What turns backwards pushes the rest forward, over the feet: a NAO's heels end 45 mm behind its ankles, which a
         push of 2 N s from the front carries the DCM beyond.
         """
-        self._falling.feel()
         over = standing and self._falling.behind_heels > -HEEL_MARGIN
         rate = LEAN_GAIN * (MIDDLE_OF_SOLES - self._falling.ahead) if standing else -LEAN_RATE
         self._lean += min(max(rate, -LEAN_RATE), LEAN_RATE) * CONTROL_PERIOD

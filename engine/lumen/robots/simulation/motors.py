@@ -40,6 +40,7 @@ class Motors:
         self.goal: JointVector = world.angles.copy()
         self.command: JointVector = self.goal.copy()
         self._sway = np.zeros(len(self.names))
+        self._held: dict[int, float] = {}
         self._sent = deque([self.command], maxlen=lacking.latency + 1)
 
     def aim(self, targets: Mapping[str, float]) -> None:
@@ -78,6 +79,10 @@ class Motors:
         for name, angle in offsets.items():
             self._sway[self.index[name]] += angle
 
+    def hold(self, angles: Mapping[str, float]) -> None:
+        """Send these joints there [rad] in the next period, and in that alone, instead of to their goals."""
+        self._held = {self.index[name]: angle for name, angle in angles.items()}
+
     def stiffen(self, stiffness: float) -> None:
         """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""
         if self.stiffness.max() < LIMP_STIFFNESS:
@@ -89,8 +94,12 @@ class Motors:
 
     def drive(self, trim: JointVector, dt: float) -> None:
         """Tell the servos where to be `dt` [s] from now; `trim` [rad] is added to the goal, not kept."""
-        self.command = self.envelope.step(self.command, self.goal + trim + self._sway, dt)
+        wanted = self.goal + self._sway
+        for joint, angle in self._held.items():
+            wanted[joint] = angle
+        self.command = self.envelope.step(self.command, wanted + trim, dt)
         self._sway[:] = 0.0
+        self._held = {}
         self._sent.append(self.command)
         self._world.data.ctrl[self._world.actuators] = self._sent[0][self._world.driven]
         if self._torques:

@@ -18,6 +18,10 @@ DRIFT_AFTER_SITTING, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_FALL = 0.1, 0.25, 0.6
 its belly or falling. Six robots of any weight on any floor were off by 0.05, 0.13 and 0.47 m at most."""
 
 
+DRIFT_AFTER_CATCH = 0.1
+"""How far the feet may have slid while steps caught a fall [m]."""
+
+
 class Odometry:
     """Both soles in the frame of the robot's start. `stage`, in the same frame, bounds where they may go.
 
@@ -43,6 +47,13 @@ class Odometry:
         if not self._down:
             self._down, self._before = True, self.doubt
         self.doubt = self._reckoning.slid = max(self.doubt, self._before + drift_after(posture))
+
+    def stumble(self, heading: float) -> None:
+        """The feet stand after steps that caught a fall, between them that heading [rad]; they may have slid."""
+        between = middle(self.feet)
+        right = Pose(between.x, between.y, heading)
+        self.land({side: right.then(foot.seen_from(between)) for side, foot in self.feet.items()})
+        self.doubt = self._reckoning.slid = self.doubt + DRIFT_AFTER_CATCH
 
     def keep(self, heading: float) -> None:
         """The robot stands, heading there as the gyrometer feels it [rad]; what it has turned meanwhile counts."""

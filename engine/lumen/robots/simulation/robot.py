@@ -22,6 +22,7 @@ from lumen.robots.simulation.aim_controller import AimController
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
 from lumen.robots.simulation.camera import TopCamera
+from lumen.robots.simulation.catching import FallCatcher
 from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
@@ -87,7 +88,8 @@ class SimulatedRobot:
         self._vigour = dict.fromkeys(body.parts, 1.0)
         self._sensors = BodySensors(self.world, lacking, seed)
         mass_model = MassModel(body, Path(models))
-        self._balance = BalanceController(self.motors, FallingSense(self._sensors, mass_model))
+        self._falling = FallingSense(self._sensors, mass_model)
+        self._balance = BalanceController(self.motors, self._falling)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
         self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile)
@@ -103,6 +105,9 @@ class SimulatedRobot:
             Hazards(self._sonars, self._pressed),
             self._free,
             lambda: self.condition.hot,
+        )
+        self._catcher = FallCatcher(
+            self.motors, self._sensors, self._falling, self._balance, self._odometry, walker.centre_of_mass
         )
         self._skills = SimulatedSkills(
             self.world, self.motors, self.lights, walker, self._sensors, posture, self._notice
@@ -241,6 +246,8 @@ class SimulatedRobot:
             standing = self._skills.upright and not self.fallen
             gyro = self._sensors.gyro if self._skills.upright else (0.0, 0.0)
             self._live(now)
+            self._falling.feel()
+            self._catcher.advance(now, standing=standing)
             self.motors.drive(self._balance.trim(gyro, standing=standing), CONTROL_PERIOD)
         self.world.step()
         self._ticks += 1

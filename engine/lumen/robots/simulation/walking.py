@@ -87,7 +87,7 @@ class WalkController:
             raise RobotRefusedError(f"{reason}: the robot did not set out")
         feet = self.odometry.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
-        gait = Gait(feet, goal, self._centre_of_mass, GENTLE_GAIT if self._hot() else None)
+        gait = Gait(feet, goal, self.centre_of_mass, GENTLE_GAIT if self._hot() else None)
         self.odometry.check(gait.coming)
         self._walking = WalkActivity(self, gait, now)
         return self._walking
@@ -104,7 +104,8 @@ class WalkController:
         hanging = self.motors.wanted(arms)
         self.motors.sway({n: a for n, a in arms.items() if hanging[n] > HANGING_ARM_PITCH and self._free(n)})
 
-    def _centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
+    def centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
+        """Where it is (3,) [m] in the torso's frame, with legs bent like this [rad] and all else where it is wanted."""
         return self._mass_model.centre_of_mass({**self.motors.wanted(self._others), **legs})
 
 
@@ -121,7 +122,7 @@ class WalkActivity:
         self._look = now + HAZARD_CHECK_PERIOD
         self._landed = 0
         self._reason = ""
-        self._cancelled = self._over = False
+        self._cancelled = self._over = self._stumbled = False
 
     def steer(self, velocity: Velocity, now: float) -> bool:
         """Go on at that speed; false for a walk that goes to a place, ends, or did not live until now."""
@@ -134,6 +135,11 @@ class WalkActivity:
     def advance(self, now: float) -> bool:
         self._now = now
         self._walker.balance.walking = True
+        if self._walker.balance.catching:
+            self._stumbled = True
+            return False
+        if self._stumbled and self._go_on(now):
+            return True
         self._watch(now)
         if self._rising:
             return self._rise(self._rising, now)
@@ -147,6 +153,16 @@ class WalkActivity:
             self._rising.cancel()
         else:
             self._gait.stop()
+
+    def _go_on(self, now: float) -> bool:
+        """After a fall that was caught, walk on from where the feet stand now; a cancelled walk ends there."""
+        walker, gait = self._walker, self._gait
+        self._stumbled, self._landed = False, 0
+        self._gait = Gait(walker.odometry.feet, gait.goal, walker.centre_of_mass, gait.pace)
+        if self._cancelled:
+            return self._end()
+        self._rising = JointTransition(walker.motors, self._gait.angles, now, WALK_POSTURE_TIME)
+        return False
 
     def _rise(self, rising: JointTransition, now: float) -> bool:
         if rising.advance(now):

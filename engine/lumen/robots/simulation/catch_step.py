@@ -1,0 +1,86 @@
+"""One step that catches a fall."""
+
+from collections.abc import Mapping
+from math import atan2, pi, sin
+
+import numpy as np
+
+from lumen.interpreters.gait import JOINTS, SIDES, Side
+from lumen.interpreters.gait.capture import CapturePoint, hold_level, landing
+from lumen.interpreters.gait.legs import other
+from lumen.interpreters.gait.swing import smooth
+from lumen.robots.simulation.falling_sense import FallingSense
+
+STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
+"""How long such a step takes [s], forward or aside, and backwards."""
+
+STEP_HEIGHT = 0.03
+"""How high a foot is lifted that steps forward or aside [m]."""
+
+KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
+"""How far the knee of a foot that steps back bends on the way [rad], and how early: below 1 before half of it."""
+
+KNEE_GIVES, GIVES_LATE = 0.8, 0.15
+"""How far the other knee gives when a foot steps back [rad], and from which part of the way on."""
+
+UPRIGHT_GAIN, UPRIGHT_LEAN = 0.8, 0.45
+"""The bearing hip brings the torso by that much of what it is away from this lean forward [rad]: thighs go back
+hardly at all (0.48 rad), so that only a torso that leans forward lets a foot step back."""
+
+_LANDS, _LOOK_AHEAD = 0.9, 0.02
+
+
+class CatchStep:
+    """Brings `side` to where the body falls; `joints` are what was last sent to the motors, `hold` those of the legs.
+
+    `falling` has to feel before each `advance`.
+    """
+
+    def __init__(self, falling: FallingSense, side: Side, sent: Mapping[str, float], now: float) -> None:
+        self.side, self.bears, self._falling = side, other(side), falling
+        self._swings, self._rests = SIDES.index(side), SIDES.index(self.bears)
+        self._begin, self._back = now, falling.beyond[1] > falling.beyond[0]
+        self._seconds = STEP_BACK_TIME if self._back else STEP_TIME
+        self._sent = dict(sent)
+        self._start = falling.soles[self._swings] - falling.soles[self._rests]
+
+    def advance(self, now: float, measured: Mapping[str, float]) -> dict[str, float]:
+        """The legs' joints [rad] that are wanted next; `measured` is where they are."""
+        gone = now - self._begin
+        part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
+        falling = self._falling
+        goal = landing(falling.dcm[self._rests], falling.omega, max(self._seconds - gone, 0.0), self.bears)
+        if self._back:
+            return self._step_back(part, goal, measured)
+        done = smooth(part / _LANDS)
+        place = self._start[:2] + (goal - self._start[:2]) * done
+        height = self._start[2] * (1 - done) + STEP_HEIGHT * sin(pi * part) ** 2
+        return {**self._sent, **self._level(np.array([*place, height]))}
+
+    def over(self, now: float) -> bool:
+        """Whether the foot should have landed."""
+        return now - self._begin >= self._seconds
+
+    def _step_back(self, part: float, goal: CapturePoint, measured: Mapping[str, float]) -> dict[str, float]:
+        """Knee first, from joint to joint; the torso is brought forward and the body lowered meanwhile."""
+        side, bears, sent = self.side, self.bears, self._sent
+        end, way = self._level(np.array([*goal, 0.0])), min(1.0, part / _LANDS)
+        joints = {**sent, **{n: sent[n] + way * (angle - sent[n]) for n, angle in end.items()}}
+        lift = KNEE_LIFT * sin(pi * part**LIFTS_EARLY)
+        joints[side + "KneePitch"] += lift
+        joints[side + "AnklePitch"] -= lift
+        up = self._falling.axes[2]
+        leant = atan2(up[0], up[2])
+        joints[bears + "HipPitch"] = measured[bears + "HipPitch"] - UPRIGHT_GAIN * (leant + UPRIGHT_LEAN)
+        gives = KNEE_GIVES * smooth(max(part - GIVES_LATE, 0.0) / (1 - GIVES_LATE))
+        joints[bears + "HipPitch"] -= gives / 2
+        joints[bears + "KneePitch"] += gives
+        joints[bears + "AnklePitch"] -= gives / 2
+        return joints
+
+    def _level(self, place: CapturePoint) -> dict[str, float]:
+        """The joints of the leg that swings with its sole at that place, seen from the other one."""
+        sole = self._falling.soles[self._rests] + place
+        yaw = self._sent["LHipYawPitch"]
+        joints = hold_level(self.side, self._falling.axes, sole, yaw)
+        return {self.side + name: angle for name, angle in zip(JOINTS, joints, strict=True)}

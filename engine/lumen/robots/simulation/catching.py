@@ -1,0 +1,151 @@
+"""Catches a fall that ankles, hips and arms can't: by steps, after which the robot goes on with what it did."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from lumen.interpreters.gait import JOINTS, SIDES, CentreOfMass, Gait, GaitParameters, Side, Velocity, foot_from, middle
+from lumen.interpreters.gait.swing import smooth
+from lumen.robots.simulation.balance import BalanceController
+from lumen.robots.simulation.catch_step import CatchStep
+from lumen.robots.simulation.falling_sense import FallingSense
+from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.odometry import Odometry
+from lumen.robots.simulation.sensors import BodySensors
+
+BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
+"""The DCM is that far beyond the feet's edge where a step helps [m]; aside no foot can cross the other."""
+
+ASIDE = 0.008
+"""A fall over the heels is caught where it goes aside by so much, too [m]: straight back both feet stay loaded, and
+arms and hips help more than a foot that does not leave the ground."""
+
+BRACE_TIME, CALM_TIME, RETURN_TIME = 0.5, 0.3, 1.0
+"""How long the legs take to bring the body between the feet, to rest there, and to go back to what they did [s]."""
+
+NEXT_STEP = 0.2
+"""So long after a step no other one begins [s]."""
+
+MOST_STEPS = 4
+"""A fall that so many steps did not catch is not caught."""
+
+CATCHING_GAIT = replace(GaitParameters(), torso=0.3)
+"""Lower than a walk: feet that stand far apart reach the ground."""
+
+
+class FallCatcher:
+    """Takes the legs while it catches a fall; what they are wanted to do meanwhile is not lost.
+
+    One step or several to where the body falls, a rest with bent legs, and steps until the feet are side by side again.
+    A walk goes on from there; anything else has its legs back slowly.
+    """
+
+    def __init__(
+        self,
+        motors: Motors,
+        sensors: BodySensors,
+        falling: FallingSense,
+        balance: BalanceController,
+        odometry: Odometry,
+        com: CentreOfMass,
+    ) -> None:
+        self._motors, self._sensors, self._falling, self._balance = motors, sensors, falling, balance
+        self._odometry, self._com = odometry, com
+        self._names = [side + name for side in SIDES for name in JOINTS]
+        self._since = 0.0
+        self._steps, self._north = 0, 0.0
+        self._step: CatchStep | None = None
+        self._gait: Gait | None = None
+        self._landed: dict[str, float] = {}
+        self._legs: Mapping[str, float] = {}
+        self._does: Callable[[float], None] | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether a fall is being caught."""
+        return self._does is not None
+
+    def advance(self, now: float, *, standing: bool) -> None:
+        """Live until `now` [s]; a robot that is not `standing` on its feet has nothing to catch."""
+        if not standing:
+            self._does = None
+            return
+        if self._does is None and self._needed:
+            self._steps = 0
+            self._set_out(now)
+        if self._does:
+            self._does(now)
+            self._motors.hold(self._legs)
+        self._balance.catching = self.active
+
+    @property
+    def _needed(self) -> bool:
+        ahead, behind, _, _ = self._falling.beyond
+        return ahead > BEYOND_TOES or (behind > BEYOND_HEELS and abs(self._falling.aside) > ASIDE)
+
+    def _measured(self) -> dict[str, float]:
+        """Where the legs' joints are [rad]."""
+        angles, index = self._sensors.angles, self._motors.index
+        return {name: float(angles[index[name]]) for name in self._names}
+
+    def _sent(self) -> dict[str, float]:
+        return {name: float(self._motors.command[self._motors.index[name]]) for name in self._names}
+
+    def _set_out(self, now: float) -> None:
+        """Step with the foot that is in the air already, or the one farther from where the body falls."""
+        far = self._falling.far
+        side: Side = self._balance.lifted or ("L" if far[0] > far[1] else "R")
+        if not self._steps:
+            self._north = middle(self._odometry.feel(self._measured())).theta - self._sensors.heading
+        self._step = CatchStep(self._falling, side, self._sent(), now)
+        self._steps += 1
+        self._does = self._swing
+
+    def _swing(self, now: float) -> None:
+        assert self._step
+        measured = self._measured()
+        self._legs = self._step.advance(now, measured)
+        self._balance.lifted = self._step.side
+        if self._step.over(now):
+            bearing = self._odometry.feet[self._step.bears]
+            landed = bearing.then(foot_from(self._step.bears, measured))
+            self._odometry.land({self._step.bears: bearing, self._step.side: landed})
+            self._landed, self._since = self._sent(), now
+            self._gait = Gait(self._odometry.feet, Velocity(), self._com, CATCHING_GAIT)
+            self._does = self._brace
+
+    def _brace(self, now: float) -> None:
+        """Bring the body between the feet; where it falls on, step again."""
+        assert self._gait
+        gone = now - self._since
+        if gone > NEXT_STEP and max(self._falling.beyond) > 0.0 and self._steps < MOST_STEPS:
+            self._set_out(now)
+        elif gone > BRACE_TIME + CALM_TIME:
+            self._gait = Gait(self._odometry.feel(self._measured()), Velocity(), self._com, CATCHING_GAIT)
+            self._does = self._follow
+        else:
+            part = smooth(gone / BRACE_TIME)
+            end = self._gait.angles
+            self._legs = {name: angle + part * (end[name] - angle) for name, angle in self._landed.items()}
+
+    def _follow(self, now: float) -> None:
+        """Bring the feet together, as at the end of a walk."""
+        assert self._gait
+        walks, self._balance.walking = self._balance.walking, True
+        tick = self._gait.tick(self._measured(), self._sensors.heading)
+        if tick:
+            self._legs, self._balance.lifted = tick.angles, tick.lifted
+            return
+        self._odometry.land(self._gait.feet)
+        self._odometry.stumble(self._north + self._sensors.heading)
+        self._landed, self._since = dict(self._legs), now
+        self._does = None if walks else self._return
+        if walks:
+            self._motors.aim(self._legs)
+
+    def _return(self, now: float) -> None:
+        """Back to what the legs are wanted to do."""
+        part = smooth((now - self._since) / RETURN_TIME)
+        wanted = self._motors.wanted(self._names)
+        self._legs = {name: angle + part * (wanted[name] - angle) for name, angle in self._landed.items()}
+        if part == 1.0:
+            self._does = None

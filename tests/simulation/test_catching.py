@@ -1,0 +1,75 @@
+"""Steps that catch a fall: in physics, for robots that differ, by what they measure of themselves."""
+
+from math import hypot, inf, pi
+
+import numpy as np
+import pytest
+
+from lumen.language.commands import Walk
+from lumen.language.robots import Body
+from lumen.robots.simulation import SimulatedRobot, catching
+from tests.simulation.conftest import answer, until_answered
+from tests.simulation.pushes import PushTrial, standing, upright
+from tests.simulation.walks import Push, any_robot, truth
+
+HARD = 3.0
+"""More than ankles, hips and arms bear from behind [N s]."""
+
+
+def pushed(robot: SimulatedRobot, impulse: float, seconds: float, to: float = 0.0) -> bool:
+    """Push it for 0.1 s, and live that long; whether it took a step to stay upright."""
+    push, begin, stepped = Push(10 * impulse, 0.0, to), robot.time, False
+    while robot.time < begin + seconds:
+        push.act(robot, robot.time - begin)
+        robot.advance(0.01)
+        stepped |= robot._catcher.active
+    return stepped
+
+
+def test_a_step_catches_it_and_the_robot_stands_again_as_before(body: Body) -> None:
+    robot = any_robot(body, seed=3)
+    robot.advance(1.0)
+    assert pushed(robot, HARD, 6.0)
+    assert not robot.fallen
+    assert not robot._catcher.active
+    legs = [robot.motors.index[n] for n in body.parts["legs"]]
+    wanted = np.array([body.postures["Stand"][n] for n in body.parts["legs"]])
+    assert np.abs(robot.motors.command[legs] - wanted).max() < 0.12
+    assert robot.world.tilt < 0.1
+    here, believed = truth(robot), robot._odometry.whereabouts
+    assert here.x > 0.05
+    assert hypot(here.x - believed.x, here.y - believed.y) < believed.doubt
+    assert here.theta == pytest.approx(believed.theta, abs=0.15)
+
+
+def test_nothing_but_a_step_does(body: Body, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert upright(body, standing, PushTrial(3, HARD, 0.0))
+    monkeypatch.setattr(catching, "BEYOND_TOES", inf)
+    assert not upright(body, standing, PushTrial(3, HARD, 0.0))
+
+
+@pytest.mark.parametrize("to", [0.0, pi / 2, pi])
+def test_a_nudge_takes_none(body: Body, to: float) -> None:
+    robot = any_robot(body, seed=4)
+    assert not pushed(robot, 1.0, 1.0, to)
+
+
+def test_a_walk_goes_on_after_it(body: Body) -> None:
+    robot = any_robot(body, seed=3)
+    robot.start("w", Walk(0.3))
+    robot.advance(0.2)
+    begin = truth(robot)
+    assert pushed(robot, HARD, 1.0)
+    assert answer(until_answered(robot, "w"), "w") == "done"
+    assert truth(robot).x - begin.x == pytest.approx(0.3, abs=0.06)
+    assert not robot.fallen
+
+
+@pytest.mark.soak
+def test_twenty_robots_catch_themselves(body: Body) -> None:
+    whole = 0
+    for to in (-pi / 5, 0.0, pi / 5, pi / 2, -pi / 2):
+        stood = sum(upright(body, standing, PushTrial(seed, HARD, to)) for seed in range(20))
+        print(f"\n3 N s standing, towards {to:.2f} rad: {stood} of 20 upright")  # noqa: T201
+        whole += stood
+    assert whole >= 93
