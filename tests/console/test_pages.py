@@ -37,13 +37,20 @@ def viewer() -> Iterator[Viewer]:
     one.close()
 
 
+@pytest.fixture(scope="module")
+def overhearing() -> Iterator[Viewer]:
+    one = Viewer(overhearing=True)
+    yield one
+    one.close()
+
+
 def rests(hosted: Hosted) -> bool:
     return hosted.exhibition.node.robot.server.hold.stopped
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_a_page_loads_from_here_alone_and_complains_of_nothing(viewer: Viewer, served: Served, page: str) -> None:
-    path, ready = PAGES[page]
+def test_a_page_loads_from_here_alone_and_complains_of_nothing(overhearing: Viewer, served: Served, page: str) -> None:
+    viewer, (path, ready) = overhearing, PAGES[page]
     viewer.open(served.console.address, path, ready=ready)
     messages = [json.loads(entry["message"])["message"] for entry in viewer.log("performance")]
     asked = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]

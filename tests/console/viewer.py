@@ -24,13 +24,17 @@ WAIT = 60.0
 
 
 class Viewer:
-    """A browser with these arguments besides; `open` begins a page as somebody who was never here sees it."""
+    """A browser with these arguments besides; `open` begins a page as somebody who was never here sees it.
 
-    def __init__(self, *more: str) -> None:
+    It keeps what pages complain of; an `overhearing` one what they ask for, too, which is dear.
+    """
+
+    def __init__(self, *more: str, overhearing: bool = False) -> None:
         options = ChromeOptions()
         for argument in (*ARGUMENTS, *more):
             options.add_argument(argument)
-        self._browser = DrivenBrowser(options, "browser", "performance")
+        self._logs = ("browser", "performance") if overhearing else ("browser",)
+        self._browser = DrivenBrowser(options, *self._logs)
         self.driver = self._browser.driver
         self.driver.set_script_timeout(WAIT)
         self._before = ""
@@ -47,7 +51,8 @@ class Viewer:
             f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value)"
         )
         self._before = self.command("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
-        self.log("browser"), self.log("performance")
+        for kind in self._logs:
+            self.log(kind)
         self.driver.get(address + path)
         until(lambda: self.all(ready), WAIT)
 
