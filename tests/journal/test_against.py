@@ -10,7 +10,8 @@ from hypothesis import given, settings
 
 from lumen.errors import LumenError
 from lumen.interpreters.replay.against import ENDS, MORE_STEPS, MOST_TIMES, SAME, SAYS, played_against
-from lumen.interpreters.replay.visits import RecordedVisit, home_of, visits
+from lumen.interpreters.replay.entries import JournalJump
+from lumen.interpreters.replay.visits import DROPPED, RecordedVisit, home_of, visits
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine
 from tests.journal.making import Recorded, bundle
@@ -105,6 +106,21 @@ def test_files_that_never_come_to_rest_end_a_visit(visit: RecordedVisit) -> None
     assert (
         verdict.now == f"these files take more than {MORE_STEPS + MOST_TIMES * len(visit.inputs):,} steps in one visit"
     )
+
+
+def test_a_visit_that_begins_with_overdue_timers_is_not_played_again(tmp_path: Path) -> None:
+    data: Data = {
+        "id": "loops",
+        "entry": [{"send": "b"}, {"send": "c"}],
+        "on": {"b": {"actions": [{"send": "b"}]}, "c": {"actions": [{"send": "c"}, {"play": "wave"}]}},
+        "states": {"home": {"on": {"go": "away"}}, "away": {"on": {"go": "home"}}},
+    }
+    run = recorded(Machine.from_dict(data), [("go", None), ("go", None)], tmp_path)
+    assert [entry for entry in run.entries() if isinstance(entry, JournalJump) and entry.kind == DROPPED]
+    project = next(iter(run.bundles.values()))
+    verdicts = [played_against(project, project, visit, lambda *_: 1.0) for visit in of(run)]
+    assert verdicts
+    assert {verdict.how for verdict in verdicts if verdict} <= {SAME}
 
 
 @settings(PATIENT, max_examples=8)

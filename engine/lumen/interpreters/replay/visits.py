@@ -13,7 +13,9 @@ from lumen.interpreters.replay.journal_clock import JournalClock
 from lumen.interpreters.statechart import initial
 from lumen.language.machines import MachineDefinition, StateKind
 
-BROKEN = ("start", "gap", "dropped timer")
+DROPPED = "dropped timer"
+"""After it timers may be overdue, which then come in an order that no files would repeat."""
+BROKEN = ("start", "gap", DROPPED)
 """Jumps before which something is missing, another run was, or what no files would do again."""
 
 
@@ -95,7 +97,8 @@ def visits(entries: Iterable[tuple[RecordedEntry, MachineDefinition | None]]) ->
             yield current._replace(home=home, inputs=tuple(inputs))
             current = None
         if jump and (jump.kind in BROKEN or not watch.away):
-            home, inputs = (jump if jump.kind == "start" or not watch.away else None), []
+            known = jump.kind == "start" or (jump.kind != DROPPED and not watch.away)
+            home, inputs = (jump if known else None), []
         elif isinstance(entry, JournalInput):
             inputs.append(entry)
         if part and current is None:
