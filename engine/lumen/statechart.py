@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
@@ -23,8 +24,10 @@ from lumen.interpreters.statechart import (
     step,
 )
 from lumen.interpreters.statechart.json_cursor import plain
+from lumen.interpreters.statechart.values import Timer
 from lumen.language import machines
 from lumen.language.events import Event
+from lumen.language.nanoseconds import HALF
 from lumen.loading.derived import derived
 from lumen.loading.standalone import machine_from_dict, machine_from_file
 from lumen.ports import Clock
@@ -37,6 +40,8 @@ else:
     from typing import TypeVar
 
     C = TypeVar("C", bound=Clock)  # only type checkers need the default: Python has it from 3.13 on
+
+_new = tuple.__new__  # half of the price of Event(…)
 
 __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
@@ -143,6 +148,7 @@ class Interpreter(Generic[C]):
         }  # fmt: skip
         self._observe = observe
         self._snapshot: Snapshot | None = None
+        self._timers, self._next = tuple[Timer, ...](), inf
         if isinstance(self.clock, VirtualClock):
             self.clock.attach(self)
 
@@ -209,19 +215,27 @@ class Interpreter(Generic[C]):
 
         Raises UsageError if `data` is not JSON data, because a snapshot could not hold it.
         """
-        need(event, (str, Event), "an event", "its name, or an Event")
-        name, data, _, sendid, cause = Event(event, data) if isinstance(event, str) else event
-        need_text(name, "the name of an event")
-        data = plain(data, "event.data")
+        name, sendid, cause = event, "", None
+        if isinstance(event, Event):
+            name, data, _, sendid, cause = event
+        if type(name) is not str or not name:
+            need(event, (str, Event), "an event", "its name, or an Event")
+            need_text(name, "the name of an event")
+        if data is not None:
+            data = plain(data, "event.data")
         self.wake()
-        taken = self._take(step(self.machine, self._now, Event(name, data, self.clock.now(), sendid, cause)))
+        taken = self._take(step(self.machine, self._now, _new(Event, (name, data, self.clock.now(), sendid, cause))))
         self.wake()
         return taken
 
     def wake(self) -> None:
         """Process everything that is due."""
-        for taken in elapse(self.machine, lambda: self._now, self.clock.now()):
-            self._take(taken)
+        now, at = self._snapshot or self._now, self.clock.now()
+        if now.timers is not self._timers:
+            self._timers, self._next = now.timers, min((timer.due for timer in now.timers), default=inf)
+        if now.invoked or self._next < at + 2 * HALF:
+            for taken in elapse(self.machine, lambda: self._now, at):
+                self._take(taken)
 
     def next_due(self) -> float | None:
         """When the next timer ends [s]."""
