@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.choreography import at_speed, joined, mirrored, mirrored_joint
+from lumen.interpreters.choreography import at_speed, joined, mirrored, mirrored_joint, trailing
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.motions import Cue, MotionDefinition
+from lumen.language.motions import Cue, Keyframe, MotionDefinition
 from tests.motions.making import made, motions, nao
 
 
@@ -22,6 +22,18 @@ def test_a_mirrored_motion_moves_the_other_side(motion: MotionDefinition) -> Non
     for joint, angle in here.items():
         other, sign = mirrored_joint(joint)
         assert there[other] == pytest.approx(sign * angle)
+
+
+@given(st.lists(st.integers(5, 500), min_size=1, max_size=8, unique=True), st.floats(0.01, 1.0))
+def test_what_trails_comes_later_in_the_same_order_and_ends_with_the_rest(times: list[int], lag: float) -> None:
+    keys = tuple(Keyframe(time / 100, 0.1) for time in sorted(times))
+    motion = MotionDefinition("it", keys[-1].time, {"RWristYaw": keys, "RElbowRoll": keys})
+    late = trailing(motion, {"RWristYaw": lag, "HeadYaw": lag})
+    assert late.tracks["RElbowRoll"] == keys
+    came = [key.time for key in late.tracks["RWristYaw"]]
+    assert came == sorted(set(came))
+    assert came[-1] == motion.duration
+    assert all(0.0 <= new - key.time <= lag + 1e-9 for new, key in zip(came, keys, strict=True))
 
 
 def test_mirroring_knows_which_joints_turn_the_other_way() -> None:

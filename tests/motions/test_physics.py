@@ -19,7 +19,7 @@ MOUTH, HEAD_TOP, HAND = (0.05, 0.0, 0.028), (0.0, 0.0, 0.108), (0.05775, 0.0, -0
 
 
 class Moment(NamedTuple):
-    """One look at the robot: where its parts are [m] and how far it leans [deg]."""
+    """One look at the robot: where its parts are [m], how high its left and right sole, how far it leans [deg]."""
 
     time: float
     right_hand: Point
@@ -27,6 +27,7 @@ class Moment(NamedTuple):
     right_shoulder: Point
     mouth: Point
     head_top: Point
+    soles: tuple[float, ...]
     error: float
     collisions: frozenset[tuple[str, str]]
 
@@ -60,6 +61,7 @@ def look(robot: SimulatedRobot, time: float) -> Moment:
         point("RShoulderPitch"),
         point("HeadPitch", MOUTH),
         point("HeadPitch", HEAD_TOP),
+        tuple(float(data.site(f"{ROBOT_PREFIX}/{side}Sole").xpos[2]) for side in "LR"),
         error,
         own,
     )
@@ -143,6 +145,16 @@ def test_the_reins_are_crossed_before_the_chest() -> None:
     riding = show("dance").between(3 * beat, 10 * beat)
     assert all(np.linalg.norm(m.right_hand - m.left_hand) < 0.1 for m in riding)
     assert all(m.right_hand[0] > m.right_shoulder[0] + 0.08 for m in riding)
+
+
+def test_the_dance_ends_on_one_leg() -> None:
+    """The right foot is in the air for more than a second, 15 mm high and more; the left one stays on the floor."""
+    dancing = show("dance").moments
+    floor = dancing[0].soles
+    lifted = [m for m in dancing if m.soles[1] > floor[1] + 0.015]
+    assert len(lifted) * STEP > 1.0
+    assert all(abs(m.soles[0] - floor[0]) < 0.003 for m in lifted)
+    assert abs(dancing[-1].soles[1] - floor[1]) < 0.002
 
 
 def spread(moments: list[Moment], of: Callable[[Moment], float]) -> float:

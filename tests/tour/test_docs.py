@@ -51,7 +51,7 @@ def test_lint_says_what_the_tutorial_quotes(
     (quoted,) = re.findall(r"```console\n\$ lumen lint\n(behaviors/.*?)```", CHANGE, re.S)
     monkeypatch.chdir(copy)
     assert main(["lint"]) == 1
-    assert re.sub(r"\d+ files", "78 files", capsys.readouterr().out) == quoted
+    assert re.sub(r"\d+ files", "all files", capsys.readouterr().out) == re.sub(r"\d+ files", "all files", quoted)
 
 
 @pytest.mark.parametrize("kind", ["behavior", "story", "motion", "controller", "lumen"])

@@ -47,6 +47,20 @@ def placed(motion: MotionDefinition, where: NodePath) -> MotionDefinition:
     return replace(motion, tracks=tracks, cues=tuple(replace(cue, where=where) for cue in motion.cues))
 
 
+def trailing(motion: MotionDefinition, lags: Mapping[str, float]) -> MotionDefinition:
+    """The motion with these joints so much [s] later than its keyframes: what hangs on a limb comes after it.
+
+    It ends when it did: close to its end a joint catches up.
+    """
+
+    def later(key: Keyframe, lag: float) -> Keyframe:
+        left = motion.duration - key.time
+        return replace(key, time=key.time + lag if left > 2 * lag else motion.duration - left / 2)
+
+    late = {j: tuple(later(key, lags[j]) for key in keys) for j, keys in motion.tracks.items() if j in lags}
+    return replace(motion, tracks={**motion.tracks, **late})
+
+
 def joined(parts: Iterable[tuple[float, MotionDefinition]], duration: float) -> MotionDefinition:
     """One motion of parts, each with the time [s] that it begins at, in that order and not overlapping."""
     tracks: dict[str, list[Keyframe]] = {}

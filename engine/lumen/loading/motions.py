@@ -6,7 +6,7 @@ from functools import partial
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
-from lumen.interpreters.choreography import at_speed, mirrored, returning
+from lumen.interpreters.choreography import at_speed, mirrored, returning, trailing
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
@@ -92,7 +92,8 @@ def countable(data: Any, report: DocumentReport) -> bool:
 
 
 def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader, name: str) -> MotionDefinition:
-    """The whole motion: its speed, its side, the way back and where it comes from."""
+    """The whole motion: what trails, its speed, its side, the way back and where it comes from."""
+    part = trailing(part, poses.lags(data.get("trails") or {}, ("trails",)))
     if "speed" in data and poses.number(data["speed"], ("speed",)):
         part = at_speed(part, data["speed"])
     part = mirrored(part) if data.get("mirror") else part

@@ -109,6 +109,12 @@ class PoseReader:
                 found[name] = value * self.factor, here
         return found
 
+    def lags(self, trails: Mapping[str, str], path: NodePath) -> dict[str, float]:
+        """How much later each joint is to come [s]; joints that share a motor come together."""
+        found = {name: seconds(lag) or 0.0 for name, lag in trails.items() if self._known(name, (*path, name))}
+        twins = {**self.body.shared, **{leader: follower for follower, leader in self.body.shared.items()}}
+        return {**{twins[name]: lag for name, lag in found.items() if name in twins}, **found}
+
     def _known(self, joint: str, path: NodePath) -> bool:
         if joint not in self.body.joints:
             hint = did_you_mean(joint, self.body.joints, f"{self.body.name} has")
