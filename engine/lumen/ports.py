@@ -223,6 +223,10 @@ class Hall(Protocol):
         """Press or release a tactile sensor."""
         ...
 
+    def sound(self) -> None:
+        """Let the visitor be heard: a robot that hears from where may look there."""
+        ...
+
     def plug(self, plugged: bool) -> None:
         """Plug the charger in, or unplug it."""
         ...

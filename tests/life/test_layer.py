@@ -147,6 +147,19 @@ def test_the_eyes_blink_and_have_the_colour_of_the_style() -> None:
     assert 0.02 < seen.count("off") / len(seen) < 0.08
 
 
+def test_it_looks_towards_a_sound_and_not_towards_its_own_voice() -> None:
+    layer = lively()
+    layer.style = replace(layer.style, sways=(), glances=None, settles=None, asides=None)
+    layer.heard(0.7, 0.1, 10.0)
+    wanted = layer.wanted(11.0, {HEAD}, lambda _part: 1.0)
+    assert (wanted["HeadYaw"], wanted["HeadPitch"]) == pytest.approx((0.7, 0.1))
+    layer.say(Say("That was me.", "en"), 2.0, 20.0)
+    layer.heard(0.7, 0.1, 21.0)
+    assert layer.wanted(22.5, {HEAD}, lambda _part: 1.0)["HeadYaw"] == 0.0
+    layer.heard(-3.0, 0.1, 30.0)
+    assert layer.wanted(31.0, {HEAD}, lambda _part: 1.0)["HeadYaw"] == pytest.approx(-1.0)
+
+
 def test_it_looks_aside_before_an_answer_and_not_before_the_next_sentence() -> None:
     layer = lively()
     free = {HEAD}

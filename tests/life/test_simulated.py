@@ -7,6 +7,7 @@ import pytest
 
 import lumen
 from lumen.language.commands import Leds, Rest, Say
+from lumen.language.stories import Visitor
 from lumen.ports import Live, Perform
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.subject import subject
@@ -84,6 +85,17 @@ def test_its_eyes_say_what_it_does_unless_they_are_lit() -> None:
     nao.start("white", Leds({"eyes": "white"}))
     nao.advance(0.3)
     assert eyes()[1] == listens
+
+
+def test_it_looks_towards_somebody_who_speaks_beside_it() -> None:
+    nao = robot("listening")
+    nao.place(Visitor(1.0, 1.2, 1.6))
+    nao.advance(1.0)
+    nao.sound()
+    nao.advance(1.5)
+    assert nao.world.angles[nao.motors.index["HeadYaw"]] > 0.6
+    nao.advance(4.0)
+    assert abs(nao.world.angles[nao.motors.index["HeadYaw"]]) < 0.3
 
 
 def test_a_robot_that_rests_is_still() -> None:

@@ -42,6 +42,9 @@ class Lockstep(NaoqiRobot):
         self.nao.touch(sensor, pressed)
         self.settle()
 
+    def sound(self) -> None:
+        """The tour's visitor is heard as words alone."""
+
     def plug(self, plugged: bool) -> None:
         self.nao.world.plugged = plugged
 

@@ -451,6 +451,15 @@ class ALAutonomousBlinking:
 
 
 @qi.multiThreaded()
+class ALSoundLocalization:
+    def __init__(self, world: World) -> None:
+        self._world = world
+
+    def subscribe(self, name: str) -> None:
+        self._world.note("ALSoundLocalization.subscribe", name)
+
+
+@qi.multiThreaded()
 class ALSystem:
     def __init__(self, world: World) -> None:
         self._world = world
@@ -461,5 +470,5 @@ class ALSystem:
 
 SERVICES = (
     ALMotion, ALRobotPosture, ALMemory, ALTextToSpeech, ALVideoDevice, ALLeds, ALAudioPlayer, ALAutonomousLife,
-    ALAnimatedSpeech, ALAutonomousBlinking, ALSystem,
+    ALAnimatedSpeech, ALAutonomousBlinking, ALSoundLocalization, ALSystem,
 )  # fmt: skip

@@ -143,3 +143,17 @@ def test_naoqi_gestures_as_it_speaks_in_place_of_ours(standing: Lockstep, live: 
     alive(standing, project)
     live(0.1)
     assert world.called("ALAutonomousBlinking.setEnabled")[-1] == (False,)
+
+
+def test_it_looks_towards_a_sound_that_naoqi_is_sure_of(standing: Lockstep, live: LiveFor, project: Project) -> None:
+    alive(standing, project, style="listening")
+    live(1.0)
+    heard = [[7, 0], [0.6, 0.1, 0.2, 0.5], [0.0] * 6, [0.0] * 6]
+    standing.nao.tell("ALSoundLocalization/SoundLocated", heard)
+    standing.nao.tell("ALSoundLocalization/SoundLocated", "noise")
+    live(1.5)
+    assert standing.nao.world.joints.angles()["HeadYaw"] < 0.3
+    heard[1][2] = 0.9
+    standing.nao.tell("ALSoundLocalization/SoundLocated", heard)
+    live(1.5)
+    assert standing.nao.world.joints.angles()["HeadYaw"] > 0.4

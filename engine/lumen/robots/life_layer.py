@@ -40,6 +40,9 @@ LED_FOR = 1.0
 ANSWER_PAUSE = 1.0
 """How long nothing was said before a text that is an answer [s]."""
 
+HEARD_TURN, HEARD_NOD = 1.0, 0.3
+"""How far it turns and nods at most to look where a sound came from [rad]."""
+
 _REACHED = 1e-4
 
 
@@ -73,6 +76,15 @@ class LifeLayer:
         """Somebody touched the robot there: it looks, where the style says so."""
         if sensor in TOUCHED:
             self._attention = Attention(*TOUCHED[sensor], now)
+
+    def heard(self, yaw: float, pitch: float, now: float) -> None:
+        """Somebody made a sound so far to the left and below of where the head points [rad]: it looks there.
+
+        It does not while it speaks: then it hears itself.
+        """
+        if now >= self._said_until:
+            far = max(-HEARD_TURN, min(HEARD_TURN, yaw))
+            self._attention = Attention(far, max(-HEARD_NOD, min(HEARD_NOD, pitch)), now)
 
     def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> None:
         """It begins to say that, which takes `duration` [s]; `words` tells when each begins, where that is known."""

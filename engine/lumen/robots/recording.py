@@ -6,7 +6,7 @@ from math import hypot, inf, isfinite
 
 from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
-from lumen.interpreters.projection import seen
+from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Look, Move, Posture, Say, Walk
 from lumen.language.diagnostics import did_you_mean
@@ -157,9 +157,7 @@ class RecordingRobot:
     def face(self) -> tuple[float, float] | None:
         if self._visitor is None:
             return None
-        visitor = self._visitor
-        offsets = self._offsets()
-        place = (visitor.x, visitor.y, visitor.height * FACE_HEIGHT_FRACTION - PODIUM_HEIGHT - TORSO_HEIGHT)
+        offsets, place = self._offsets(), _face_of(self._visitor)
         yaw, pitch = (self._angles.get(joint, 0.0) + offsets.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch"))
         return seen(place, self.body.camera, yaw, pitch)
 
@@ -171,6 +169,12 @@ class RecordingRobot:
             self._pressed ^= {sensor}
             by = Cause("person", sender=VISITOR)
             self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time, cause=by))
+
+    def sound(self) -> None:
+        if self._visitor:
+            yaw, pitch = centring(_face_of(self._visitor), self.body.camera)
+            head = [self._angles.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch")]
+            self._life.heard(yaw - head[0], pitch - head[1], self.time)
 
     def plug(self, plugged: bool) -> None:
         self._plugged = plugged
@@ -220,3 +224,8 @@ class RecordingRobot:
         for name, angle in angles.items():
             joint = joints[name]
             self._angles[name] = min(max(angle, joint.minimum), joint.maximum)
+
+
+def _face_of(visitor: Visitor) -> Vector3:
+    """Where a visitor's face is, from the torso of a robot that stands on its podium [m]."""
+    return visitor.x, visitor.y, visitor.height * FACE_HEIGHT_FRACTION - PODIUM_HEIGHT - TORSO_HEIGHT

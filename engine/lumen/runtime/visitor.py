@@ -57,6 +57,7 @@ class VisitorActor:
 
     def speak(self, text: str, language: str = "") -> None:
         """Say something the speech module understands at once."""
+        self._hall.sound()
         body = {"name": "visitor", "result": text, "date": "", "language": language}
         if reason := send(self._bus, self._project, SPEECH_ROUTE, body, MessageOrigin(sender=VISITOR)):
             _log.warning("nobody hears the visitor: %s", reason)

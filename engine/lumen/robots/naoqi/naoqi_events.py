@@ -15,6 +15,10 @@ FALLEN = "robotHasFallen"
 FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
 """What NAOqi 2.1 and 2.8 call the beginning of a fall."""
 
+SOUND = "ALSoundLocalization/SoundLocated"
+SURE_SOUND = 0.5
+"""How sure NAOqi has to be of where a sound came from."""
+
 FULL = "BatteryFullChargedFlagChanged"
 
 BATTERY_LOW, BATTERY_RECOVERED = 20, 25
@@ -44,6 +48,7 @@ class NaoqiEvents:
         self.heard = 0
         self._since = dict.fromkeys(self.pressed, 0.0)
         self._came: deque[tuple[str, bool]] = deque(maxlen=1_000)
+        self._sounds: deque[tuple[float, float]] = deque(maxlen=1)
         self._kept: list[Any] = []
 
     def listen(self, session: NaoqiSession) -> None:
@@ -55,6 +60,19 @@ class NaoqiEvents:
                 self._kept.append(session.subscribe(event, partial(self._hear, name)))
             except RobotError as error:
                 _log.warning("the robot will not raise `%s`: %s", event, error)
+
+        if session.has("ALSoundLocalization"):
+            session.post("ALSoundLocalization", "subscribe", "lumen")
+            try:
+                self._kept.append(session.subscribe(SOUND, self._locate))
+            except RobotError as error:
+                _log.warning("the robot will not look towards sounds: %s", error)
+
+    def sounds(self) -> list[tuple[float, float]]:
+        """Where the newest sound came from: how far to the left and below of where the head points [rad]."""
+        found = list(self._sounds)
+        self._sounds.clear()
+        return found
 
     def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
         """What has changed by `now` [s]: sensors pressed or let go of, falls, and the battery.
@@ -73,6 +91,16 @@ class NaoqiEvents:
                     self.pressed[name], self._since[name] = value, now
                 changed.append((name, value))
         return changed
+
+    def _locate(self, value: Any) -> None:
+        """`[[s, us], [azimuth, elevation, confidence, energy], head's place, …]`, relative to the head."""
+        try:
+            azimuth, elevation, confidence = map(float, value[1][:3])
+        except (TypeError, ValueError, IndexError, KeyError):
+            azimuth = elevation = confidence = 0.0
+        if confidence >= SURE_SOUND:
+            self._sounds.append((azimuth, -elevation))
+        self.heard += 1
 
     def _hear(self, name: str, value: Any) -> None:
         self._came.append((name, bool(value)))

@@ -17,5 +17,8 @@ class PhysicalHall:
     def touch(self, sensor: str, pressed: bool) -> None:
         raise UsageError(f"`{sensor}` of a real robot is touched with a hand")
 
+    def sound(self) -> None:
+        """Whoever types is not heard."""
+
     def plug(self, plugged: bool) -> None:
         raise UsageError("a real robot is plugged in by hand")

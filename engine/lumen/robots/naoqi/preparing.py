@@ -15,6 +15,7 @@ OPTIONAL_SERVICES = {
     "ALVideoDevice": "it has no images",
     "ALSonar": "nothing but its bumpers stops it before a wall",
     "ALLeds": "its lights stay as they are",
+    "ALSoundLocalization": "it does not look towards sounds",
     "ALAnimatedSpeech": "it speaks with our gestures alone",
     "ALAutonomousBlinking": "it blinks as we have it",
     "ALAudioPlayer": "it plays no sounds",

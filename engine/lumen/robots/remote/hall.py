@@ -49,6 +49,9 @@ class RemoteHall:
             raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, known, 'there are')}")
         self._do({"sensor": sensor, "pressed": pressed})
 
+    def sound(self) -> None:
+        self._do({"sound": True})
+
     def plug(self, plugged: bool) -> None:
         self._do({"plugged": plugged})
 

@@ -96,6 +96,8 @@ class RobotHost:
                 hall.place(visitor)
             case {"sensor": str(sensor), "pressed": bool(pressed)}:
                 hall.touch(sensor, pressed)
+            case {"sound": True}:
+                hall.sound()
             case {"plugged": bool(plugged)}:
                 hall.plug(plugged)
             case {"event": str(name)} if name in ROBOT_EVENTS:

@@ -5,8 +5,11 @@ from collections.abc import Collection, Sequence
 from math import degrees
 from pathlib import Path
 
+import numpy as np
+
 from lumen.errors import RobotError, RobotRefusedError, UsageError
-from lumen.interpreters.life import vigour
+from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW, vigour
+from lumen.interpreters.projection import centring
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
@@ -29,7 +32,7 @@ from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.imperfections import Imperfections
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.model import Variation
+from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.odometry import Odometry
 from lumen.robots.simulation.playback import SpeechActivity
@@ -220,6 +223,15 @@ class SimulatedRobot:
                     self._life.touched(sensor, self.time)
                 by = Cause("person", sender=VISITOR) if sensor in touched else None
                 self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time, cause=by))
+
+    def sound(self) -> None:
+        face = self.figure.face()
+        if face is not None:
+            torso = self.world.data.body(f"{ROBOT_PREFIX}/Torso")
+            x, y, z = (torso.xmat.reshape(3, 3).T @ (np.array(face) - torso.xpos)).tolist()
+            yaw, pitch = centring((x, y, z), self.body.camera)
+            head = self.motors.wanted((HEAD_YAW, HEAD_PITCH))
+            self._life.heard(yaw - head[HEAD_YAW], pitch - head[HEAD_PITCH], self.time)
 
     def plug(self, plugged: bool) -> None:
         self.condition.plugged = plugged
