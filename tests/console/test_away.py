@@ -5,14 +5,16 @@ What was taken is collected in the page itself, and compared with the journal, w
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from threading import Event, Thread
 from typing import Any
 
 import pytest
 
 from tests.console.chromium import Chromium
+from tests.console.conftest import lived_in
 from tests.console.house import CONSOLE, House
+from tests.tour.conftest import copied
 from tests.waiting import until
 
 HEARD = "lumen.NAO.audio.gender.identification"
@@ -76,6 +78,18 @@ class Window:
     def time_of(self, number: int) -> float:
         """When it took the one of that number [s since 1970]."""
         return float(self.run(f"return times[{number}]"))
+
+
+@pytest.fixture(scope="module")
+def begun_house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
+    yield from lived_in(House(copied(tmp_path_factory.mktemp("house")), speed="4"))
+
+
+@pytest.fixture
+def house(begun_house: House) -> House:
+    """The one of the test before, whole again."""
+    begun_house.await_robot()
+    return begun_house
 
 
 def journaled(house: House, first: int, last: int) -> list[int]:
