@@ -86,7 +86,7 @@ def test_it_crosses_the_bus_whole_and_robots_that_feel_nothing_say_nothing(robot
     assert decode_reading(Sense.JOINT, body, joints.names) == joints
     plain = RecordingRobot(robot.body).read(Sense.JOINT)
     assert isinstance(plain, Joints)
-    assert sorted(encode_reading(plain)) == ["angle", "name", "position", "stiffness", "time"]
+    assert sorted(encode_reading(plain)) == ["angle", "life", "name", "position", "stiffness", "time"]
     assert decode_reading(Sense.JOINT, encode_reading(plain), plain.names) == plain
 
 
