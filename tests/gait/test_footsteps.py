@@ -6,7 +6,6 @@ from hypothesis import strategies as st
 
 from lumen.interpreters.gait.footsteps import (
     NARROWEST,
-    WIDEST,
     Feet,
     beside,
     corners,
@@ -32,7 +31,7 @@ def test_steps_alternate_stay_short_and_end_side_by_side_at_the_goal(way: Pose) 
     for i, step in enumerate(steps):
         assert step.side == (steps[0].side if i % 2 == 0 else other(steps[0].side))
         seen = step.pose.seen_from(feet[other(step.side)])
-        assert NARROWEST - 1e-9 <= sign(step.side) * seen.y <= WIDEST + 1e-9
+        assert NARROWEST - 1e-9 <= sign(step.side) * seen.y <= PACE.widest + 1e-9
         assert abs(seen.x) < 0.13
         assert abs(seen.theta) < 0.3
         feet[step.side] = step.pose

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lumen.interpreters.gait import GENTLE_GAIT, Gait, GaitParameters, Pose, Velocity, fastest, middle
-from lumen.interpreters.gait.footsteps import NARROWEST, WIDEST
+from lumen.interpreters.gait.footsteps import NARROWEST
 from lumen.interpreters.gait.legs import other, sign
 from lumen.interpreters.gait.velocity import strides
 from tests.gait.test_gait import JOINTS, LIMIT, START
@@ -100,7 +100,7 @@ def test_whatever_is_asked_feet_neither_touch_nor_stride_too_far(
     bearing = START
     for side, pose in strides(START, Velocity(x, y, theta), first, pace, 8):
         seen = pose.seen_from(bearing[other(side)])
-        assert NARROWEST - 1e-9 <= sign(side) * seen.y <= WIDEST + 1e-9
+        assert NARROWEST - 1e-9 <= sign(side) * seen.y <= PACE.widest + 1e-9
         assert abs(seen.x) <= pace.forward + pace.apart * pace.turn
         assert abs(seen.theta) <= pace.turn + 1e-9
         bearing = {**bearing, side: pose}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lumen.interpreters.gait import GENTLE_GAIT, Footstep, GaitParameters, corners, fastest
+from lumen.interpreters.gait.poses import wrap
 from lumen.language.commands import Move, Posture, Stop, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
@@ -57,6 +58,48 @@ def test_it_is_steered_to_and_fro_without_a_stop(body: Body) -> None:
     steered(robot, [ahead, back, left, around, Move(9.0, -9.0, 9.0)], 2.0)
     assert robot.greatest_tilt < 10
     assert np.abs(robot.world.speeds).max() < 0.05
+
+
+def full_speed(body: Body, seed: int, command: Move, seconds: float) -> tuple[bool, float, float, float]:
+    """Whether it stayed up, and how fast it went ahead and aside [m/s] and turned [rad/s], asked for more."""
+    robot = any_robot(body, seed)
+    robot.start("m", command)
+    robot.advance(2.0)
+    begin, turned, heading = truth(robot), 0.0, truth(robot).theta
+    for _ in range(round(seconds / 0.1)):
+        robot.advance(0.1)
+        now = truth(robot).theta
+        turned, heading = turned + wrap(now - heading), now
+    way = truth(robot).seen_from(begin)
+    stayed = not robot.fallen and not robot._catcher.active
+    return stayed, way.x / seconds, way.y / seconds, turned / seconds
+
+
+BRISK = [(Move(1.0), 1, 0.2), (Move(0.0, 1.0), 2, 0.12), (Move(0.0, 0.0, 9.0), 3, 0.85)]
+"""What is asked for, which of the speeds that is, and what is reached at least."""
+
+
+@pytest.mark.parametrize(("command", "speed", "least"), BRISK)
+def test_it_goes_briskly_where_speed_is_asked_for(body: Body, command: Move, speed: int, least: float) -> None:
+    reached = full_speed(body, 1, command, 3.0)
+    assert reached[0]
+    assert reached[speed] > least
+
+
+def test_it_changes_from_one_pace_to_the_other_under_way(body: Body) -> None:
+    robot = any_robot(body, seed=4)
+    steered(robot, [Move(0.1), Move(1.0), Move(0.05), Move(0.0, 0.0, 9.0)], 1.5)
+    assert not robot.fallen
+    assert robot.greatest_tilt < 15
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(("command", "speed", "least"), BRISK)
+def test_twenty_robots_go_briskly(body: Body, command: Move, speed: int, least: float) -> None:
+    reached = [full_speed(body, seed, command, 8.0) for seed in range(20)]
+    print(f"\n{command}: {sum(r[0] for r in reached)} of 20 upright, {np.mean([r[speed] for r in reached]):.3f}")  # noqa: T201
+    assert sum(r[0] for r in reached) == 20
+    assert min(r[speed] for r in reached) > least
 
 
 @pytest.mark.soak

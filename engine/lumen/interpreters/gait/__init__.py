@@ -6,11 +6,12 @@ Nothing here touches a robot: feet and a goal go in, joint angles come out, tick
 from lumen.interpreters.gait.footsteps import Feet, Footstep, corners, middle
 from lumen.interpreters.gait.gait import CentreOfMass, Gait, GaitTick
 from lumen.interpreters.gait.legs import JOINTS, SIDES, Side, foot_from
-from lumen.interpreters.gait.parameters import GENTLE_GAIT, GaitParameters
+from lumen.interpreters.gait.parameters import BRISK_GAIT, GENTLE_GAIT, GaitParameters
 from lumen.interpreters.gait.poses import Pose
 from lumen.interpreters.gait.velocity import Velocity, fastest
 
 __all__ = [
+    "BRISK_GAIT",
     "GENTLE_GAIT",
     "JOINTS",
     "SIDES",

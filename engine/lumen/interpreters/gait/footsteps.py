@@ -11,8 +11,8 @@ from lumen.interpreters.gait.poses import Pose
 Feet = Mapping[Side, Pose]
 """Both soles, below the ankles."""
 
-NARROWEST, WIDEST = 0.085, 0.16
-"""How far apart two feet may stand, across the one that bears [m]: nearer the soles touch."""
+NARROWEST = 0.085
+"""How far apart two feet have to stand, across the one that bears [m]: nearer the soles touch."""
 
 TOE, HEEL, OUTER, INNER = 0.095, 0.045, 0.046, 0.028
 """How far the sole reaches from the point below the ankle [m]."""
@@ -48,17 +48,17 @@ def footsteps(feet: Feet, goal: Pose, first: Side, pace: GaitParameters) -> list
     while there < 2 and len(steps) < 2 * count + 4:
         part = min(1.0, (len(steps) + 1) / count)
         wanted = beside(here.then(Pose(way.x * part, way.y * part, way.theta * part)), side, pace)
-        step = Footstep(side, clear(wanted, side, bearing))
+        step = Footstep(side, clear(wanted, side, bearing, pace.widest))
         there = there + 1 if part == 1.0 and abs(step.pose.place - wanted.place) < 1e-6 else 0
         steps.append(step)
         side, bearing = other(side), step.pose
     return steps
 
 
-def clear(foot: Pose, side: Side, bearing: Pose) -> Pose:
+def clear(foot: Pose, side: Side, bearing: Pose, widest: float) -> Pose:
     """That place for a foot, or the nearest that neither touches the bearing foot nor strains the hips."""
     seen = foot.seen_from(bearing)
-    out = sign(side) * min(max(sign(side) * seen.y, NARROWEST), WIDEST)
+    out = sign(side) * min(max(sign(side) * seen.y, NARROWEST), widest)
     return bearing.then(Pose(seen.x, out, seen.theta))
 
 

@@ -53,7 +53,7 @@ class Gait:
     ) -> None:
         self.goal: Pose | Velocity = goal
         self.feet, self.pace, self.steps = feet, pace or GaitParameters(), 0
-        self._com = com
+        self._com, self._dt = com, dt
         self._side = first_side(goal.seen_from(middle(feet)) if isinstance(goal, Pose) else Pose(*goal))
         self._most = 2 * len(self.coming) + _MORE if isinstance(goal, Pose) else inf
         self._stopping = False
@@ -66,6 +66,10 @@ class Gait:
         self._pendulum = Pendulum(self.pace.torso + float(self._offset[2]), dt)
         self._planner = StepPlanner(self.pace, self._pendulum, dt)
         self._phase = self._rest() if self._arrived(feet) else self._step(standing=True)
+
+    def hasten(self, pace: GaitParameters) -> None:
+        """Walk at that pace from the next step on: one that carries the torso as this one does."""
+        self.pace, self._planner = pace, StepPlanner(pace, self._pendulum, self._dt)
 
     @property
     def left(self) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from math import hypot
 from typing import NamedTuple
 
-from lumen.interpreters.gait.footsteps import WIDEST, Feet, Footstep, beside, clear
+from lumen.interpreters.gait.footsteps import Feet, Footstep, beside, clear
 from lumen.interpreters.gait.legs import Side, other, sign
 from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.poses import Pose
@@ -26,7 +26,7 @@ class Velocity(NamedTuple):
 def fastest(pace: GaitParameters) -> Velocity:
     """How fast a robot goes straight ahead, aside or around at that pace, one of them at a time."""
     step = pace.double + pace.single
-    aside = min(pace.sideways, (WIDEST - pace.apart) / 2)
+    aside = min(pace.sideways, (pace.widest - pace.apart) / 2)
     return Velocity(pace.forward / step, aside / step, pace.turn / step)
 
 
@@ -43,7 +43,7 @@ def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, c
         aside = 2 * speed.y * time if sign(side) * speed.y > 0 else 0.0
         here = bearing.then(Pose(0.0, sign(side) * pace.apart / 2))
         there = here.then(Pose(speed.x * time, aside, speed.theta * time))
-        step = Footstep(side, clear(beside(there, side, pace), side, bearing))
+        step = Footstep(side, clear(beside(there, side, pace), side, bearing, pace.widest))
         steps.append(step)
         side, bearing = other(side), step.pose
     return steps

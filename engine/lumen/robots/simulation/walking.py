@@ -7,7 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
-from lumen.interpreters.gait import GENTLE_GAIT, JOINTS, SIDES, Gait, Pose, Velocity, middle
+from lumen.interpreters.gait import (
+    BRISK_GAIT,
+    GENTLE_GAIT,
+    JOINTS,
+    SIDES,
+    Gait,
+    GaitParameters,
+    Pose,
+    Velocity,
+    middle,
+)
 from lumen.language.commands import Move, Walk
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.hazards import Hazards
@@ -87,10 +97,17 @@ class WalkController:
             raise RobotRefusedError(f"{reason}: the robot did not set out")
         feet = self.odometry.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
-        gait = Gait(feet, goal, self.centre_of_mass, GENTLE_GAIT if self._hot() else None)
+        gait = Gait(feet, goal, self.centre_of_mass, self.pace(way))
         self.odometry.check(gait.coming)
         self._walking = WalkActivity(self, gait, now)
         return self._walking
+
+    def pace(self, way: Pose | Velocity) -> GaitParameters:
+        """Gently with hot motors; briskly only where a speed is asked for that takes it: a place asks for truth."""
+        usual = GaitParameters()
+        if self._hot():
+            return GENTLE_GAIT
+        return BRISK_GAIT if isinstance(way, Velocity) and way.within(usual) != way else usual
 
     def measured(self) -> dict[str, float]:
         """Where the encoders say the legs' joints are [rad]."""
@@ -130,6 +147,7 @@ class WalkActivity:
         goes_on = alive and isinstance(self._gait.goal, Velocity)
         if goes_on:
             self._gait.goal = velocity
+            self._gait.hasten(self._walker.pace(velocity))
         return goes_on
 
     def advance(self, now: float) -> bool:
