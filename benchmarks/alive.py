@@ -91,6 +91,29 @@ class Motions(Observer):
         self.playing.discard(event.name.partition(".command.")[2])
 
 
+def measured(project: Project, name: str) -> tuple[Movement, Movement, Movement, Sequence[Say]]:
+    """How the robot of a story moves in simulation, and what it says.
+
+    First all joints, then arms and legs, then the head, these two while no motion plays.
+    """
+    parts, bus, motions = project.body.parts, MemoryBus(), Motions()
+    whole, trunk, head = Movement(), Movement([*parts["arms"], *parts["legs"]]), Movement(parts["head"])
+
+    def see(message: Message) -> None:
+        awake = max(message.body["stiffness"]) > 0.5
+        whole.see(message.body, awake)
+        for part in (trunk, head):
+            part.see(message.body, awake and not motions.playing)
+
+    robot = SimulatedRobot(project.body, *model_files(project), stage=project.stage, imperfections=PERFECT)
+    bus.subscribe(project.routes["joint"].key_for(project.robot), see)
+    with Exhibition(project, set_up_with(robot), bus, project.stories[name]) as exhibition:
+        exhibition.node.loop.observers.append(motions)
+        while not exhibition.node.player.finished:
+            exhibition.tick()
+    return whole, trunk, head, motions.texts
+
+
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("story", nargs="?", default="visitor")
@@ -99,33 +122,15 @@ def main() -> None:
     project = lumen.load(ROOT)
     if given.without:
         project = replace(project, life={}, gestures={})
-    head, parts = project.body.parts["head"], project.body.parts
-    trunk = [joint for part in ("arms", "legs") for joint in parts[part]]
-    whole, free_head, free_body = Movement(), Movement(head), Movement(trunk)
-    bus, motions = MemoryBus(), Motions()
-
-    def see(message: Message) -> None:
-        awake = max(message.body["stiffness"]) > 0.5
-        whole.see(message.body, awake)
-        for part in (free_head, free_body):
-            part.see(message.body, awake and not motions.playing)
-
-    story = project.stories[given.story]
-    robot = SimulatedRobot(project.body, *model_files(project), stage=project.stage, imperfections=PERFECT)
-    setup = set_up_with(robot)
-    bus.subscribe(project.routes["joint"].key_for(project.robot), see)
     begin = process_time()
-    with Exhibition(project, setup, bus, story) as exhibition:
-        exhibition.node.loop.observers.append(motions)
-        while not exhibition.node.player.finished:
-            exhibition.tick()
+    whole, trunk, head, texts = measured(project, given.story)
     how = "without life" if given.without else "alive"
     print(f"{given.story}, simulated, {how}; {platform.machine()}, Python {platform.python_version()}")
     print(f"all joints               {whole}")
-    print(f"arms and legs, no motion {free_body}")
-    print(f"head, no motion          {free_head}")
+    print(f"arms and legs, no motion {trunk}")
+    print(f"head, no motion          {head}")
     print(f"CPU of the whole         {process_time() - begin:.1f} s")
-    _gestures(project, motions.texts)
+    _gestures(project, texts)
     _cost(project)
 
 
