@@ -7,7 +7,7 @@ import pytest
 
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot, catching
+from lumen.robots.simulation import SimulatedRobot, catching, skills
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.pushes import PushTrial, standing, upright
 from tests.simulation.walks import Push, any_robot, truth
@@ -73,3 +73,29 @@ def test_twenty_robots_catch_themselves(body: Body) -> None:
         print(f"\n3 N s standing, towards {to:.2f} rad: {stood} of 20 upright")  # noqa: T201
         whole += stood
     assert whole >= 93
+
+
+def head_meets_the_floor(body: Body, seed: int, to: float) -> float:
+    """How fast the head is when it does [m/s], of a robot that is pushed over."""
+    robot = any_robot(body, seed)
+    robot.advance(0.5)
+    model, data, push, begin = robot.world.model, robot.world.data, Push(60.0, 0.0, to), robot.time
+    head, fastest = model.body("nao/HeadPitch").id, 0.0
+    while robot.time < begin + 2.0:
+        push.act(robot, robot.time - begin)
+        before = float(np.linalg.norm(data.cvel[head][3:]))
+        robot.advance(0.01)
+        for contact in data.contact:
+            touched = [int(model.geom_bodyid[g]) for g in (contact.geom1, contact.geom2)]
+            if head in touched and any(not model.body(b).name.startswith("nao/") for b in touched):
+                fastest = max(fastest, before)
+    assert robot.fallen
+    assert robot.motors.stiffness.max() <= 0.1
+    return fastest
+
+
+@pytest.mark.parametrize("to", [0.0, pi / 4, pi / 2])
+def test_arms_and_head_are_held_up_against_a_fall(body: Body, to: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    held = head_meets_the_floor(body, 1, to)
+    monkeypatch.setattr(skills, "BACKWARDS", -inf)
+    assert held < 0.85 * head_meets_the_floor(body, 1, to)

@@ -1,7 +1,7 @@
 """The only way to a joint."""
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from math import isfinite
 
 import numpy as np
@@ -83,13 +83,17 @@ class Motors:
         """Send these joints there [rad] in the next period, and in that alone, instead of to their goals."""
         self._held = {self.index[name]: angle for name, angle in angles.items()}
 
-    def stiffen(self, stiffness: float) -> None:
-        """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""
-        if self.stiffness.max() < LIMP_STIFFNESS:
-            self.goal = np.clip(self._world.angles, self.envelope.low, self.envelope.high)
-            self.command = self._world.angles.copy()
+    def stiffen(self, stiffness: float, names: Collection[str] | None = None) -> None:
+        """Let these motors (or all) give at most that part (0..1) of their torque; what was limp starts where it is."""
+        chosen = [self.index[name] for name in names] if names is not None else list(self.index.values())
+        limp = [i for i in chosen if self.stiffness[i] < LIMP_STIFFNESS]
+        if limp:
+            angles = self._world.angles
+            self.goal[limp] = np.clip(angles, self.envelope.low, self.envelope.high)[limp]
+            self.command = self.command.copy()
+            self.command[limp] = angles[limp]
             self._sent.clear()
-        self.stiffness[:] = stiffness
+        self.stiffness[chosen] = stiffness
         self._limits_of_torque()
 
     def drive(self, trim: JointVector, dt: float) -> None:

@@ -291,9 +291,10 @@ class SimulatedRobot:
             self._odometry.keep(self._sensors.heading)
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN_TILT and upright and not self.fallen:
-            self._skills.fall()
+            self._skills.fall(now)
             self._executor.fail("the robot fell")
             self._events.append(Event("fallen", {}, now))
+        self._skills.lie(now)
         if self._ticks % _CONDITION_EVERY == 0:
             world = self.world
             world.check()

@@ -1,7 +1,7 @@
 """What the simulated NAO can do: each command's parts of the body, and how it begins."""
 
 from collections.abc import Callable
-from math import pi
+from math import inf, pi
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
@@ -26,6 +26,15 @@ from lumen.robots.simulation.world import World
 
 FALLEN_STIFFNESS = 0.1
 """Stiffness of a robot that has fallen."""
+
+PROTECTING_STIFFNESS, PROTECTING_TIME = 0.6, 0.7
+"""Stiffness of head and arms while the robot falls, and for how long [s]."""
+
+BREAKS_A_FALL = {"HeadPitch": -0.6, "LShoulderPitch": 0.2, "RShoulderPitch": 0.2, "LElbowRoll": -0.9, "RElbowRoll": 0.9}
+"""Head and arms of a robot that falls on its belly or aside [rad]. On the back nothing that was tried was better."""
+
+BACKWARDS = 0.3
+"""A torso in whose frame up is farther ahead than this falls on its back."""
 
 FULL_VOLUME = 1.0
 """How loud a robot speaks that nobody has told."""
@@ -59,6 +68,7 @@ class SimulatedSkills:
         self._way: PosturePlanner | None = None
         self.playing: MotionPlayback | None = None
         self.awake, self.fallen = True, False
+        self._down_at = inf
         self.voice: SpeechPlayback = SilentPlayback()
         self.sounds: SoundPlayback = SilentSounds()
         self.volume = FULL_VOLUME
@@ -119,11 +129,23 @@ class SimulatedSkills:
             case _:
                 assert_never(command)
 
-    def fall(self) -> None:
-        """Give way: the fall is over sooner than a motor could help."""
-        self.fallen, self._way = True, None
+    def fall(self, now: float) -> None:
+        """Give way, the head held up and arms where they take the blow; `lie` ends that.
+
+        The fall is over sooner than legs could help.
+        """
+        self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)
+        if self._sensors.up[0] < BACKWARDS:
+            self._motors.stiffen(PROTECTING_STIFFNESS, BREAKS_A_FALL)
+            self._motors.aim(BREAKS_A_FALL)
         self._lights.reset()
+
+    def lie(self, now: float) -> None:
+        """Let go of head and arms, too, once a fall is over."""
+        if self.fallen and now >= self._down_at:
+            self._motors.stiffen(FALLEN_STIFFNESS)
+            self._down_at = inf
 
     def _ready(self) -> None:
         if self.fallen:
