@@ -82,7 +82,7 @@ def no_such_service(project: Project) -> None:
 
 def no_sonars(project: Project) -> None:
     with session(project) as (_, one):
-        NaoqiSensors(one, project.body, time.monotonic, lambda _: Whereabouts()).sonar()
+        NaoqiSensors(one, project.body, time.monotonic, lambda _: Whereabouts(), dict).sonar()
 
 
 def begin(project: Project, command: RobotCommand, *, empty: bool = False, hall: str = "hall.xml") -> None:
