@@ -15,6 +15,7 @@ from lumen.cli.main import main
 from lumen.language.projects import Project
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ
+from tests.waiting import until
 
 ROOT = Path(__file__).parents[2]
 SONAR = "avatar.NAO.data.sonar"
@@ -105,9 +106,13 @@ def test_list_hz_and_bw_measure(run: Run) -> None:
     assert listed["lumen.note"]["route"] == ""
     assert listed["lumen.visual.face.detection"]["alias"]
     assert not listed["lumen.NAO.visual.face.detection"]["alias"]
-    (sonar,) = _topics(run, "hz", "sonar")
-    assert 5 < sonar["hz"] < 60
-    assert sonar["longest_gap"] > 0.0
+
+    def measured() -> bool:
+        """One that a crowded machine let through."""
+        (sonar,) = _topics(run, "hz", "sonar")
+        return sonar["hz"] is not None and 5 < sonar["hz"] < 60 and sonar["longest_gap"] > 0.0
+
+    until(measured)
     (sonar,) = _topics(run, "bw", "sonar")
     assert sonar["mean_bytes"] == len('{"rightSensor":0.5,"leftSensor":2.55}')
     assert "nothing came on `lumen.silence`" in run("topic", "hz", "lumen.silence", "--for", "50ms")[1]

@@ -102,7 +102,7 @@ def sign_in(viewer: Viewer, address: str, role: Role, **kept: str) -> None:
 
 
 def enter(viewer: Viewer, pin: str) -> None:
-    until(lambda: viewer.all("#pin input"), WAIT)
+    until(lambda: viewer.run("return Boolean(document.activeElement?.closest('#pin'))"), WAIT)
     viewer.type(pin, "\t", "Aisyah", "\n")
 
 
