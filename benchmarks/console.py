@@ -22,7 +22,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -169,9 +169,10 @@ class Told:
 
     def _read(self) -> None:
         assert self._process.stdout
-        for line in self._process.stdout:
-            page, watcher = json.loads(line)
-            self.bytes = page, watcher
+        with suppress(ValueError):  # closed while it reads: the block is over
+            for line in self._process.stdout:
+                page, watcher = json.loads(line)
+                self.bytes = page, watcher
 
 
 def cpu_of(process: Guarded[str] | None) -> float:
