@@ -13,7 +13,7 @@ import tempfile
 import time
 import urllib.request
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -51,9 +51,13 @@ def hear(words: str) -> None:
 
 def until(state: str) -> None:
     """Wait until that state is active."""
+    wait(lambda: state in robot().get("configuration", ()), state)
+
+
+def wait(come: Callable[[], bool], what: str) -> None:
     deadline = time.monotonic() + WAIT
-    while state not in robot().get("configuration", ()):
-        assert time.monotonic() < deadline, f"never in {state}: {robot().get('configuration')}"
+    while not come():
+        assert time.monotonic() < deadline, f"never {what}: {robot().get('configuration')}"
         time.sleep(0.2)
 
 
@@ -159,7 +163,7 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     camera.take("why")
     tour = folder / "behaviors/tour.yaml"
     tour.write_text(tour.read_text("utf-8").replace("onDone: any_question", "onDone: any_qestion"), "utf-8")
-    time.sleep(8)
+    wait(lambda: (robot().get("files", {}).get("last") or {}).get("verdict") == "refused", "files that are refused")
     camera.look("robot/NAO/files")
     camera.take("files")
     camera.look("robot/NAO/day", (1400, 1250), dark=True)

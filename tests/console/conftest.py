@@ -15,6 +15,7 @@ from lumen.app.setup import set_up
 from tests.console.chromium import Chromium
 from tests.console.house import House
 from tests.console.pages import Browser, Served
+from tests.console.viewer import Viewer
 from tests.rabbitmq import RabbitMQ
 from tests.tour.conftest import copied, copy, project
 from tests.waiting import until
@@ -123,6 +124,14 @@ def hosted(shared: Shared) -> Hosted:
 @pytest.fixture
 def served(shared: Shared, hosted: Hosted) -> Served:
     return shared.served()
+
+
+@pytest.fixture(scope="module")
+def viewer() -> Iterator[Viewer]:
+    """A browser of one file of tests."""
+    one = Viewer()
+    yield one
+    one.close()
 
 
 @pytest.fixture

@@ -59,13 +59,6 @@ states:
 
 
 @pytest.fixture(scope="module")
-def viewer() -> Iterator[Viewer]:
-    one = Viewer()
-    yield one
-    one.close()
-
-
-@pytest.fixture(scope="module")
 def mine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Hosted]:
     root = tmp_path_factory.mktemp("mine")
     (root / "behaviors").mkdir()

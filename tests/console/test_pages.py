@@ -31,13 +31,6 @@ TOUCH = 44
 
 
 @pytest.fixture(scope="module")
-def viewer() -> Iterator[Viewer]:
-    one = Viewer()
-    yield one
-    one.close()
-
-
-@pytest.fixture(scope="module")
 def overhearing() -> Iterator[Viewer]:
     one = Viewer(overhearing=True)
     yield one

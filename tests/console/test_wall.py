@@ -19,13 +19,6 @@ SETTINGS = "name: Mine\nbehavior: mine\nlanguages: [en]\nrobot: {{name: {}, mode
 MINE = "states:\n  hall: {do: {say: Good morning}, on: {stop: rests}}\n  rests: {on: {resume: hall}}\n"
 
 
-@pytest.fixture(scope="module")
-def viewer() -> Iterator[Viewer]:
-    one = Viewer()
-    yield one
-    one.close()
-
-
 @pytest.fixture
 def robots(tmp_path: Path, broker: RabbitMQ | GivenBroker) -> Iterator[dict[str, Hosted]]:
     with ExitStack() as stack:

@@ -8,14 +8,13 @@ from lumen.language.commands import Say
 from lumen.language.gestures import NO_GESTURES, GestureLibrary, WordTime
 from lumen.language.robots import Body
 from lumen.robots.body_parts import part_of
+from lumen.robots.joint_offsets import approach
 
 TEXTS_APART = 2
 """So many texts have to lie between two with the same gesture."""
 
 SETTLING = 0.06
 """How long joints take to a gesture that begins or ends at once [s]: the time constant of their way."""
-
-_REACHED = 1e-4
 
 
 class GesturePlayer:
@@ -70,12 +69,5 @@ class GesturePlayer:
     def advance(self, now: float, dt: float, free: Collection[str]) -> dict[str, float]:
         """The offsets at `now` [s], `dt` [s] after the last ones."""
         goals = self.wanted(now, free) if self._plan else {}
-        for joint in (*self._offsets, *(goals.keys() - self._offsets.keys())):
-            offset, goal = self._offsets.get(joint, 0.0), goals.get(joint, 0.0)
-            most = self._speeds[joint] * dt
-            offset += max(-most, min(most, (goal - offset) * min(1.0, dt / SETTLING)))
-            if goal == 0.0 and abs(offset) < _REACHED:
-                self._offsets.pop(joint, None)
-            else:
-                self._offsets[joint] = offset
+        approach(self._offsets, goals, self._speeds, dt, SETTLING)
         return self._offsets

@@ -27,6 +27,7 @@ from lumen.language.robots import Body
 from lumen.ports import Live
 from lumen.robots.body_parts import ARMS, HEAD, LEGS, part_of
 from lumen.robots.gesture_player import GesturePlayer
+from lumen.robots.joint_offsets import approach
 
 LIFE_PERIOD = 0.04
 """How often it is computed where each joint is wanted [s]; in between joints go on evenly."""
@@ -42,8 +43,6 @@ ANSWER_PAUSE = 1.0
 
 HEARD_TURN, HEARD_NOD = 1.0, 0.3
 """How far it turns and nods at most to look where a sound came from [rad]."""
-
-_REACHED = 1e-4
 
 
 class LifeLayer:
@@ -121,14 +120,7 @@ class LifeLayer:
         computed, found = self._computed
         if now >= computed + LIFE_PERIOD or found != (free, self.style):
             self._wanted, self._computed = self.wanted(now, free, vigour), (now, (free, self.style))
-        for joint in (*self._offsets, *(self._wanted.keys() - self._offsets.keys())):
-            offset, goal = self._offsets.get(joint, 0.0), self._wanted.get(joint, 0.0)
-            most = self._speeds[joint] * dt
-            offset += max(-most, min(most, (goal - offset) * min(1.0, dt / SETTLING)))
-            if goal == 0.0 and abs(offset) < _REACHED:
-                self._offsets.pop(joint, None)
-            else:
-                self._offsets[joint] = offset
+        approach(self._offsets, self._wanted, self._speeds, dt, SETTLING)
         free = {HEAD, ARMS} & set(free) if LEGS in free else set()
         gestures = self.speech.advance(now, dt, free)
         whole = self._offsets.keys() | gestures.keys()
