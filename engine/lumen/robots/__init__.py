@@ -14,6 +14,7 @@ How a command is performed:
     person_hold.py        a robot that a person stopped moves for nobody, until a person lets it
     cues.py               the words and sounds of a motion, as their times come
     gesture_player.py     the gestures that accompany what it says
+    joint_offsets.py      how joints go to where life and gestures want them
     life_layer.py         what the robot does of its own accord, beneath all commands
     silent_recording.py   a recording where nobody makes a sound
 
