@@ -12,7 +12,9 @@ from jsonschema import Draft202012Validator
 from lumen.bus import BusError, connect
 from lumen.buses.checking import SchemaCheck
 from lumen.interpreters.json_schema import JsonSchema
+from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Direction, Route
+from lumen.ports import Message
 from tests.exhibits import messages, project
 from tests.waiting import Collector
 
@@ -96,6 +98,46 @@ def test_another_bundle_brings_its_own_schemas() -> None:
     bus.use(after)  # type: ignore[attr-defined]
     bus.publish(FACE, "in the middle")
     assert seen.bodies == ["in the middle"]
+
+
+def test_what_is_on_its_way_as_another_bundle_comes_has_to_fit_that() -> None:
+    before = project()
+    after = replace(before, messages={**before.messages, "face.detection": {"type": "string"}})
+    refused: list[str] = []
+    bus, first, second = connect("memory://", before, on_refused=lambda _, why: refused.append(why)), [], Collector()
+
+    def take(message: Message) -> None:
+        first.append(message.body)
+        bus.use(after)  # type: ignore[attr-defined]
+
+    bus.subscribe(FACE, take)
+    bus.subscribe(FACE, second)
+    bus.publish(FACE, {"x": 1, "y": 2})
+    assert (first, second.bodies) == ([{"x": 1, "y": 2}], [])
+    assert refused == ["{'x': 1, 'y': 2} is not of type 'string'"]
+
+
+def test_a_message_of_ours_is_checked_once_and_one_of_somebody_else_by_each_subscriber(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    checked, check = [], SchemaCheck.__call__
+    monkeypatch.setattr(SchemaCheck, "__call__", lambda self, body: checked.append(body["x"]) or check(self, body))
+    bus, stranger, seen = connect("memory://hall", project()), connect("memory://hall"), Collector()
+
+    def answer(message: Message) -> None:
+        seen(message)
+        if message.body["x"] == 1:
+            bus.publish(FACE, {"x": 2, "y": 2})
+
+    bus.subscribe(FACE, answer)
+    bus.subscribe(FACE, seen)
+    bus.publish(FACE, {"x": 3, "y": 2})
+    assert checked == [3]
+    stranger.publish(FACE, {"x": 4, "y": 2}, origin=MessageOrigin(id=seen.messages[-1].id[:-1] + "0"))
+    assert checked == [3, 4, 4]
+    bus.publish(FACE, {"x": 1, "y": 2})  # whose first subscriber says something else before the second one has it
+    assert [body["x"] for body in seen.bodies] == [3, 3, 4, 4, 1, 1, 2, 2]
+    assert set(checked[3:]) == {1, 2}
 
 
 def test_a_reply_needs_no_key_of_ours() -> None:

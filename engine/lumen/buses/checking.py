@@ -33,9 +33,10 @@ class SchemaCheck:
 
     def __init__(self, schema: Mapping[str, object]) -> None:
         self._schema = JsonSchema(schema)
+        self._fits = self._schema.fits
 
     def __call__(self, body: Any) -> str:
-        if self._schema.fits(body):
+        if self._fits(body):
             return ""
         try:
             error = next(self._schema.errors(body), None)

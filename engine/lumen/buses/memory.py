@@ -17,7 +17,7 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 from lumen.buses.bodies import check_key, check_subscription, copied
-from lumen.buses.identities import NUMBERS, PREFIX, filled, new_id
+from lumen.buses.identities import NUMBERS, PREFIX, new_id
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
@@ -193,11 +193,10 @@ class MemoryBus:
         if listeners is None:
             listeners = hub.find(key)
         if listeners:
-            if origin is UNKNOWN_ORIGIN:  # nearly every message: nothing is made that it does not need
-                id = f"{PREFIX}-{next(NUMBERS)}"
-                message = _new(Message, (key, own, reply_to, correlation_id, id, self.sender, time(), ""))
-            else:
-                message = Message(key, own, reply_to, correlation_id, *filled(origin, self.sender))
+            id, sender, when, cause = origin  # as `filled` fills it in, without making another
+            id = id or f"{PREFIX}-{next(NUMBERS)}"
+            filled = (id, sender or self.sender, when or time(), cause)
+            message = _new(Message, (key, own, reply_to, correlation_id, *filled))
             hub.queue.append((listeners, message))
             if len(hub.queue) > MAX_QUEUED_MESSAGES:
                 hub.shed()

@@ -8,7 +8,7 @@ from typing import Any
 from lumen.buses.aliases import COPY, Aliases
 from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import BodyCheck, body_checks
-from lumen.buses.identities import filled
+from lumen.buses.identities import NUMBERS, PREFIX
 from lumen.errors import BadMessageError, Refused
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
@@ -20,6 +20,8 @@ from lumen.upkeep.drops import ReasonLog
 OnRefused = Callable[[str, str], object]
 """Called for a message that was not handed on, with its key and the reason."""
 
+_new = tuple.__new__
+
 _log = logging.getLogger(__name__)
 
 
@@ -30,6 +32,9 @@ class ValidatedBus:
     subscriber: `on_refused` is called, the bus puts it aside and answers the sender. Keys without a route pass
     unchecked where they begin with `avatar` or `lumen`, else they don't pass. What has an alias is sent and heard under
     that, too. `use` takes another bundle of the project while messages flow.
+
+    On a bus in this process a message of ours comes back as it went, with its id the very same object, which nobody
+    else can make: that one is not checked again for each subscriber.
     """
 
     def __init__(self, bus: Bus, project: Project, on_refused: OnRefused | None = None) -> None:
@@ -37,6 +42,7 @@ class ValidatedBus:
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
         self._checks: dict[str, BodyCheck] = {}
         self._routed: frozenset[str] = frozenset()
+        self._passed: str | None = None
         self._aliases, self._listening = Aliases(), list[_Listening]()
         self.use(project)
 
@@ -74,7 +80,7 @@ class ValidatedBus:
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
         routes = by_key(project)
-        self._checks, self._routed = body_checks(project), frozenset(routes)
+        self._checks, self._routed, self._passed = body_checks(project), frozenset(routes), None
         self._bus.carry(routes)
         if not isinstance(self._bus, ValidatedBus):  # whose aliases are sent and heard already
             self._aliases.use(project, self._bus)
@@ -91,7 +97,7 @@ class ValidatedBus:
         check_subscription(pattern, handler)
 
         def checked(message: Message) -> None:
-            if reason := self._wrong(message.key, message.body):
+            if message.id is not self._passed and (reason := self._wrong(message.key, message.body)):
                 self._on_refused(message.key, reason)
                 raise Refused(reason)
             handler(message)
@@ -118,14 +124,14 @@ class ValidatedBus:
         ttl: float | None = None,
         origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
-        if reason := self._wrong(key, body):
+        check = self._checks.get(key)
+        if reason := self._wrong(key, body) if check is None else check(body):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
-        alias = self._aliases.names.get(key)
-        if alias is None or not self._aliases.used:
-            self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
-        else:
-            origin = filled(origin, self.sender)
-            self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
+        if origin is UNKNOWN_ORIGIN:
+            self._passed = id = f"{PREFIX}-{next(NUMBERS)}"
+            origin = _new(MessageOrigin, (id, "", 0.0, ""))
+        self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
+        if (alias := self._aliases.names.get(key)) and self._aliases.used:
             copy = origin._replace(id=f"{origin.id}{COPY}")
             self._bus.publish(alias, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=copy)
 

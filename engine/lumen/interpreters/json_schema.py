@@ -5,7 +5,7 @@ jsonschema-rs sees that a hundred times as fast (docs/decisions/022). Where it s
 pattern is one of Lumen's: its letters are those of every script, and none tries one alternative after another.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
@@ -46,10 +46,11 @@ class JsonSchema:
 
     def fits(self, data: Any) -> bool:
         """Whether the data certainly fits. A no without an error is a yes: nobody else knew what the data is."""
-        if deeper_than(MAX_DATA_DEPTH, data):
+        flat = type(data) is dict and _FLAT.issuperset(map(type, data.values()))  # nearly every message
+        if not flat and deeper_than(MAX_DATA_DEPTH, data):
             return False
         try:
-            return self._quick is not None and self._quick.is_valid(data)
+            return self._is_valid(data)
         except ValueError:  # half a surrogate pair, a key that is no text
             return False
 
@@ -72,6 +73,10 @@ class JsonSchema:
             return Draft202012Validator(_prepared(self.schema), pattern_options=RegexOptions(), offline=True)
         except ValueError:
             return None
+
+    @cached_property
+    def _is_valid(self) -> Callable[[Any], bool]:
+        return self._quick.is_valid if self._quick else lambda _: False
 
     @cached_property
     def _explaining(self) -> Any:
