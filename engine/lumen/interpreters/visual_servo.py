@@ -86,9 +86,9 @@ class VisualServo:
         """The inputs as the camera would have them after the turn; None where that can't be computed."""
         if not (self._across and self._down and _YAW in pose and _PITCH in pose):
             return None
-        before = (pose[_YAW], pose[_PITCH])
+        camera, before = self._body.camera, (pose[_YAW], pose[_PITCH])
         after = (pose[_YAW] + turned[_YAW], pose[_PITCH] + turned[_PITCH])
-        pixel = after_turning((inputs[self._across], inputs[self._down]), self._body.camera, before, after)
+        pixel = after_turning((inputs[self._across], inputs[self._down]), camera, before, after) if camera else None
         return {**inputs, self._across: pixel[0], self._down: pixel[1]} if pixel else None
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import inf
 
 from lumen.language.motions import MotionDefinition
+from lumen.language.roles import Roles
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,8 @@ class Body:
     `joints` keeps the robot's own order of names. `parts` maps head, arms, legs to joint names. `postures` maps a
     posture to angles [rad] of every joint. `shared` maps a joint to the one whose motor moves it too; `hands` are the
     joints that open (0..1) rather than turn. `passages` are the motions from one posture (`start`) to another (`end`)
-    where a straight way would fall. `links` are those that differ from the MJCF.
+    where a straight way would fall. `links` are those that differ from the MJCF. `roles` say what its parts are; one
+    whose eyes have a camera has a `camera`.
     """
 
     name: str
@@ -73,10 +75,11 @@ class Body:
     parts: Mapping[str, tuple[str, ...]]
     postures: Mapping[str, Mapping[str, float]]
     coupled: tuple[CoupledLimit, ...]
-    camera: Camera
+    camera: Camera | None
     tactile: tuple[str, ...]
     shared: Mapping[str, str] = field(default_factory=dict)
     hands: tuple[str, ...] = ()
     sonar: Ultrasound | None = None
     passages: tuple[MotionDefinition, ...] = ()
     links: Mapping[str, LinkInertia] = field(default_factory=dict)
+    roles: Roles = field(default_factory=Roles)

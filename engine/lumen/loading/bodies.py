@@ -8,10 +8,12 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia, Ultrasound
+from lumen.language.roles import BaseKind, Roles
 from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import EMPTY_RANGE
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
+from lumen.loading.roles import RoleReader
 from lumen.loading.units import ANGLES, LENGTHS
 
 UNKNOWN_MODEL = Code("unknown-model", "references", ERROR, "a robot's body is named that is not in models/")
@@ -21,19 +23,25 @@ JOINT_WITHOUT_PART = Code("joint-without-part", "robot", ERROR, "a joint belongs
 UNSORTED_ROWS = Code("unsorted-rows", "robot", ERROR, "the rows of a table are not in rising order")
 
 
-COMMON_POSTURES = ("Stand", "Crouch")
-"""Those that every robot knows: where it begins, and where it may go limp."""
+COMMON_POSTURE = "Stand"
+"""The one that every robot knows: where it begins."""
+
+BIPED_POSTURE = "Crouch"
+"""Where a robot on two legs may go limp without a fall."""
+
+BODY_PARTS = ("head", "arms", "legs")
+"""Every body has these parts; one that it lacks has no joints."""
 
 POSTURE_TOLERANCE = 2e-3
 """How far a posture may lie outside a limit [rad]: published postures are rounded."""
 
 
 def build_body(data: Any, report: DocumentReport, *, name: str) -> Body | None:
-    """The body that the data of `models/NAME.yaml` describes, None where it has no joints or no camera.
+    """The body that the data of `models/NAME.yaml` describes, None where it has no joints.
 
     One that is like another waits for that: `build_likes`.
     """
-    if not isinstance(data, Mapping) or not data.get("joints") or "camera" not in data:
+    if not isinstance(data, Mapping) or not data.get("joints"):
         return None
     return _Builder(data, report).body(name)
 
@@ -69,20 +77,21 @@ class _Builder:
         self.hands = tuple(n for n in self.joints if data["joints"][n].get("opening"))
 
     def body(self, name: str) -> Body:
-        data = self.data
+        data, roles = self.data, self.roles()
         return Body(
             name=data.get("name", name),
             mjcf=data.get("mjcf", f"{name}.xml"),
             joints=self.joints,
             parts=self.parts(),
-            postures=self.postures(),
+            postures=self.postures(roles),
             coupled=tuple(c for i, row in enumerate(data.get("coupled") or ()) if (c := self.coupled(i, row))),
-            camera=self.camera(data["camera"]),
+            camera=self.camera(data["camera"]) if "camera" in data else None,
             tactile=tuple(data.get("tactile") or ()),
             shared=self.shared(),
             hands=self.hands,
             sonar=self.sonar(data.get("sonar")),
             links={n: self.link(spec) for n, spec in (data.get("links") or {}).items()},
+            roles=roles,
         )
 
     def like(self, other: Body, name: str) -> Body:
@@ -124,8 +133,14 @@ class _Builder:
             self.report(UNKNOWN_JOINT, path, f"`{name}` is not a joint of this robot", hint=hint, cause=f"joint {name}")
         return False
 
+    def roles(self) -> Roles:
+        given, hands = self.data.keys(), self.hands
+        reader = RoleReader(self.data.get("roles") or {}, self.report, self.known, given, hands)
+        return reader.read(self.length, self.angle)
+
     def parts(self) -> dict[str, tuple[str, ...]]:
-        parts, owner = {}, dict[str, str]()
+        parts: dict[str, tuple[str, ...]] = dict.fromkeys(BODY_PARTS, ())
+        owner: dict[str, str] = {}
         named = [name for names in (self.data.get("parts") or {}).values() for name in names]
         whole = "parts" in self.data and not self.report.broken(("parts",)) and set(named) <= self.data["joints"].keys()
         for part, names in (self.data.get("parts") or {}).items():
@@ -159,15 +174,14 @@ class _Builder:
         scaled = tuple((a * self.unit(on), b * self.unit(joint), c * self.unit(joint)) for a, b, c in rows)
         return CoupledLimit(joint, on, scaled)
 
-    def postures(self) -> dict[str, dict[str, float]]:
-        """The postures, those of `POSTURES` among them."""
+    def postures(self, roles: Roles) -> dict[str, dict[str, float]]:
+        """The postures, those among them that such a body has to know."""
         found = {name: self.posture(name, angles) for name, angles in (self.data.get("postures") or {}).items()}
-        for name in COMMON_POSTURES:
+        biped = roles.base.kind is BaseKind.BIPED
+        for name in (COMMON_POSTURE, BIPED_POSTURE) if biped else (COMMON_POSTURE,):
             if "postures" in self.data and name not in found and name not in self.report.lost:
-                message = f"the robot has no posture `{name}`"
-                hint = (
-                    f"every robot has {' and '.join(f'`{n}`' for n in COMMON_POSTURES)}: give the angle of each joint"
-                )
+                who = "every robot on two legs has" if name == BIPED_POSTURE else "every robot has"
+                message, hint = f"the robot has no posture `{name}`", f"{who} `{name}`: give the angle of each joint"
                 self.report(MISSING_KEY, ("postures",), message, hint=hint, key=True)
         return found
 

@@ -155,7 +155,7 @@ class RecordingRobot:
         self._visitor = visitor
 
     def face(self) -> tuple[float, float] | None:
-        if self._visitor is None:
+        if self._visitor is None or self.body.camera is None:
             return None
         offsets, place = self._offsets(), _face_of(self._visitor)
         yaw, pitch = (self._angles.get(joint, 0.0) + offsets.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch"))
@@ -171,7 +171,7 @@ class RecordingRobot:
             self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time, cause=by))
 
     def sound(self) -> None:
-        if self._visitor:
+        if self._visitor and self.body.camera:
             yaw, pitch = centring(_face_of(self._visitor), self.body.camera)
             head = [self._angles.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch")]
             self._life.heard(yaw - head[0], pitch - head[1], self.time)

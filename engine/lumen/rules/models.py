@@ -4,10 +4,13 @@ What MuJoCo thinks of it is told when it is simulated; it is not imported here.
 """
 
 import os
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
-from lumen.language.diagnostics import ERROR, Code, Place, nearest
+from lumen.language.diagnostics import ERROR, Code, NodePath, Place, nearest
+from lumen.language.robots import Body
+from lumen.language.roles import Roles
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import MAX_FILE_BYTES, Unreadable
 from lumen.loading.memoization import memoize
@@ -32,7 +35,7 @@ def check(draft: ProjectDraft) -> None:
         _ModelReader(draft).read(settings.hall)
     robot = _ModelReader(draft).read(draft.body.mjcf) if draft.body else []
     if len(robot) > 1 and draft.body:
-        _joints(draft, draft.body.mjcf, robot)
+        _elements(draft, draft.body, robot)
 
 
 @dataclass
@@ -111,20 +114,56 @@ class _ModelReader:
         return not hint
 
 
-def _joints(draft: ProjectDraft, name: str, elements: list[ModelElement]) -> None:
-    """Joints that the description of the body has, and its model has not."""
-    assert draft.body is not None
+def _elements(draft: ProjectDraft, body: Body, elements: list[ModelElement]) -> None:
+    """Joints, links, sites and others that the description of the body names, and its model has not."""
     assert draft.settings is not None
     if any(e.name in ("include", "attach", "replicate") for e in elements):
         return
-    joints = {e.attributes.get("name", "") for e in elements if e.name == "joint"}
-    report = draft.report("models", draft.settings.model)
-    for joint in draft.body.joints:
-        if joint not in joints:
-            near = nearest(joint, joints)
-            hint = f"did you mean `{near}`?" if near else f"give models/{name} a joint of that name"
-            message = f"models/{name} has no joint `{joint}`"
-            report(BROKEN_MODEL, ("joints", joint), message, hint=hint, key=True, cause=f"joints of {name}")
+    there: dict[str, set[str]] = {}
+    for element in elements:
+        there.setdefault(element.name, set()).add(element.attributes.get("name", ""))
+    report, name = draft.report("models", draft.settings.model), body.mjcf
+    for kind, wanted, path, key in (
+        *(("joint", j, ("joints", j), True) for j in body.joints),
+        *_role_elements(body.roles),
+    ):
+        if wanted not in there.get(kind, ()):
+            near, article = nearest(wanted, there.get(kind, ())), "an" if kind[0] in "aeiou" else "a"
+            hint = f"did you mean `{near}`?" if near else f"give models/{name} {article} {kind} of that name"
+            message = f"models/{name} has no {kind} `{wanted}`"
+            report(BROKEN_MODEL, path, message, hint=hint, key=key, cause=f"{kind}s of {name}")
+
+
+def _role_elements(roles: Roles) -> Iterator[tuple[str, str, NodePath, bool]]:
+    """What the roles name in the model besides joints of `joints`: kind of element, name, and where it stands."""
+    sensors = roles.sensors
+    one: list[tuple[str, str, NodePath]] = [
+        ("body", roles.torso, ("torso",)),
+        ("camera", roles.eyes.camera, ("eyes", "camera")),
+        ("body", roles.eyes.face, ("eyes", "face")),
+        *(("site", site, ("soles", side)) for side, site in roles.soles.items()),
+        ("joint", roles.base.left, ("base", "left")),
+        ("joint", roles.base.right, ("base", "right")),
+        ("gyro", sensors.gyro, ("sensors", "gyro")),
+        ("accelerometer", sensors.accelerometer, ("sensors", "accelerometer")),
+        *(("site", site, ("sensors", "sonar", side)) for side, site in sensors.sonar.items()),
+        *(
+            ("site", site, ("sensors", "force", side, i))
+            for side, sites in sensors.force.items()
+            for i, site in enumerate(sites)
+        ),
+        *(
+            ("material", name, ("lights", group, i))
+            for group, names in roles.lights.items()
+            for i, name in enumerate(names)
+        ),
+    ]
+    return ((kind, name, ("roles", *path), False) for kind, name, path in one if name)
+
+
+def _listed(lists: Mapping[str, tuple[str, ...]]) -> Iterator[tuple[str, NodePath]]:
+    """Each name of these lists, and where it stands in them."""
+    return ((name, (key, i)) for key, names in lists.items() for i, name in enumerate(names))
 
 
 def _say(

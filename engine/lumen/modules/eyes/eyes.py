@@ -158,6 +158,8 @@ class Eyes(Module):
         """The middle of a box, in pixels of the robot's camera."""
         camera, (height, width) = self.project.body.camera, frame.grey.shape
         x, y = box.centre
+        if camera is None:
+            return x, y
         x, y = x * camera.width / width, y * camera.height / height
         return min(max(x, 0.0), float(camera.width)), min(max(y, 0.0), float(camera.height))
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SUBSCRIBER_NAME = "lumen"
 TOP_CAMERA, RGB_COLOUR_SPACE = 0, 11
 RESOLUTIONS = {size: number for number, size in enumerate(SIZES)}
+DEFAULT_IMAGE_SIZE = Size(320, 240)
 CAMERA_RATE = 30
 """Images a second: the route says how many of them are fetched."""
 CLOCK_OFFSET_FRAMES = 100
@@ -87,7 +88,7 @@ class NaoqiSensors:
             name: [device(d) for d in TOUCH_DEVICES[name]] for name in body.tactile if name in TOUCH_DEVICES
         }
         self._handle = ""
-        self._own = Size(body.camera.width, body.camera.height)
+        self._own = Size(body.camera.width, body.camera.height) if body.camera else DEFAULT_IMAGE_SIZE
         self._size = self._wanted = self._own
         self._behind: deque[float] = deque(maxlen=CLOCK_OFFSET_FRAMES)
 

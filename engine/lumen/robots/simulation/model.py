@@ -111,8 +111,9 @@ def _differ(robot: mjcf.RootElement, body: Body) -> None:
     for name, link in body.links.items():
         inertial = robot.find("body", name).inertial
         inertial.mass, inertial.pos, inertial.fullinertia = link.mass, link.centre, link.inertia
-    for camera in robot.find_all("camera"):
-        camera.fovy = degrees(body.camera.vertical_fov)
+    if body.camera:
+        for camera in robot.find_all("camera"):
+            camera.fovy = degrees(body.camera.vertical_fov)
 
 
 def _vary(world: mjcf.RootElement, variation: Variation) -> None:

@@ -117,7 +117,7 @@ class SimulatedRobot:
         )
         self._executor = Executor(self._begin, self._skills.parts)
         self.figure = VisitorFigure(self.world.model, self.world.data)
-        self._camera = TopCamera(self.world, body.camera)
+        self._camera = TopCamera(self.world, body.camera) if body.camera else None
         self._events: list[Event] = []
         self._exhausted = False
         self._ticks = 0
@@ -182,7 +182,7 @@ class SimulatedRobot:
         now = self.time
         match sense:
             case Sense.IMAGE:
-                return self._camera.image(now)
+                return self._camera.image(now) if self._camera else None
             case Sense.JOINT:
                 angles, stiffness = self._sensors.angles.tolist(), self.motors.stiffness.tolist()
                 heat = tuple(self.condition.temperatures.round(1).tolist())
@@ -197,14 +197,15 @@ class SimulatedRobot:
                 return Battery(now, self.condition.percentage, self.condition.plugged, self.condition.charging)
 
     def close(self) -> None:
-        self._camera.close()
+        if self._camera:
+            self._camera.close()
 
     def place(self, visitor: Visitor | None) -> None:
         self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:
         face = self.figure.face()
-        return self._camera.pixel(face) if face else None
+        return self._camera.pixel(face) if face and self._camera else None
 
     def touch(self, sensor: str, pressed: bool) -> None:
         """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
@@ -226,7 +227,7 @@ class SimulatedRobot:
 
     def sound(self) -> None:
         face = self.figure.face()
-        if face is not None:
+        if face is not None and self.body.camera:
             torso = self.world.data.body(f"{ROBOT_PREFIX}/Torso")
             x, y, z = (torso.xmat.reshape(3, 3).T @ (np.array(face) - torso.xpos)).tolist()
             yaw, pitch = centring((x, y, z), self.body.camera)

@@ -1,0 +1,116 @@
+"""What the parts of a body are: `roles` of `models/NAME.yaml`. Skills, motions and life ask for these, not for names.
+
+Directions are those of NAO for every body: a yaw grows to the left, a pitch down or forward, a roll to the left.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+LEFT, RIGHT = SIDES = ("left", "right")
+
+HEAD_ROLES = ("yaw", "pitch")
+ARM_ROLES = ("shoulder-pitch", "shoulder-roll", "elbow-yaw", "elbow-roll", "wrist-yaw")
+LEG_ROLES = ("hip-yaw", "hip-roll", "hip-pitch", "knee", "ankle-pitch", "ankle-roll")
+"""The joints of a leg from the hip to the sole; walking on feet needs all six."""
+
+JOINT_PATHS = (
+    *(f"head.{name}" for name in HEAD_ROLES),
+    *(f"arms.{side}.{name}" for side in SIDES for name in ARM_ROLES),
+    *(f"{kind}.{side}" for kind in ("hands", "antennas") for side in SIDES),
+    *(f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES),
+)
+"""Every role that a joint can have, as messages, motions and docs write it: `arms.left.shoulder-pitch`."""
+
+HEAD_YAW, HEAD_PITCH = "head.yaw", "head.pitch"
+
+
+class BaseKind(StrEnum):
+    """How a body moves about: on two legs, on driven wheels, not at all."""
+
+    BIPED = "biped"
+    WHEELS = "wheels"
+    FIXED = "fixed"
+
+
+@dataclass(frozen=True, slots=True)
+class JointRole:
+    """The joint that has a role; `reversed` where its angle grows the other way than the role's."""
+
+    joint: str
+    reversed: bool = False
+
+    @property
+    def sign(self) -> float:
+        """What an angle of the role is multiplied by to be one of the joint."""
+        return -1.0 if self.reversed else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Base:
+    """What a body stands on. `left` and `right` are the driven wheels' joints in the MJCF, empty without wheels.
+
+    `speed` [m/s] and `turn` [rad/s] are the most at which it drives.
+    """
+
+    kind: BaseKind = BaseKind.FIXED
+    left: str = ""
+    right: str = ""
+    speed: float = 0.0
+    turn: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class EyeRoles:
+    """The camera of the MJCF that the robot sees with, and the link that carries its face; or empty."""
+
+    camera: str = ""
+    face: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorRoles:
+    """Sensors of the MJCF by kind: names of `gyro`, `accelerometer`; sites of the sonars, and of the soles' forces."""
+
+    gyro: str = ""
+    accelerometer: str = ""
+    sonar: Mapping[str, str] = field(default_factory=dict)
+    force: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Roles:
+    """The parts of a body by what they are. All may be missing; what is missing the body can't do.
+
+    `torso` is a link of the MJCF (x ahead, y left, z up), `soles` are sites (x ahead, z up). `lights` maps a group of
+    lights to the materials of the MJCF that show it.
+    """
+
+    torso: str = ""
+    head: Mapping[str, JointRole] = field(default_factory=dict)
+    eyes: EyeRoles = EyeRoles()
+    arms: Mapping[str, Mapping[str, JointRole]] = field(default_factory=dict)
+    hands: Mapping[str, JointRole] = field(default_factory=dict)
+    antennas: Mapping[str, JointRole] = field(default_factory=dict)
+    legs: Mapping[str, Mapping[str, JointRole]] = field(default_factory=dict)
+    soles: Mapping[str, str] = field(default_factory=dict)
+    base: Base = Base()
+    sensors: SensorRoles = SensorRoles()
+    lights: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    paths: Mapping[str, JointRole] = field(init=False, compare=False)
+    """Every role that a joint of this body has, by its path, in the order of `JOINT_PATHS`."""
+
+    def __post_init__(self) -> None:
+        limbs = {f"{kind}.{side}.": limb for kind in ("arms", "legs") for side, limb in getattr(self, kind).items()}
+        grouped = {"head.": self.head, "hands.": self.hands, "antennas.": self.antennas, **limbs}
+        found = {prefix + name: role for prefix, roles in grouped.items() for name, role in roles.items()}
+        object.__setattr__(self, "paths", {path: found[path] for path in JOINT_PATHS if path in found})
+
+    def joint(self, path: str) -> JointRole | None:
+        """The joint of a role such as `head.yaw`, None where this body lacks it."""
+        return self.paths.get(path)
+
+    def name(self, path: str) -> str:
+        """The name of that joint, empty where this body lacks it."""
+        role = self.paths.get(path)
+        return role.joint if role else ""

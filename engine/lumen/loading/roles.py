@@ -1,0 +1,133 @@
+"""`roles` of `models/NAME.yaml`: which part of the body is what, from plain data to `Roles`."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.roles import LEG_ROLES, SIDES, Base, BaseKind, EyeRoles, JointRole, Roles, SensorRoles
+from lumen.loading.document_report import DocumentReport
+
+INCOMPLETE_ROLE = Code("incomplete-role", "robot", ERROR, "a role lacks another one that it needs")
+JOINT_IN_TWO_ROLES = Code("joint-in-two-roles", "robot", ERROR, "one joint has two roles")
+
+_HERE: NodePath = ("roles",)
+_WALKING_SENSORS = ("gyro", "accelerometer")
+
+
+class RoleReader:
+    """Reads the roles of one file. `known` says of a joint's name, and where it stands, whether there is such a joint.
+
+    `given` are the keys of the file, of which some roles need one; `hands` the joints that open rather than turn.
+    """
+
+    def __init__(
+        self,
+        data: Mapping[str, Any],
+        report: DocumentReport,
+        known: Callable[[str, NodePath], bool],
+        given: Collection[str],
+        hands: Collection[str],
+    ) -> None:
+        self.data, self.report, self.known, self.given, self.hands = data, report, known, given, hands
+        self._owner: dict[str, NodePath] = {}
+        self._sound = True
+
+    def read(self, length: float, angle: float) -> Roles:
+        """The roles; `length` and `angle` are what one unit of the file is in [m] and [rad]."""
+        data = self.data
+        eyes, sensors = data.get("eyes") or {}, data.get("sensors") or {}
+        roles = Roles(
+            torso=data.get("torso", ""),
+            head=self._joints(data.get("head"), "head"),
+            eyes=EyeRoles(eyes.get("camera", ""), eyes.get("face", "")),
+            arms=self._limbs("arms"),
+            hands=self._joints(data.get("hands"), "hands"),
+            antennas=self._joints(data.get("antennas"), "antennas"),
+            legs=self._limbs("legs"),
+            soles=_sides(data.get("soles")),
+            base=_base(data.get("base") or {}, length, angle),
+            sensors=SensorRoles(
+                sensors.get("gyro", ""),
+                sensors.get("accelerometer", ""),
+                _sides(sensors.get("sonar")),
+                {side: tuple(sites) for side, sites in _sides(sensors.get("force")).items()},
+            ),
+            lights={group: tuple(names) for group, names in (data.get("lights") or {}).items()},
+        )
+        if self._sound and not self.report.broken(_HERE):
+            self._whole(roles)
+        return roles
+
+    def _limbs(self, kind: str) -> dict[str, dict[str, JointRole]]:
+        limbs = self.data.get(kind) or {}
+        return {side: self._joints(limbs[side], kind, side) for side in SIDES if side in limbs}
+
+    def _joints(self, roles: Mapping[str, Any] | None, *path: str) -> dict[str, JointRole]:
+        found = {name: self._joint(role, (*_HERE, *path, name)) for name, role in (roles or {}).items()}
+        return {name: role for name, role in found.items() if role}
+
+    def _joint(self, role: str | Mapping[str, Any], path: NodePath) -> JointRole | None:
+        where = path if isinstance(role, str) else (*path, "joint")
+        name = role if isinstance(role, str) else role.get("joint")
+        if name is None or not self.known(name, where):
+            self._sound = False
+            return None
+        first = self._owner.setdefault(name, path)
+        if first != path:
+            message = f"`{name}` is `{_written(first)}` and `{_written(path)}`"
+            related = [(first, "the other role stands here")]
+            self.report(JOINT_IN_TWO_ROLES, where, message, hint="a joint has one role", related=related)
+        return JointRole(name, not isinstance(role, str) and role.get("reversed", False))
+
+    def _whole(self, roles: Roles) -> None:
+        """Report roles that need others which are not there."""
+        if roles.base.kind is BaseKind.BIPED and (lacking := list(_lacking_for_feet(roles))):
+            self._say(("base", "kind"), "a biped", lacking)
+        elif roles.base.kind is BaseKind.WHEELS and (lacking := [s for s in SIDES if not getattr(roles.base, s)]):
+            self._say(("base", "kind"), "a base on wheels", [f"base.{side}" for side in lacking])
+        if roles.eyes.camera and "camera" not in self.given:
+            message = f"nothing is said of what `{roles.eyes.camera}` sees"
+            hint = "say it under `camera`: width, height, angles of view and position"
+            self.report(INCOMPLETE_ROLE, (*_HERE, "eyes", "camera"), message, hint=hint)
+        if roles.sensors.sonar and "sonar" not in self.given:
+            hint = "say it under `sonar`: range and cone"
+            self.report(INCOMPLETE_ROLE, (*_HERE, "sensors", "sonar"), "nothing is said of what sonars hear", hint=hint)
+        for side, hand in roles.hands.items():
+            if hand.joint not in self.hands:
+                message = f"`{hand.joint}` turns, and a hand counts 0 closed to 1 open"
+                hint = f"write `opening: true` at the joint `{hand.joint}`"
+                self.report(INCOMPLETE_ROLE, (*_HERE, "hands", side), message, hint=hint)
+
+    def _say(self, path: NodePath, who: str, lacking: list[str]) -> None:
+        hint = "name them under `roles`, or choose another kind of base"
+        named = ", ".join(f"`{name}`" for name in lacking)
+        self.report(INCOMPLETE_ROLE, (*_HERE, *path), f"{who} needs {named}", hint=hint)
+
+
+def _lacking_for_feet(roles: Roles) -> Iterator[str]:
+    if not roles.torso:
+        yield "torso"
+    for side in SIDES:
+        leg = roles.legs.get(side)
+        yield from (f"legs.{side}.{name}" for name in LEG_ROLES if name not in leg) if leg else (f"legs.{side}",)
+    yield from (f"soles.{side}" for side in SIDES if not roles.soles.get(side))
+    yield from (f"sensors.{name}" for name in _WALKING_SENSORS if not getattr(roles.sensors, name))
+
+
+def _base(data: Mapping[str, Any], length: float, angle: float) -> Base:
+    return Base(
+        kind=BaseKind(data.get("kind", BaseKind.FIXED)),
+        left=data.get("left", ""),
+        right=data.get("right", ""),
+        speed=data.get("speed", 0.0) * length,
+        turn=data.get("turn", 0.0) * angle,
+    )
+
+
+def _sides(data: Mapping[str, Any] | None) -> dict[str, Any]:
+    return {side: data[side] for side in SIDES if data and side in data}
+
+
+def _written(path: NodePath) -> str:
+    """A role as messages write it: `arms.left.elbow-roll`."""
+    return ".".join(str(key) for key in path[1:])
