@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from lumen.app.reload.delta import DeltaDecoder
+from lumen.app.reload.idle_process import JudgingProcess, keep, take
 from lumen.app.reload.validation_process import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
@@ -57,12 +58,15 @@ class FileJudge(Protocol):
 
 
 class ValidationWorker:
-    """A `FileJudge` in another process, which is begun when it is first needed, and anew where it has died."""
+    """A `FileJudge` in another process: the one that was kept, else one begun when it is first needed.
+
+    It is begun anew where it has died.
+    """
 
     def __init__(self, root: Path, timeout: float = ANSWER_TIMEOUT) -> None:
-        self._root, self._timeout = root, timeout
-        self._child: subprocess.Popen[bytes] | None = None
-        self._receiver = DeltaDecoder()
+        self._root, self._timeout = root.absolute(), timeout
+        self._process = take(tuple(COMMAND))
+        self._receiver = self._process.receiver if self._process else DeltaDecoder()
 
     def begin(self) -> None:
         """Begin the process: it takes about as long as files do to settle."""
@@ -70,7 +74,7 @@ class ValidationWorker:
             self._running()
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
-        began = self._child
+        began = self._process
         try:
             return self._load(files)
         except FatalFilesError as error:
@@ -90,11 +94,10 @@ class ValidationWorker:
         return found or VisitsCheck(trouble="the process that was to play them has begun anew")
 
     def close(self) -> None:
-        """End the process."""
-        child, self._child = self._child, None
-        if child:
-            child.kill()
-            child.communicate()
+        """Have the process kept for who needs one soon."""
+        process, self._process = self._process, None
+        if process:
+            keep(process)
 
     def _load(self, files: Mapping[str, bytes]) -> Loaded:
         parcel, diagnostics = self._ask("load", str(self._root), dict(files))
@@ -103,9 +106,10 @@ class ValidationWorker:
     def _ask(self, *question: Any) -> Any:
         """Its answer; raises what it raised, and FatalFilesError where it did not live to answer."""
         try:
-            child = self._running()
+            process = self._running()
         except OSError as error:
             raise FatalFilesError(f"no process can be begun that reads the files: {error.strerror}") from None
+        child = process.child
         began, timer = time.monotonic(), threading.Timer(self._timeout, child.kill)
         timer.start()
         try:
@@ -114,29 +118,36 @@ class ValidationWorker:
             send(child.stdin, question)
             answer = receive(child.stdout)
         except (OSError, EOFError, pickle.UnpicklingError):
-            self._child = None
-            child.kill()
-            child.communicate()
+            self._process = None
+            process.end()
             late = time.monotonic() - began >= self._timeout
             how = f"it took more than {self._timeout:.0f} s" if late else _how(child.returncode)
             raise FatalFilesError(f"these files end the process that reads them: {how}", overdue=late) from None
+        except BaseException:  # whoever is interrupted leaves an answer in the pipe, which is none to the next question
+            self._process = None
+            process.end()
+            raise
         finally:
             timer.cancel()
         if isinstance(answer, Exception):
             raise answer
         return answer
 
-    def _running(self) -> "subprocess.Popen[bytes]":
+    def _running(self) -> JudgingProcess:
         """The process, begun anew where there is none; raises OSError where the system has no room for it."""
-        if self._child is None or self._child.poll() is not None:
-            self.close()
-            self._child = subprocess.Popen(
-                COMMAND,
+        if self._process and not self._process.lives:
+            self._process.end()
+            self._process = None
+        if self._process is None:
+            command = tuple(COMMAND)
+            child = subprocess.Popen(
+                command,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=True,  # Ctrl-C is not for it
             )
-        return self._child
+            self._process = JudgingProcess(child, command, self._receiver)
+        return self._process
 
 
 def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:

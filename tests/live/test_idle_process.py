@@ -1,0 +1,79 @@
+"""The process that judged a start is kept for the first saved file, and not for ever."""
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.app.reload import idle_process, validation_worker
+from lumen.app.reload.idle_process import end_idle, take
+from lumen.app.reload.validation_worker import COMMAND, ValidationWorker, load_apart
+from lumen.loading.files import read_files
+from tests.waiting import until
+
+TOUR = "behaviors/tour.yaml"
+SORRY = b"en: I am sorry, I did not understand that."
+
+
+@pytest.fixture(autouse=True)
+def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
+    """The numbers of the processes that were begun."""
+    end_idle()
+    numbers, usual = list[int](), validation_worker.subprocess.Popen
+
+    def noted(*given: object, **options: object) -> object:
+        child = usual(*given, **options)  # type: ignore[call-overload]
+        numbers.append(child.pid)
+        return child
+
+    monkeypatch.setattr(validation_worker.subprocess, "Popen", noted)
+    yield numbers
+    end_idle()
+
+
+@pytest.mark.slow
+def test_it_judges_the_first_saved_file_and_the_next_start(copy: Path, begun: list[int]) -> None:
+    files = read_files(copy)
+    started, _ = load_apart(copy, files)
+    worker = ValidationWorker(copy)
+    assert worker.load({**files, TOUR: files[TOUR].replace(SORRY, b"en: [")})[0] is None
+    again, _ = worker.load(files)
+    worker.close()
+    assert load_apart(copy, files)[0] == again == started
+    assert len(begun) == 1
+
+
+def test_one_that_has_died_or_was_begun_otherwise_is_not_taken(copy: Path, begun: list[int]) -> None:
+    worker = ValidationWorker(copy)
+    worker.begin()
+    worker.close()
+    assert take(("another",)) is None
+    process = take(tuple(COMMAND))
+    assert process
+    process.child.send_signal(signal.SIGKILL)
+    process.child.wait()
+    idle_process.keep(process)
+    assert take(tuple(COMMAND)) is None
+
+
+def test_nobody_is_given_the_answer_to_a_question_that_was_interrupted(
+    copy: Path, begun: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(validation_worker, "receive", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        load_apart(copy, read_files(copy))
+    assert take(tuple(COMMAND)) is None
+
+
+def test_it_ends_where_nobody_wants_it(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(idle_process, "LINGER", 0.05)
+    worker = ValidationWorker(copy)
+    worker.begin()
+    child = worker._running().child
+    worker.close()
+    until(lambda: child.returncode is not None)
+    assert take(tuple(COMMAND)) is None
