@@ -48,8 +48,8 @@ class Writer:
             self.in_place, self.truncated, self.atomically, self.one_after_the_other, self.checked_out,
         ]  # fmt: skip
 
-    def edit(self) -> tuple[str, bool]:
-        """Make the next edit; the hash of what the files are now, and whether they are good."""
+    def edit(self) -> tuple[str, bool, int]:
+        """Make the next edit; the hash of what the files are now, whether they are good, and how many were written."""
         self.number += 1
         broken = self.number % 3 == 0
         way = self.ways[self.number % len(self.ways)]
@@ -63,7 +63,7 @@ class Writer:
             files[path] = text.replace(old, new, 1)
             self.mending = (path,)
         way(files)
-        return fingerprint(read_files(self.root)), not broken
+        return fingerprint(read_files(self.root)), not broken, len(files)
 
     def marked(self, path: str) -> str:
         """The file as it was at first, with the number of this edit in a text of it."""
@@ -128,15 +128,15 @@ class Colleague:
         words = [sys.executable, __file__, str(root), str(seed), str(pause)]
         self._process = Guarded(words, stdin=PIPE, stdout=PIPE, text=True)
 
-    def edit(self) -> tuple[str, bool]:
-        """Have the next edit made; the hash of what the files are now, and whether they are good."""
+    def edit(self) -> tuple[str, bool, int]:
+        """Have the next edit made; the hash of what the files are now, whether they are good, how many were written."""
         assert self._process.stdin
         assert self._process.stdout
         print("edit", file=self._process.stdin, flush=True)
-        hash, said = self._process.stdout.readline().split()
+        hash, said, count = self._process.stdout.readline().split()
         if said == "good":
             self.good.add(hash)
-        return hash, said == "good"
+        return hash, said == "good", int(count)
 
     def close(self) -> None:
         self._process.communicate()
@@ -184,8 +184,8 @@ def main() -> None:
     root, seed, pause = sys.argv[1:]
     writer = Writer(Path(root), int(seed), float(pause))
     for _ in sys.stdin:
-        hash, good = writer.edit()
-        print(hash, "good" if good else "bad", flush=True)
+        hash, good, count = writer.edit()
+        print(hash, "good" if good else "bad", count, flush=True)
 
 
 if __name__ == "__main__":

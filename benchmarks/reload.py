@@ -41,6 +41,7 @@ from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
 from lumen.runtime.loop import TICK_PERIOD
+from lumen.runtime.watcher import SHORT_QUIET_FRACTION
 
 RATE = 200
 PATIENCE = 60.0
@@ -65,6 +66,7 @@ class Outcome:
     refused: int = 0
     waited: int = 0
     unanswered: int = 0
+    single: list[float] = field(default_factory=list)
     verdicts: list[float] = field(default_factory=list)
     own: list[float] = field(default_factory=list)
     swaps: list[float] = field(default_factory=list)
@@ -158,7 +160,7 @@ class Soak:
         self.show.before.append(self.look)
         self.show.parts.append(RecordsPart(records, self.show.behavior))
         self.show.closing += [records.close, home.release]
-        self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.4 * quiet)
+        self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.8 * SHORT_QUIET_FRACTION * quiet)
         self.show.closing.append(self.writer.close)
         self.load = Load(self.show, url)
         self._told: list[Told] = []
@@ -192,16 +194,16 @@ class Soak:
         """On the writer's thread: one edit after the other."""
         for number in range(1, self.outcome.edits + 1):
             seen = len(self._told)
-            hash, good = self.writer.edit()
-            saved = time.monotonic()
+            hash, good, files = self.writer.edit()
+            saved, single = time.monotonic(), good and files == 1
             self.outcome.broken += not good
-            self.wait(hash, saved, seen)
+            self.wait(hash, saved, seen, self.outcome.single if single else self.outcome.verdicts)
             if number == max(1, int(WARM * self.outcome.edits)):
                 self.count(0)
         self._done.set()
 
-    def wait(self, hash: str, saved: float, seen: int) -> None:
-        """Until there is a verdict on these files, and what was good is active."""
+    def wait(self, hash: str, saved: float, seen: int, verdicts: list[float]) -> None:
+        """Until there is a verdict on these files, and what was good is active; how long that took joins `verdicts`."""
         outcome, deadline = self.outcome, saved + PATIENCE
         first = True
         while time.monotonic() < deadline:
@@ -212,7 +214,7 @@ class Soak:
                 if told.hash != hash:
                     continue
                 if first:
-                    outcome.verdicts.append(told.at - saved)
+                    verdicts.append(told.at - saved)
                     outcome.own.append(told.own)
                     first = False
                 if told.verdict != "waiting":
@@ -315,9 +317,9 @@ def main() -> None:
     print(f"events lost                     {found.lost} of {found.sent:,}")
     print(f"ticks missed                    {found.missed} of {found.ticks:,}", end="")
     print(f" (longest {1000 * found.gap:.0f} ms); a process that only ticks missed {found.beside} beside it")
-    print(f"saved to verdict                {_spread(found.verdicts)}")
-    print(f"  of which the quiet period     {1000 * options.quiet:.0f} ms")
-    print(f"  and our own work              {_spread(found.own)}")
+    print(f"saved to verdict, one good file {_spread(found.single)}")
+    print(f"  broken, or several files      {_spread(found.verdicts)}, after {1000 * options.quiet:.0f} ms of quiet")
+    print(f"our own work                    {_spread(found.own)}")
     print(f"swap                            {_spread(found.swaps)} (a tick is {1000 * TICK_PERIOD:.0f} ms)")
     before, after = (size / 2**20 for size in found.memory)
     print(f"memory                          {before:.1f} -> {after:.1f} MiB ({found.growth:+.1f} %)")

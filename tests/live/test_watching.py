@@ -229,3 +229,93 @@ def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path) -> None
     watcher.results.get(timeout=20.0)
     watcher.close()
     assert order == ["noticed", "judged"]
+
+
+END = "\nits last line\n"
+
+
+class Judged(Watched):
+    """A project whose quiet period is longer than any test, and which is judged before it is over."""
+
+    def __init__(self, root: Path) -> None:
+        for path in (TOUR, DANCE):
+            (root / path).write_text(f"first{END}", "utf-8")
+        self.root, self.judged = root, list[bytes]()
+        self.watcher = FileWatcher(root, read_files(root), self.judge, quiet=QUIET, good=self.is_good)
+        self.watcher.start()
+        self.waited = threading.Event()
+
+    def judge(self, saved: SavedFiles) -> SavedFiles:
+        self.judged.append(saved.files[TOUR])
+        return saved
+
+    def is_good(self, saved: SavedFiles) -> bool:
+        return b"bad" not in saved.files[TOUR]
+
+
+@pytest.fixture
+def judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Judged]:
+    monkeypatch.setattr("lumen.runtime.watcher.SHORT_QUIET_FRACTION", 0.0)
+    one = Judged(fill(tmp_path / "show"))
+    yield one
+    one.watcher.close()
+
+
+def took(saved: SavedFiles) -> float:
+    return saved.quiet - saved.seen
+
+
+def test_one_good_file_that_is_whole_waits_for_nothing(judged: Judged) -> None:
+    (judged.root / TOUR).write_text(f"new{END}", "utf-8")
+    assert judged.next().files[TOUR] == f"new{END}".encode()
+    assert judged.judged == [f"new{END}".encode()]
+
+
+@pytest.mark.parametrize(
+    "halves",
+    [
+        ("ne", f"w{END}"),
+        ("new\n", END),
+        (f"new{END[:-1]}", "\n"),
+        (f"first{END}an", f"other{END}"),
+        ("", f"new{END}"),
+    ],
+)
+def test_half_of_a_file_is_not_judged(judged: Judged, halves: tuple[str, str]) -> None:
+    with (judged.root / TOUR).open("w") as file:
+        for half in halves:
+            file.write(half)
+            file.flush()
+            judged.pause(QUIET / 2)
+    whole = "".join(halves).encode()
+    assert judged.next().files[TOUR] == whole
+    assert judged.judged == [whole]
+
+
+def test_a_file_that_is_bad_alone_waits_for_the_others_and_is_judged_once(judged: Judged) -> None:
+    bad, good = f"bad{END}", f"good{END}"
+    (judged.root / TOUR).write_text(bad, "utf-8")
+    judged.pause(QUIET / 2)
+    (judged.root / DANCE).write_text(good, "utf-8")
+    assert judged.next().changed == (TOUR, DANCE)
+    (judged.root / TOUR).write_text(good, "utf-8")
+    assert judged.next().changed == (TOUR,)
+    (judged.root / TOUR).write_text(bad, "utf-8")
+    assert took(judged.next()) < QUIET  # judged at once, and told when nothing had come after it
+    assert judged.judged[-1] == bad.encode() != judged.judged[-2]
+
+
+def test_what_changes_while_it_is_judged_is_judged_again(judged: Judged) -> None:
+    (judged.root / TOUR).write_text(f"new{END}", "utf-8")
+    judged.next()
+    usual, once = judged.watcher._judge, iter(["newest"])
+
+    def judge(saved: SavedFiles) -> SavedFiles:
+        for text in once:
+            (judged.root / TOUR).write_text(f"{text}{END}", "utf-8")
+        return usual(saved)
+
+    judged.watcher._judge = judge
+    (judged.root / TOUR).write_text(f"newer{END}", "utf-8")
+    assert judged.next().files[TOUR] == f"newest{END}".encode()
+    assert [text.split()[0] for text in judged.judged] == [b"new", b"newer", b"newest"]

@@ -5,8 +5,8 @@ import queue
 import sys
 import threading
 import time
-from collections.abc import Callable, Mapping
-from contextlib import closing
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
@@ -14,8 +14,10 @@ from lumen.loading.files import PROJECT_FOLDERS, Unreadable, fingerprint, read_f
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
+SHORT_QUIET_FRACTION = 0.3
+"""The part of the quiet period for which a single file that is whole and good has to stay as it is."""
 MAX_READ_PERIOD = 1.0
-HINT_DEBOUNCE = 20
+HINT_DEBOUNCE = 5
 """How long the operating system's notices are gathered [ms]."""
 SWITCH_INTERVAL = 0.001
 """How long one thread may keep the others of an exhibition from their work [s]: a stop passes four on its way."""
@@ -49,6 +51,9 @@ class FileWatcher(Generic[T]):
     what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
     says whether there is something more urgent. `noticed` is called when a change shows, before it has settled.
     Without `hints` only who asks is served.
+
+    With `good` one file that ends as it did before is judged at once: where that is said of what came of it, a part of
+    the quiet period is enough (docs/decisions/080).
     """
 
     def __init__(
@@ -62,8 +67,9 @@ class FileWatcher(Generic[T]):
         hints: bool = True,
         leisure: Callable[[T, Callable[[], bool]], None] = lambda judged, urgent: None,
         noticed: Callable[[], None] = lambda: None,
+        good: Callable[[T], bool] | None = None,
     ) -> None:
-        self._root, self._files, self._hash = root, files, hash or fingerprint(files)
+        self._root, self._files, self._hash, self._good = root, files, hash or fingerprint(files), good
         self._judge, self._leisure, self._noticed, self._quiet, self._watching = judge, leisure, noticed, quiet, hints
         self._stop, self._hint = threading.Event(), threading.Event()
         self._asked: queue.SimpleQueue[object] = queue.SimpleQueue()
@@ -98,44 +104,54 @@ class FileWatcher(Generic[T]):
                 self._look()
 
     def _look(self, asked: object = None) -> None:
-        seen = time.monotonic()
-        files = read_files(self._root)
-        new = fingerprint(files) != self._hash
-        if new:
+        saved = SavedFiles(read_files(self._root), (), time.monotonic(), 0.0, asked)
+        judged: T | None = None
+        if new := fingerprint(saved.files) != self._hash:
             self._noticed()
-            files = self._settled(files)
-            new = fingerprint(files) != self._hash
+            judged, saved = self._settled(saved)
+            new = fingerprint(saved.files) != self._hash
         if self._stop.is_set() or not (new or asked):
             return
-        changed = tuple(path for path in sorted({*files, *self._files}) if files.get(path) != self._files.get(path))
+        if judged is None:
+            judged = self._judged(saved)
         if not asked or self._watching:
-            self._files, self._hash = files, fingerprint(files)
-        usual = sys.getswitchinterval()
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        try:
-            judged = self._judge(SavedFiles(files, changed, seen, time.monotonic(), asked))
+            self._files, self._hash = saved.files, fingerprint(saved.files)
+        if judged is not None:
             self.results.put(judged)
-            self._leisure(judged, self._urgent)
-        except Exception:  # a fault of ours must not end the watching
-            _log.exception("the saved files could not be judged")
-        finally:
-            sys.setswitchinterval(usual)
+            with _as_others_need():
+                self._leisure(judged, self._urgent)
+
+    def _judged(self, saved: SavedFiles) -> T | None:
+        """What comes of these files; None where we fail on them."""
+        changed = tuple(sorted(_differing(saved.files, self._files)))
+        with _as_others_need():
+            return self._judge(saved._replace(changed=changed, quiet=time.monotonic()))
+        return None
 
     def _urgent(self) -> bool:
         return self._hint.is_set()
 
-    def _settled(self, files: dict[str, bytes]) -> dict[str, bytes]:
-        """The files once they have not changed for the quiet period.
-
-        Twice as long where one is gone, empty or can't be read: somebody may be about to write it.
-        """
-        since = time.monotonic()
-        while time.monotonic() - since < self._needed(files) and not self._stop.wait(self._quiet / 6):
+    def _settled(self, saved: SavedFiles) -> tuple[T | None, SavedFiles]:
+        """The files once they have not changed for long enough, and what came of them where that was asked already."""
+        since, judged = time.monotonic(), self._judged_at_once(saved)
+        while not self._stop.is_set():
             self._hint.clear()
             again = read_files(self._root)
-            if again != files:
-                files, since = again, time.monotonic()
-        return files
+            if again != saved.files:
+                saved = saved._replace(files=again)
+                since, judged = time.monotonic(), self._judged_at_once(saved)
+                continue
+            needed = self._needed(saved.files)
+            if judged is not None and self._good and self._good(judged):
+                needed *= SHORT_QUIET_FRACTION
+            if (left := since + needed - time.monotonic()) <= 0:
+                break
+            self._stop.wait(min(left, self._quiet / 6))
+        return judged, saved
+
+    def _judged_at_once(self, saved: SavedFiles) -> T | None:
+        """What comes of them, where they look like what somebody wanted to save, and not like a half of it."""
+        return self._judged(saved) if self._good and self._watching and _whole(saved.files, self._files) else None
 
     def _needed(self, files: WatchedFiles) -> float:
         half = any(not files.get(path) or isinstance(files[path], Unreadable) for path in self._files)
@@ -166,6 +182,37 @@ class FileWatcher(Generic[T]):
             except OSError as error:
                 _log.warning("files are no longer watched, only read once a second: %r", error)
                 return
+
+
+def _whole(files: WatchedFiles, before: WatchedFiles) -> bool:
+    """Whether one file differs, and ends as it did before: what was not written to its end ends anywhere else."""
+    match list(_differing(files, before)):
+        case [path] if path in files and path in before:
+            return _end(files[path]) == _end(before[path]) != b""
+    return False
+
+
+def _end(text: bytes) -> bytes:
+    """The last line of a file, empty where there is none or it can't be read; it has to be ended as well."""
+    lines = [] if isinstance(text, Unreadable) else text.splitlines(keepends=True)
+    return lines[-1] if lines else b""
+
+
+def _differing(files: WatchedFiles, others: WatchedFiles) -> Iterator[str]:
+    return (path for path in {*files, *others} if files.get(path) != others.get(path))
+
+
+@contextmanager
+def _as_others_need() -> Iterator[None]:
+    """The exhibition's threads have their turn sooner than Python would let them, and a fault of ours ends nothing."""
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    try:
+        yield
+    except Exception:
+        _log.exception("the saved files could not be judged")
+    finally:
+        sys.setswitchinterval(usual)
 
 
 def _folders(root: Path) -> dict[Path, tuple[int, int]]:
