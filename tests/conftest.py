@@ -8,12 +8,14 @@ from tests.cpu_time import (
     pytest_runtest_protocol,
     pytest_terminal_summary,
 )
+from tests.garbage import pytest_collection_finish
 from tests.marking import pytest_collection_modifyitems
 from tests.rabbitmq import broker
 
 __all__ = [
     "broker",
     "pytest_addoption",
+    "pytest_collection_finish",
     "pytest_collection_modifyitems",
     "pytest_runtest_makereport",
     "pytest_runtest_protocol",
