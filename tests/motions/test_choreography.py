@@ -4,23 +4,26 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.choreography import at_speed, joined, mirrored, mirrored_joint, trailing
+from lumen.interpreters.choreography import at_speed, joined, mirrored, trailing
 from lumen.interpreters.trajectory import Trajectory
+from lumen.language.mirrors import mirror_of
 from lumen.language.motions import Cue, Keyframe, MotionDefinition
 from tests.motions.making import made, motions, nao
+
+MIRROR = mirror_of(nao())
 
 
 @given(motions())
 def test_mirrored_twice_is_the_motion_itself(motion: MotionDefinition) -> None:
-    assert mirrored(mirrored(motion)) == motion
+    assert mirrored(mirrored(motion, MIRROR), MIRROR) == motion
 
 
 @pytest.mark.slow
 @given(motions())
 def test_a_mirrored_motion_moves_the_other_side(motion: MotionDefinition) -> None:
-    there, here = Trajectory(mirrored(motion)).sample(0.7), Trajectory(motion).sample(0.7)
+    there, here = Trajectory(mirrored(motion, MIRROR)).sample(0.7), Trajectory(motion).sample(0.7)
     for joint, angle in here.items():
-        other, sign = mirrored_joint(joint)
+        other, sign = MIRROR[joint]
         assert there[other] == pytest.approx(sign * angle)
 
 
@@ -37,17 +40,17 @@ def test_what_trails_comes_later_in_the_same_order_and_ends_with_the_rest(times:
 
 
 def test_mirroring_knows_which_joints_turn_the_other_way() -> None:
-    assert mirrored_joint("LShoulderPitch") == ("RShoulderPitch", 1.0)
-    assert mirrored_joint("RElbowRoll") == ("LElbowRoll", -1.0)
-    assert mirrored_joint("HeadYaw") == ("HeadYaw", -1.0)
-    assert mirrored_joint("LHipYawPitch") == ("RHipYawPitch", 1.0)
-    assert mirrored_joint("LHand") == ("RHand", 1.0)
+    assert MIRROR["LShoulderPitch"] == ("RShoulderPitch", 1.0)
+    assert MIRROR["RElbowRoll"] == ("LElbowRoll", -1.0)
+    assert MIRROR["HeadYaw"] == ("HeadYaw", -1.0)
+    assert MIRROR["LHipYawPitch"] == ("RHipYawPitch", 1.0)
+    assert MIRROR["LHand"] == ("RHand", 1.0)
 
 
 def test_the_robot_s_limits_are_those_of_its_mirror_image() -> None:
     """All but the ankles' pitch, so that a mirrored motion fits wherever the motion does."""
     for name, joint in nao().joints.items():
-        other, sign = mirrored_joint(name)
+        other, sign = MIRROR[name]
         image = sorted((sign * joint.minimum, sign * joint.maximum))
         assert image == pytest.approx([nao().joints[other].minimum, nao().joints[other].maximum], abs=0.01)
 
@@ -56,7 +59,7 @@ def test_lights_change_sides_too() -> None:
     motion = MotionDefinition(
         "m", 1.0, {}, (Cue(0.0, "leds", {"left_eye": "red", "eyes": "blue", "right_ear": "off"}),)
     )
-    assert mirrored(motion).cues[0].value == {"right_eye": "red", "eyes": "blue", "left_ear": "off"}
+    assert mirrored(motion, MIRROR).cues[0].value == {"right_eye": "red", "eyes": "blue", "left_ear": "off"}
 
 
 @given(motions(), st.floats(0.2, 5.0), st.floats(0.0, 1.0))

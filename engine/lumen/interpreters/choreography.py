@@ -5,30 +5,27 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.mirrors import Mirror
 from lumen.language.motions import Cue, Keyframe, MotionDefinition
 
 _SOON = 1e-9
 """[s] that two keys of a joint have to lie apart."""
 
-_SIDE = re.compile(r"([LR])(?=[A-Z])")
 _LED_SIDE = re.compile(r"(left|right)(?=_)")
-_OTHER = {"L": "R", "R": "L", "left": "right", "right": "left"}
+_OTHER = {"left": "right", "right": "left"}
 
 
-def mirrored_joint(joint: str) -> tuple[str, float]:
-    """The joint on the other side and the sign that its angle takes there: rolls and yaws turn the other way."""
-    sign = -1.0 if joint.endswith(("Roll", "Yaw")) else 1.0
-    match = _SIDE.match(joint)
-    return (_OTHER[match[1]] + joint[1:] if match else joint), sign
+def mirrored(motion: MotionDefinition, mirror: Mirror) -> MotionDefinition:
+    """The motion as a mirror shows it, left and right exchanged; twice is the motion itself.
 
-
-def mirrored(motion: MotionDefinition) -> MotionDefinition:
-    """The motion as a mirror shows it, left and right exchanged; twice is the motion itself."""
+    What has no other side is left out.
+    """
     tracks, origin = {}, {}
     for joint, keys in motion.tracks.items():
-        other, sign = mirrored_joint(joint)
-        tracks[other] = tuple(_turned(key, sign) for key in keys)
-        if joint in motion.origin:
+        other, sign = mirror.get(joint, (joint, 1.0))
+        if other:
+            tracks[other] = tuple(_turned(key, sign) for key in keys)
+        if other and joint in motion.origin:
             origin[other] = sign * motion.origin[joint]
     cues = tuple(_mirrored_cue(cue) for cue in motion.cues)
     return replace(motion, tracks=tracks, origin=origin, cues=cues)

@@ -20,7 +20,7 @@ class Gesture:
 
     `tags` are what it goes with. `tracks` has for each joint where it is at which time [s]: offsets from where it
     stands [rad; hands 0..1], from nothing and back to nothing. It may also be done with the other side where
-    it is `mirrored`.
+    it is `mirrored`, as `mirror` says for its joints (`language/mirrors.py`).
     """
 
     name: str
@@ -30,6 +30,7 @@ class Gesture:
     duration: float
     mirrored: bool = False
     where: NodePath = field(default=(), compare=False)
+    mirror: Mapping[str, tuple[str, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,8 +22,10 @@ def build_gestures(data: Any, report: DocumentReport, *, name: str, body: Body) 
     if not isinstance(data, Mapping) or report.broken(("units", "angle")):
         return None
     unit = (data.get("units") or {}).get("angle", "rad")
-    reader = _GestureReader(report, body, PoseReader(report, body, unit, ANGLES.get(unit, 1.0)))
-    read = (reader.read(key, each) for key, each in (data.get("gestures") or {}).items())
+    poses = PoseReader(report, body, unit, ANGLES.get(unit, 1.0))
+    reader = _GestureReader(report, body, poses)
+    read = [reader.read(key, each) for key, each in (data.get("gestures") or {}).items()]
+    poses.roles.tell_left_out("gestures")
     phrases = {
         tag: {language: (said,) if isinstance(said, str) else tuple(said) for language, said in table.items()}
         for tag, table in (data.get("phrases") or {}).items()
@@ -44,7 +46,7 @@ class _GestureReader:
             if phase in data:
                 stroke = at
                 at += self._takes(data[phase]["takes"], (*where, phase, "takes"))
-                keys.append((at, self._offsets(data[phase]["joints"], (*where, phase))))
+                keys.append((at, self._offsets(data[phase], (*where, phase))))
         held = at + (seconds(data.get("hold")) or 0.0)
         duration = held + self._takes(data.get("retraction", "600ms"), (*where, "retraction"))
         tracks: dict[str, list[tuple[float, float]]] = {}
@@ -66,11 +68,13 @@ class _GestureReader:
             duration,
             data.get("mirrored", False),
             where,
+            {joint: self._poses.mirror[joint] for joint in tracks if joint in self._poses.mirror},
         )
 
-    def _offsets(self, joints: Mapping[str, float], path: NodePath) -> dict[str, float]:
+    def _offsets(self, phase: Mapping[str, Any], path: NodePath) -> dict[str, float]:
         stands, found = self._body.postures.get(POSTURE, {}), {}
-        for joint, (angle, place) in self._poses.read({"joints": joints}, path).items():
+        self._poses.roles.some(phase, path)
+        for joint, (angle, place) in self._poses.read(phase, path).items():
             if joint in self._body.parts.get("legs", ()):
                 hint = "gestures are of head, arms and hands; a motion may move legs"
                 self._report(GESTURE_LEGS, place, f"`{joint}` is a joint of the legs", hint=hint, key=True)

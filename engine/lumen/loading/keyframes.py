@@ -92,12 +92,13 @@ class KeyframeReader:
                 self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
         cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
         part = MotionDefinition("", 0.0, tracks, cues)
-        return mirrored(part) if item.get("mirror") is True else part
+        return mirrored(part, self.poses.mirror) if item.get("mirror") is True else part
 
     def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """A block or another motion, as often, as fast and on the side that the item says."""
         for word in (
             "joints",
+            "roles",
             "hands",
             "posture",
             "pose",
@@ -139,7 +140,7 @@ class KeyframeReader:
         if _size(part) * times > MAX_MOTION_KEYS:
             self._too_many(here)
             return part
-        other = mirrored(part) if mirror else part
+        other = mirrored(part, self.poses.mirror) if mirror else part
         rounds = [other if mirror is True or (mirror and i % 2) else part for i in range(times)]
         return joined(((i * part.duration, round) for i, round in enumerate(rounds)), part.duration * times)
 

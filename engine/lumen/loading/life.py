@@ -8,6 +8,7 @@ from lumen.language.life import STILL, Asides, Blinks, EyeColours, Glances, Life
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import UNKNOWN_JOINT
+from lumen.loading.role_names import RoleNames
 from lumen.loading.units import ANGLES, BAD_DURATION, seconds
 
 LIFE_FOLDER = "motions/life"
@@ -24,7 +25,10 @@ def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> L
     if name == STILL:
         hint = "give the file another name, or delete it"
         report(RESERVED_LIFE, (), "`still` is the style in which the robot does nothing: it has no file", hint=hint)
-    return _LifeReader(report, body, ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0)).read(data, name)
+    reader = _LifeReader(report, body, ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0))
+    style = reader.read(data, name)
+    reader.roles.tell_left_out("this style of life")
+    return style
 
 
 class _LifeReader:
@@ -32,6 +36,7 @@ class _LifeReader:
 
     def __init__(self, report: DocumentReport, body: Body, factor: float) -> None:
         self._report, self._body, self._factor = report, body, factor
+        self.roles = RoleNames(report, body)
 
     def read(self, data: Mapping[str, Any], name: str) -> LifeStyle:
         glances, nods, blinks = (data.get(key) or {} for key in ("glances", "nods", "blinks"))
@@ -62,20 +67,26 @@ class _LifeReader:
 
     def _settles(self, data: Mapping[str, Any]) -> Settles:
         takes = self._time(("settles", "takes"), data.get("takes", "1.5s"))
-        return Settles(self._joints(data["joints"], ("settles", "joints")), takes)
+        return Settles(self._joints(data, ("settles",)), takes)
 
     def _sway(self, name: str, data: Mapping[str, Any]) -> Sway:
         where = ("sways", name)
         period = self._time((*where, "period"), data["period"])
-        return Sway(name, period, self._joints(data["joints"], (*where, "joints")), data.get("wanders", False), where)
+        return Sway(name, period, self._joints(data, where), data.get("wanders", False), where)
 
-    def _joints(self, joints: Mapping[str, float], path: NodePath) -> dict[str, float]:
-        found = {}
-        for joint, value in joints.items():
+    def _joints(self, data: Mapping[str, Any], path: NodePath) -> dict[str, float]:
+        """What `roles` and `joints` of this item say, the latter winning."""
+        found: dict[str, float] = {}
+        self.roles.some(data, path)
+        for name, value in (data.get("roles") or {}).items():
+            if role := self.roles.joint(name, (*path, "roles", name)):
+                found[role.joint] = value * (1.0 if role.joint in self._body.hands else role.sign * self._factor)
+        for joint, value in (data.get("joints") or {}).items():
             if joint not in self._body.joints:
                 hint = did_you_mean(joint, self._body.joints, f"{self._body.name} has")
                 message = f"there is no joint `{joint}`"
-                self._report(UNKNOWN_JOINT, (*path, joint), message, hint=hint, key=True, cause=f"joint {joint}")
+                where = (*path, "joints", joint)
+                self._report(UNKNOWN_JOINT, where, message, hint=hint, key=True, cause=f"joint {joint}")
             else:
                 found[joint] = value * (1.0 if joint in self._body.hands else self._factor)
         return found

@@ -48,6 +48,7 @@ def build_motion(
     reader = KeyframeReader(report, name, poses, beat, motions or {}, broken)
     how = Interpolation(data.get("interpolation", Interpolation.MINIMUM_JERK))
     part = reader.read(data["keyframes"], ("keyframes",), how)
+    poses.roles.tell_left_out("this motion")
     if part.duration <= 0.0:
         if not has_errors(report.diagnostics):
             hint = "give its last keyframe a time above 0"
@@ -96,7 +97,7 @@ def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader
     part = trailing(part, poses.lags(data.get("trails") or {}, ("trails",)))
     if "speed" in data and poses.number(data["speed"], ("speed",)):
         part = at_speed(part, data["speed"])
-    part = mirrored(part) if data.get("mirror") else part
+    part = mirrored(part, poses.mirror) if data.get("mirror") else part
     start = data.get("start", DEFAULT_POSTURE if DEFAULT_POSTURE in poses.body.postures else None)
     end = data.get("end", start)
     origin = (poses.posture(start, ("start",)) if start else None) or {}

@@ -5,11 +5,13 @@ from dataclasses import dataclass, field
 from math import degrees, isfinite, pi
 from typing import Any
 
-from lumen.interpreters.choreography import mirrored_joint
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.mirrors import Mirror, mirror_of
 from lumen.language.robots import Body
+from lumen.language.roles import JointRole
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import NOT_A_NUMBER
+from lumen.loading.role_names import OUT_OF_REACH, RoleNames
 from lumen.loading.units import ANGLES, seconds
 
 UNKNOWN_JOINT = Code("unknown-joint", "references", ERROR, "the robot has no joint of that name")
@@ -26,7 +28,6 @@ PlacedAngles = dict[str, tuple[float, NodePath]]
 Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
 
 DRIVE_TOLERANCE = 1e-6
-_SIDES = {"left": "L", "right": "R"}
 
 
 @dataclass
@@ -38,22 +39,28 @@ class PoseReader:
     unit: str
     factor: float
     poses: dict[str, PlacedAngles] = field(default_factory=dict)
+    mirror: Mirror = field(init=False)
+    roles: RoleNames = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.mirror, self.roles = mirror_of(self.body), RoleNames(self.report, self.body)
 
     def define(self, poses: Mapping[str, Any], path: NodePath) -> None:
         """Learn the poses under `poses:`; one may build on those above it."""
         for name, pose in poses.items():
             angles = self.read(pose, (*path, name))
-            self.poses[name] = _mirrored(angles) if pose.get("mirror") else angles
+            self.poses[name] = _mirrored(angles, self.mirror) if pose.get("mirror") else angles
 
     def read(self, item: Mapping[str, Any], here: NodePath) -> PlacedAngles:
-        """The joints of a keyframe or pose: posture, then poses, then `joints` and `hands`, the later ones winning."""
+        """The joints of a keyframe or pose: posture, poses, `roles`, `joints`, `hands`, the later ones winning."""
         angles: PlacedAngles = {}
         if "posture" in item:
             angles |= self._posture(item["posture"], (*here, "posture"))
         names = item.get("pose", [])
         for i, name in enumerate([names] if isinstance(names, str) else names):
             angles |= self._pose(name, (*here, "pose") if isinstance(names, str) else (*here, "pose", i))
-        own = self._joints(item.get("joints") or {}, (*here, "joints"))
+        own = self._by_role(item.get("roles") or {}, (*here, "roles"))
+        own |= self._joints(item.get("joints") or {}, (*here, "joints"))
         own |= self._hands(item.get("hands") or {}, (*here, "hands"))
         return self._shared(angles | own, own)
 
@@ -74,18 +81,48 @@ class PoseReader:
     def handles(self, item: Mapping[str, Any], here: NodePath) -> Handles:
         """The Bezier handles of a keyframe, as (dt [s], da [rad]) before and after the key."""
         found: Handles = {}
-        for joint, sides in (item.get("handles") or {}).items():
-            path = (*here, "handles", joint)
-            if self._known(joint, path):
-                found[joint] = self._handle(joint, sides, "in", path), self._handle(joint, sides, "out", path)
+        for name, sides in (item.get("handles") or {}).items():
+            path = (*here, "handles", name)
+            if role := self._named(name, path):
+                joint, sign = role.joint, role.sign
+                before, after = (self._handle(joint, sign, sides, side, path) for side in ("in", "out"))
+                found[joint] = before, after
         return found
 
-    def _handle(self, joint: str, sides: Mapping[str, Any], side: str, path: NodePath) -> tuple[float, float]:
+    def _named(self, name: str, path: NodePath) -> JointRole | None:
+        """The joint that is meant by its name, or by its role; reported where it can't be."""
+        if "." in name:
+            return self.roles.joint(name, path)
+        return JointRole(name) if self._known(name, path) else None
+
+    def _by_role(self, roles: Mapping[str, float], path: NodePath) -> PlacedAngles:
+        """The angles that roles give; a joint that can't go there stands at its limit."""
+        found: PlacedAngles = {}
+        for name, value in roles.items():
+            here = (*path, name)
+            if (role := self.roles.joint(name, here)) is None or not self.number(value, here):
+                continue
+            if role.joint in self.body.hands:
+                found |= self._hand(role.joint, value, here)
+                continue
+            joint, angle = self.body.joints[role.joint], role.sign * value * self.factor
+            if not self._fits(role.joint, angle):
+                low, high = sorted(role.sign * end / self.factor for end in (joint.minimum, joint.maximum))
+                message = f"{self.body.name} can't bring `{name}` to {value:g} {self.unit}, and stops at its limit"
+                hint = f"it goes from {round(low, 4):g} to {round(high, 4):g} {self.unit}"
+                self.report(OUT_OF_REACH, here, message, hint=hint)
+                angle = min(max(angle, joint.minimum), joint.maximum)
+            found[role.joint] = angle, here
+        return found
+
+    def _handle(
+        self, joint: str, sign: float, sides: Mapping[str, Any], side: str, path: NodePath
+    ) -> tuple[float, float]:
         handle = sides.get(side) or {}
         dt, da = seconds(handle.get("before" if side == "in" else "after")), handle.get("angle", 0)
         if dt is None or not self.number(da, (*path, side, "angle")):
             return 0.0, 0.0
-        return (-dt if side == "in" else dt), da * (1.0 if joint in self.body.hands else self.factor)
+        return (-dt if side == "in" else dt), da * (1.0 if joint in self.body.hands else sign * self.factor)
 
     def _posture(self, name: str, path: NodePath) -> PlacedAngles:
         return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}
@@ -111,7 +148,8 @@ class PoseReader:
 
     def lags(self, trails: Mapping[str, str], path: NodePath) -> dict[str, float]:
         """How much later each joint is to come [s]; joints that share a motor come together."""
-        found = {name: seconds(lag) or 0.0 for name, lag in trails.items() if self._known(name, (*path, name))}
+        named = {name: self._named(name, (*path, name)) for name in trails}
+        found = {role.joint: seconds(trails[name]) or 0.0 for name, role in named.items() if role}
         twins = {**self.body.shared, **{leader: follower for follower, leader in self.body.shared.items()}}
         return {**{twins[name]: lag for name, lag in found.items() if name in twins}, **found}
 
@@ -137,7 +175,7 @@ class PoseReader:
             cause = root if abs(value) > 2 * pi else ""
         if cause:
             hint = f"write `units: {{angle: deg}}` at the top if these are degrees; {hint}"
-        elif mirrored_joint(name)[0] != name and self._fits(name, -value * self.factor):
+        elif self.mirror.get(name, ("",))[0] not in ("", name) and self._fits(name, -value * self.factor):
             hint = f"left and right turn opposite ways: write {-value:g} if that is meant; {hint}"
         message = f"`{name}` can't go to {value:g} {self.unit}"
         self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, cause=cause, root=root)
@@ -150,10 +188,8 @@ class PoseReader:
     def _hands(self, hands: Mapping[str, float], path: NodePath) -> PlacedAngles:
         found: PlacedAngles = {}
         for side, value in hands.items():
-            if self.number(value, (*path, side)):
-                for joint in self.body.hands:
-                    if joint.startswith(_SIDES.get(side, "?")):
-                        found |= self._hand(joint, value, (*path, side))
+            if self.number(value, (*path, side)) and (hand := self.roles.joint(f"hands.{side}", (*path, side))):
+                found |= self._hand(hand.joint, value, (*path, side))
         return found
 
     def _hand(self, joint: str, value: float, path: NodePath) -> PlacedAngles:
@@ -175,9 +211,6 @@ class PoseReader:
         return angles
 
 
-def _mirrored(angles: PlacedAngles) -> PlacedAngles:
-    return {
-        other: (sign * angle, where)
-        for joint, (angle, where) in angles.items()
-        for other, sign in (mirrored_joint(joint),)
-    }
+def _mirrored(angles: PlacedAngles, mirror: Mirror) -> PlacedAngles:
+    turned = ((*mirror.get(joint, (joint, 1.0)), *placed) for joint, placed in angles.items())
+    return {other: (sign * angle, where) for other, sign, angle, where in turned if other}

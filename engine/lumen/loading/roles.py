@@ -71,6 +71,7 @@ class RoleReader:
         name = role if isinstance(role, str) else role.get("joint")
         if name is None or not self.known(name, where):
             self._sound = False
+            self.report.lost.add(_written(path))
             return None
         first = self._owner.setdefault(name, path)
         if first != path:

@@ -26,6 +26,7 @@ from lumen.loading import (
     outline,
     poses,
     project,
+    role_names,
     roles,
     rounds,
     rulebook,
@@ -46,8 +47,8 @@ from lumen.rules.checks import CHECKS
 
 LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, gestures, keyframes, known_words,
-    life, linking, messages, misplaced, numbers, outline, poses, project, roles, rounds, rulebook, schedules, settings,
-    shapes, signal_bindings, terms, transitions, units, variables, yaml_errors, yaml_reader,
+    life, linking, messages, misplaced, numbers, outline, poses, project, role_names, roles, rounds, rulebook,
+    schedules, settings, shapes, signal_bindings, terms, transitions, units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 

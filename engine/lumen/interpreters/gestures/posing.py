@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from itertools import pairwise
 
-from lumen.interpreters.choreography import mirrored_joint
 from lumen.language.gestures import Gesture
 
 BEAT = "beat"
@@ -27,7 +26,7 @@ def gesture_offsets(gesture: Gesture, since: float, *, other_side: bool = False)
                 u = (since - t0) / (t1 - t0)
                 found[joint] = a0 + (a1 - a0) * u * u * u * (10 + u * (6 * u - 15))
                 break
-    return dict(_mirror(found)) if other_side else found
+    return dict(_mirror(gesture, found)) if other_side else found
 
 
 def peak_speeds(gesture: Gesture) -> dict[str, float]:
@@ -38,7 +37,8 @@ def peak_speeds(gesture: Gesture) -> dict[str, float]:
     }
 
 
-def _mirror(offsets: dict[str, float]) -> Iterator[tuple[str, float]]:
+def _mirror(gesture: Gesture, offsets: dict[str, float]) -> Iterator[tuple[str, float]]:
     for joint, angle in offsets.items():
-        other, sign = mirrored_joint(joint)
-        yield other, sign * angle
+        other, sign = gesture.mirror.get(joint, (joint, 1.0))
+        if other:
+            yield other, sign * angle

@@ -1,0 +1,30 @@
+"""What a mirror makes of a body's joints: left and right exchanged, yaws and rolls the other way."""
+
+from collections.abc import Mapping
+
+from lumen.language.robots import Body
+from lumen.language.roles import LEFT, RIGHT, JointRole
+
+Mirror = Mapping[str, tuple[str, float]]
+"""For joints the one on the other side, empty where the body has none there, and the sign that the angle takes.
+
+A joint that is not in it stays as it is.
+"""
+
+_OTHER = {LEFT: RIGHT, RIGHT: LEFT}
+
+
+def mirror_of(body: Body) -> Mirror:
+    """The mirror of a body: its roles say which joints are each other's image."""
+    found = {}
+    for path, role in body.roles.paths.items():
+        other = body.roles.joint(".".join(_OTHER.get(part, part) for part in path.split(".")))
+        found[role.joint] = (other.joint, _sign(path, role, other, body)) if other else ("", 1.0)
+    return found
+
+
+def _sign(path: str, role: JointRole, other: JointRole, body: Body) -> float:
+    """Joints on one motor turn together, whatever they are."""
+    one_motor = body.shared.get(role.joint) == other.joint or body.shared.get(other.joint) == role.joint
+    turned = -1.0 if path.endswith(("yaw", "roll")) and not one_motor else 1.0
+    return turned * role.sign * other.sign

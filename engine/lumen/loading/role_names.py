@@ -1,0 +1,50 @@
+"""Roles as motions name them, `head.yaw` or `arms.left.elbow-roll`, and what becomes of those that a body lacks."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean
+from lumen.language.robots import Body
+from lumen.language.roles import JOINT_PATHS, JointRole
+from lumen.loading.complaints import MISSING_KEY
+from lumen.loading.document_report import DocumentReport
+
+UNKNOWN_ROLE = Code("unknown-role", "references", ERROR, "no body has a role of that name")
+LEFT_OUT = Code("left-out", "robot", INFO, "something is left out that this robot's body can't do")
+OUT_OF_REACH = Code("out-of-reach", "motions", WARNING, "an angle that a role gives lies outside the joint's limits")
+
+
+class RoleNames:
+    """Finds the joints of roles in a body, and remembers which roles it lacks and where they were named first."""
+
+    def __init__(self, report: DocumentReport, body: Body) -> None:
+        self._report, self._body = report, body
+        self._lacking: dict[str, NodePath] = {}
+
+    def joint(self, name: str, path: NodePath) -> JointRole | None:
+        """The joint of a role, None where the body has none; a role that no body has is reported."""
+        if name not in JOINT_PATHS:
+            hint = did_you_mean(name, JOINT_PATHS, "roles are")
+            self._report(UNKNOWN_ROLE, path, f"there is no role `{name}`", hint=hint, key=True, cause=f"role {name}")
+            return None
+        if (role := self._body.roles.joint(name)) is None:
+            self._lacking.setdefault(name, path)
+        return role
+
+    def some(self, data: Mapping[str, Any], path: NodePath) -> bool:
+        """Whether that names joints at all, by role or by name; reported where it does not."""
+        here = "roles" in data or "joints" in data
+        if not (here or self._report.broken((*path, "joints")) or self._report.broken((*path, "roles"))):
+            hint = "write `roles: {head.pitch: 5}`, or `joints` of this robot alone"
+            self._report(
+                MISSING_KEY, path, "this moves nothing: it has neither `roles` nor `joints`", hint=hint, key=True
+            )
+        return here
+
+    def tell_left_out(self, what: str) -> None:
+        """Say which roles the body lacks that were named, once for all of them; `what` leaves them out."""
+        if lacking := {name: path for name, path in self._lacking.items() if name not in self._report.lost}:
+            names = ", ".join(f"`{name}`" for name in lacking)
+            hint = "say under `roles` of the body which joints these are, if it has them"
+            message = f"{self._body.name} has no {names}: {what} leaves that out"
+            self._report(LEFT_OUT, next(iter(lacking.values())), message, hint=hint, key=True)
