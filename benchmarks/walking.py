@@ -60,7 +60,7 @@ def far(name: str, start: Start, robots: int, command: Walk) -> None:
         if not walked.upright:
             continue
         upright += 1
-        there, where = truth(robot), robot._odometry.whereabouts
+        there, where = truth(robot), robot.base.whereabouts
         off.append(walked.off)
         aside.append(100 * abs(there.y - command.y))
         wrong.append(100 * hypot(there.x - where.x, there.y - where.y))

@@ -5,7 +5,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.interpreters.gait.footsteps import (
-    NARROWEST,
     Feet,
     beside,
     corners,
@@ -16,6 +15,7 @@ from lumen.interpreters.gait.footsteps import (
 from lumen.interpreters.gait.legs import other, sign
 from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.poses import Pose
+from tests.gait.nao_legs import NAO_LEGS
 
 PACE = GaitParameters()
 HERE = Pose(1.0, -2.0, 0.7)
@@ -31,7 +31,7 @@ def test_steps_alternate_stay_short_and_end_side_by_side_at_the_goal(way: Pose) 
     for i, step in enumerate(steps):
         assert step.side == (steps[0].side if i % 2 == 0 else other(steps[0].side))
         seen = step.pose.seen_from(feet[other(step.side)])
-        assert NARROWEST - 1e-9 <= sign(step.side) * seen.y <= PACE.widest + 1e-9
+        assert PACE.narrowest - 1e-9 <= sign(step.side) * seen.y <= PACE.widest + 1e-9
         assert abs(seen.x) < 0.13
         assert abs(seen.theta) < 0.3
         feet[step.side] = step.pose
@@ -49,6 +49,6 @@ def test_a_walk_begins_with_the_foot_it_leads_to() -> None:
 
 def test_a_sole_lies_around_its_ankle() -> None:
     [step] = footsteps(FEET, HERE, "L", PACE)[:1]
-    ahead = [(point - step.pose.place) / step.pose.ahead for point in corners(step)]
+    ahead = [(point - step.pose.place) / step.pose.ahead for point in corners(step, NAO_LEGS.sole_size)]
     assert max(p.real for p in ahead) - min(p.real for p in ahead) == pytest.approx(0.14)
     assert max(p.imag for p in ahead) > -min(p.imag for p in ahead)

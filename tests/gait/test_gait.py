@@ -11,6 +11,7 @@ from lumen.interpreters.gait import Feet, Gait, Pose, middle
 from lumen.interpreters.gait.footsteps import beside
 from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
+from tests.gait.nao_legs import NAO_LEGS
 from tests.motions.making import nao
 
 START: Feet = {"L": beside(Pose(), "L", GaitParameters()), "R": beside(Pose(), "R", GaitParameters())}
@@ -20,6 +21,10 @@ LIMIT = 6000
 
 def mass(legs: Mapping[str, float]) -> NDArray[np.float64]:
     return np.array([0.01, 0.0, -0.05])
+
+
+def walking(goal: Pose) -> Gait:
+    return Gait(NAO_LEGS, START, goal, mass, GaitParameters())
 
 
 class Walked:
@@ -41,7 +46,7 @@ GOALS = [(0.2, 0, 0), (-0.2, 0, 0), (0, 0.2, 0), (0, -0.1, 0), (0.3, 0.2, pi / 4
 
 @pytest.mark.parametrize("goal", GOALS)
 def test_it_arrives(goal: tuple[float, float, float]) -> None:
-    gait = Gait(START, Pose(*goal), mass)
+    gait = walking(Pose(*goal))
     walked = Walked(gait)
     far, turned = gait.left
     assert walked.ticks < LIMIT
@@ -52,14 +57,14 @@ def test_it_arrives(goal: tuple[float, float, float]) -> None:
 
 
 def test_where_it_stands_already_it_only_stands() -> None:
-    gait = Gait(START, Pose(), mass)
+    gait = walking(Pose())
     assert gait.steps == 0
     assert Walked(gait).lifted == {""}
 
 
 @pytest.mark.parametrize("moment", range(1, 320, 12))
 def test_stopped_at_any_moment_it_ends_with_its_feet_together_within_a_second(moment: int) -> None:
-    gait = Gait(START, Pose(1.0, 0.3, 0.5), mass)
+    gait = walking(Pose(1.0, 0.3, 0.5))
     walked = Walked(gait, stop=moment)
     assert walked.ticks <= moment + 100
     assert gait.feet["L"].seen_from(gait.feet["R"]) == pytest.approx((0, 0.1, 0), abs=1e-6)
@@ -68,7 +73,7 @@ def test_stopped_at_any_moment_it_ends_with_its_feet_together_within_a_second(mo
 
 def test_a_foot_that_slipped_around_is_taken_into_account() -> None:
     """In its third step the torso turns by 0.2 rad that the encoders know nothing of."""
-    gait = Gait(START, Pose(0.5, 0.0, 0.0), mass)
+    gait = walking(Pose(0.5, 0.0, 0.0))
     angles, ticks, turned = dict(gait.angles), 0, [0.0]
     while tick := gait.tick(angles, gait.heading + (0.2 if gait.steps == 2 else 0.0)):
         angles, ticks = dict(tick.angles), ticks + 1

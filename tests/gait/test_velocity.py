@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait import GENTLE_GAIT, Gait, GaitParameters, Pose, Velocity, fastest, middle
-from lumen.interpreters.gait.footsteps import NARROWEST
+from lumen.interpreters.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, middle
 from lumen.interpreters.gait.legs import other, sign
 from lumen.interpreters.gait.velocity import strides
+from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import JOINTS, LIMIT, START
 
 PACE = GaitParameters()
@@ -53,7 +53,7 @@ VELOCITIES = [(0.1, 0, 0), (-0.1, 0, 0), (0, 0.05, 0), (0, -0.05, 0), (0, 0, 0.4
 @pytest.mark.parametrize("velocity", VELOCITIES, ids=str)
 def test_it_goes_as_fast_as_it_is_told(velocity: tuple[float, float, float]) -> None:
     """Measured over ten steps from the second on: first the weight has to shift."""
-    gait = Gait(START, Velocity(*velocity), mass)
+    gait = Gait(NAO_LEGS, START, Velocity(*velocity), mass, PACE)
     legs = Legs(gait)
     legs.walk(36 + 4 * 45)
     start, steps = middle(gait.feet), gait.steps
@@ -66,7 +66,7 @@ def test_it_goes_as_fast_as_it_is_told(velocity: tuple[float, float, float]) -> 
 
 
 def test_no_speed_at_all_ends_it_with_the_feet_together() -> None:
-    gait = Gait(START, Velocity(0.1, 0.0, 0.2), mass)
+    gait = Gait(NAO_LEGS, START, Velocity(0.1, 0.0, 0.2), mass, PACE)
     legs = Legs(gait)
     legs.walk(250)
     gait.goal = Velocity()
@@ -75,14 +75,14 @@ def test_no_speed_at_all_ends_it_with_the_feet_together() -> None:
 
 
 def test_from_standing_no_speed_moves_nothing() -> None:
-    gait = Gait(START, Velocity(), mass)
+    gait = Gait(NAO_LEGS, START, Velocity(), mass, PACE)
     assert Legs(gait).end() < 60
     assert gait.steps == 0
 
 
 @pytest.mark.parametrize("moment", range(1, 320, 24))
 def test_stopped_at_any_moment_it_ends_within_a_second(moment: int) -> None:
-    gait = Gait(START, Velocity(0.1, 0.03, 0.2), mass)
+    gait = Gait(NAO_LEGS, START, Velocity(0.1, 0.03, 0.2), mass, PACE)
     legs = Legs(gait)
     legs.walk(moment)
     gait.stop()
@@ -93,14 +93,14 @@ def test_stopped_at_any_moment_it_ends_within_a_second(moment: int) -> None:
 speeds = st.floats(-100, 100)
 
 
-@given(speeds, speeds, speeds, st.sampled_from("LR"), st.sampled_from([PACE, GENTLE_GAIT]))
+@given(speeds, speeds, speeds, st.sampled_from("LR"), st.sampled_from([PACE, FOUND.gentle]))
 def test_whatever_is_asked_feet_neither_touch_nor_stride_too_far(
     x: float, y: float, theta: float, first: str, pace: GaitParameters
 ) -> None:
     bearing = START
     for side, pose in strides(START, Velocity(x, y, theta), first, pace, 8):
         seen = pose.seen_from(bearing[other(side)])
-        assert NARROWEST - 1e-9 <= sign(side) * seen.y <= PACE.widest + 1e-9
+        assert pace.narrowest - 1e-9 <= sign(side) * seen.y <= PACE.widest + 1e-9
         assert abs(seen.x) <= pace.forward + pace.apart * pace.turn
         assert abs(seen.theta) <= pace.turn + 1e-9
         bearing = {**bearing, side: pose}

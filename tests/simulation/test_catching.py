@@ -22,7 +22,7 @@ def pushed(robot: SimulatedRobot, impulse: float, seconds: float, to: float = 0.
     while robot.time < begin + seconds:
         push.act(robot, robot.time - begin)
         robot.advance(0.01)
-        stepped |= robot._catcher.active
+        stepped |= robot.base.catching
     return stepped
 
 
@@ -31,12 +31,12 @@ def test_a_step_catches_it_and_the_robot_stands_again_as_before(body: Body) -> N
     robot.advance(1.0)
     assert pushed(robot, HARD, 6.0)
     assert not robot.fallen
-    assert not robot._catcher.active
+    assert not robot.base.catching
     legs = [robot.motors.index[n] for n in body.parts["legs"]]
     wanted = np.array([body.postures["Stand"][n] for n in body.parts["legs"]])
     assert np.abs(robot.motors.command[legs] - wanted).max() < 0.12
     assert robot.world.tilt < 0.1
-    here, believed = truth(robot), robot._odometry.whereabouts
+    here, believed = truth(robot), robot.base.whereabouts
     assert here.x > 0.05
     assert hypot(here.x - believed.x, here.y - believed.y) < believed.doubt
     assert here.theta == pytest.approx(believed.theta, abs=0.15)

@@ -5,12 +5,13 @@ from math import nan
 import numpy as np
 import pytest
 
-from lumen.interpreters.gait import GENTLE_GAIT, Footstep, GaitParameters, corners, fastest
+from lumen.interpreters.gait import FOUND, Footstep, GaitParameters, corners, fastest
 from lumen.interpreters.gait.poses import wrap
 from lumen.language.commands import Move, Posture, Stop, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
+from tests.gait.nao_legs import NAO_LEGS
 from tests.simulation.conftest import MODELS, answer, until_answered
 from tests.simulation.walks import Push, any_robot, feet, on_the_floor, truth
 
@@ -71,7 +72,7 @@ def full_speed(body: Body, seed: int, command: Move, seconds: float) -> tuple[bo
         now = truth(robot).theta
         turned, heading = turned + wrap(now - heading), now
     way = truth(robot).seen_from(begin)
-    stayed = not robot.fallen and not robot._catcher.active
+    stayed = not robot.fallen and not robot.base.catching
     return stayed, way.x / seconds, way.y / seconds, turned / seconds
 
 
@@ -149,7 +150,7 @@ def test_it_ends_at_the_edge_of_the_stage_with_both_feet_on_it(staged: Simulated
         staged.advance(0.05)
         assert staged.time < 60, events
     for side, pose in feet(staged).items():
-        for corner in corners(Footstep(side, pose)):
+        for corner in corners(Footstep(side, pose), NAO_LEGS.sole_size):
             farthest = max(farthest, abs(corner.real) - 0.4, abs(corner.imag) - 0.6)
     assert "foot would leave the stage" in result
     assert result.endswith("the walk was ended")
@@ -204,4 +205,4 @@ def test_hot_motors_move_slowly(body: Body) -> None:
     robot.advance(0.2)
     robot.start("m", Move(FASTEST.x))
     robot.advance(4.0)
-    assert robot.world.data.qpos[0] < 4.0 * fastest(GENTLE_GAIT).x
+    assert robot.world.data.qpos[0] < 4.0 * fastest(FOUND.gentle).x

@@ -12,6 +12,7 @@ from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.odometry import DRIFT_AFTER_FALL, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_SITTING, Odometry
+from tests.gait.nao_legs import NAO_LEGS
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.test_postures import shoved
 from tests.simulation.walks import any_robot, on_the_floor, truth
@@ -23,7 +24,7 @@ STANDING = dict.fromkeys(
 
 
 def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
-    whereabouts = Odometry(WIDE)
+    whereabouts = Odometry(NAO_LEGS, WIDE)
     whereabouts.feel(STANDING)
     whereabouts.check([Footstep("L", Pose(0.85, 0.05))])
     for posture in ("Crouch", "Straddle", "LyingBack", "Straddle"):
@@ -43,7 +44,7 @@ def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
 
 
 def test_feet_in_doubt_may_stay_where_they_stand() -> None:
-    whereabouts = Odometry(Stage((-0.2, 0.2), (-0.2, 0.2)))
+    whereabouts = Odometry(NAO_LEGS, Stage((-0.2, 0.2), (-0.2, 0.2)))
     whereabouts.feel(STANDING)
     whereabouts.lose("Sit")
     whereabouts.feel(STANDING)
@@ -54,7 +55,7 @@ def test_feet_in_doubt_may_stay_where_they_stand() -> None:
 
 
 def test_what_it_turned_while_it_was_down_counts_and_what_it_drifts_while_it_stands_does_not() -> None:
-    whereabouts = Odometry(WIDE)
+    whereabouts = Odometry(NAO_LEGS, WIDE)
     for heading in (0.1, 0.2):
         whereabouts.keep(heading)
     whereabouts.lose("Sit")
@@ -76,7 +77,7 @@ def test_a_robot_that_sat_walks_only_where_it_is_safe_all_the_same(body: Body) -
 
 def believed(robot: SimulatedRobot) -> Pose:
     """Where the robot takes itself to stand, from where it began."""
-    return middle(robot._odometry.feet)
+    return middle(robot.base.odometry.feet)
 
 
 @pytest.mark.parametrize("seed", [0, 2])

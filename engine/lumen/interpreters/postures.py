@@ -4,15 +4,28 @@ from collections.abc import Iterator
 
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
+from lumen.language.roles import BaseKind
 
 UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
-"""Those on both feet: a straight way connects them."""
+"""Those on both feet that every biped may have."""
 
 RESTFUL = ("Crouch", "Sit", "SitRelax", "LyingBack", "LyingBelly")
 """Those that a robot keeps with its motors off."""
 
 STRAIGHT_COST = 1.0
 """What a straight way counts [s], beside the duration of a passage."""
+
+
+def standing(body: Body) -> tuple[str, ...]:
+    """The postures between which straight ways lead: of a biped those on its feet, of another body all.
+
+    A biped's own postures count as such, unless a passage leads there.
+    """
+    if body.roles.base.kind is not BaseKind.BIPED:
+        return tuple(body.postures)
+    passed = {*RESTFUL, *(end for motion in body.passages for end in (motion.start, motion.end))}
+    own = [name for name in body.postures if name not in passed and name not in UPRIGHT]
+    return (*(name for name in UPRIGHT if name in body.postures), *own)
 
 
 def lies(posture: str) -> bool:
@@ -42,6 +55,6 @@ def route(body: Body, start: str, *goals: str) -> list[str] | None:
 
 
 def _neighbours(body: Body, posture: str) -> Iterator[tuple[str, float]]:
-    if posture in UPRIGHT:
-        yield from ((name, STRAIGHT_COST) for name in UPRIGHT if name in body.postures and name != posture)
+    if posture in (upright := standing(body)):
+        yield from ((name, STRAIGHT_COST) for name in upright if name != posture)
     yield from ((p.end, p.duration) for p in body.passages if p.start == posture)

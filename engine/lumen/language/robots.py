@@ -66,7 +66,8 @@ class Body:
     posture to angles [rad] of every joint. `shared` maps a joint to the one whose motor moves it too; `hands` are the
     joints that open (0..1) rather than turn. `passages` are the motions from one posture (`start`) to another (`end`)
     where a straight way would fall. `links` are those that differ from the MJCF. `roles` say what its parts are; one
-    whose eyes have a camera has a `camera`.
+    whose eyes have a camera has a `camera`. `gait` maps the name of a pace to what of it does not follow
+    from the legs, in SI units.
     """
 
     name: str
@@ -83,3 +84,4 @@ class Body:
     passages: tuple[MotionDefinition, ...] = ()
     links: Mapping[str, LinkInertia] = field(default_factory=dict)
     roles: Roles = field(default_factory=Roles)
+    gait: Mapping[str, Mapping[str, float]] = field(default_factory=dict)

@@ -23,6 +23,24 @@ JOINT_WITHOUT_PART = Code("joint-without-part", "robot", ERROR, "a joint belongs
 UNSORTED_ROWS = Code("unsorted-rows", "robot", ERROR, "the rows of a table are not in rising order")
 
 
+GAIT_ANGLES = frozenset(("turn", "lean"))
+GAIT_LENGTHS = frozenset(
+    (
+        "forward",
+        "sideways",
+        "lift",
+        "torso",
+        "apart",
+        "narrowest",
+        "widest",
+        "ahead",
+        "inside",
+        "sole_ahead",
+        "sole_aside",
+    )
+)
+"""The parameters of a pace that are counted in the file's units; all others are times [s]."""
+
 COMMON_POSTURE = "Stand"
 """The one that every robot knows: where it begins."""
 
@@ -92,6 +110,7 @@ class _Builder:
             sonar=self.sonar(data.get("sonar")),
             links={n: self.link(spec) for n, spec in (data.get("links") or {}).items()},
             roles=roles,
+            gait=self.gait(),
         )
 
     def like(self, other: Body, name: str) -> Body:
@@ -103,7 +122,14 @@ class _Builder:
             camera=self.camera(data["camera"]) if "camera" in data else other.camera,
             sonar=self.sonar(data["sonar"]) if "sonar" in data else other.sonar,
             links={**other.links, **{n: self.link(spec) for n, spec in (data.get("links") or {}).items()}},
+            gait=self.gait() if "gait" in data else other.gait,
         )
+
+    def gait(self) -> dict[str, dict[str, float]]:
+        """What was found of each pace, in SI units."""
+        units = {name: self.angle if name in GAIT_ANGLES else self.length for name in GAIT_LENGTHS | GAIT_ANGLES}
+        paces = (self.data.get("gait") or {}).items()
+        return {pace: {n: v * units.get(n, 1.0) for n, v in found.items()} for pace, found in paces}
 
     def link(self, spec: Mapping[str, Any]) -> LinkInertia:
         return LinkInertia(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))

@@ -107,9 +107,9 @@ def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> 
 
 
 def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length: str) -> None:
-    from lumen.interpreters.gait import BRISK_GAIT, fastest  # takes 0.1 s, with numpy: only where somebody walks on
+    from lumen.interpreters.gait import FOUND, fastest  # takes 0.1 s, with numpy: only where somebody walks on
 
-    most = fastest(BRISK_GAIT)
+    most = fastest(FOUND.brisk)
     for key, value, limit, unit, size in (
         ("vx", move.vx, most.x, length, LENGTHS[length]),
         ("vy", move.vy, most.y, length, LENGTHS[length]),

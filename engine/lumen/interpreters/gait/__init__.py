@@ -5,15 +5,13 @@ Nothing here touches a robot: feet and a goal go in, joint angles come out, tick
 
 from lumen.interpreters.gait.footsteps import Feet, Footstep, corners, middle
 from lumen.interpreters.gait.gait import CentreOfMass, Gait, GaitTick
-from lumen.interpreters.gait.legs import JOINTS, SIDES, Side, foot_from
-from lumen.interpreters.gait.parameters import BRISK_GAIT, GENTLE_GAIT, GaitParameters
+from lumen.interpreters.gait.legs import SIDES, LegGeometry, Side, SoleSize
+from lumen.interpreters.gait.parameters import FOUND, GaitParameters, Paces, paces_of
 from lumen.interpreters.gait.poses import Pose
 from lumen.interpreters.gait.velocity import Velocity, fastest
 
 __all__ = [
-    "BRISK_GAIT",
-    "GENTLE_GAIT",
-    "JOINTS",
+    "FOUND",
     "SIDES",
     "CentreOfMass",
     "Feet",
@@ -21,11 +19,14 @@ __all__ = [
     "Gait",
     "GaitParameters",
     "GaitTick",
+    "LegGeometry",
+    "Paces",
     "Pose",
     "Side",
+    "SoleSize",
     "Velocity",
     "corners",
     "fastest",
-    "foot_from",
     "middle",
+    "paces_of",
 ]

@@ -5,73 +5,75 @@ lands. There the foot has to stand (Pratt and others, "Capture point: a step tow
 Points are (forward, left) [m], level with the ground, seen from the bearing sole.
 """
 
-from math import asin, atan2, copysign, exp, sin
+from collections.abc import Mapping
+from math import asin, atan2, copysign, cos, exp, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait.footsteps import HEEL, INNER, NARROWEST, OUTER, TOE
-from lumen.interpreters.gait.legs import FOOT, HIP_DOWN, HIP_OUT, THIGH, TIBIA, Side, bend, sign
+from lumen.interpreters.gait.legs import LegAngles, LegGeometry, Side, heading_rotation, sign
+from lumen.interpreters.gait.parameters import GaitParameters, scale_of
 
 FARTHEST, WIDEST_CATCH = 0.2, 0.2
-"""How far ahead or behind, and aside, a foot can be put down [m]."""
+"""How far ahead or behind, and aside, a foot can be put down [m], by legs as long as those it was found with."""
 
 BEYOND = 0.02
-"""How far beyond the DCM the middle of the sole is put down [m]: what is short costs a second step."""
-
-MIDDLE = (TOE - HEEL) / 2
-"""The sole's middle, in front of the point below the ankle [m]."""
+"""How far beyond the DCM the middle of the sole is put down [m], by such legs: what is short costs a second step."""
 
 HIP_STRETCHED = 0.47
 """No thigh goes farther back than this [rad]: beyond it the knee has to."""
 
 _GAP = 0.01
-_SLOPE, _STEP, _ERROR, _ROUNDS = 1.4, 0.2, 1e-3, 4
+_STEP, _ERROR, _ROUNDS = 0.2, 1e-3, 4
 
 CapturePoint = NDArray[np.float64]
 
 
-def landing(dcm: CapturePoint, omega: float, left: float, bears: Side) -> CapturePoint:
+def landing(
+    legs: LegGeometry, pace: GaitParameters, dcm: CapturePoint, omega: float, left: float, bears: Side
+) -> CapturePoint:
     """Where the foot that swings has to land in `left` [s], while the body rests on the sole that bears.
 
     Nowhere that it could not reach, and not on the other foot.
     """
-    out = sign(bears)
-    rest = np.array([min(max(dcm[0], -HEEL), TOE), out * min(max(out * dcm[1], -INNER), OUTER)])
+    out, sole, scale = sign(bears), legs.sole_size, scale_of(legs)
+    rest = np.array([min(max(dcm[0], -sole.heel), sole.toe), out * min(max(out * dcm[1], -sole.inner), sole.outer)])
     end = rest + (dcm - rest) * exp(omega * left)
-    ahead = end[0] - MIDDLE
-    ahead = min(max(ahead + copysign(BEYOND, ahead), -FARTHEST), FARTHEST)
-    apart = min(max(-out * end[1], NARROWEST + _GAP), WIDEST_CATCH)
+    ahead = end[0] - (sole.toe - sole.heel) / 2
+    ahead = min(max(ahead + copysign(BEYOND * scale, ahead), -FARTHEST * scale), FARTHEST * scale)
+    apart = min(max(-out * end[1], pace.narrowest + _GAP * scale), WIDEST_CATCH * scale)
     return np.array([ahead, -out * apart])
 
 
-def hold_level(side: Side, axes: NDArray[np.float64], sole: NDArray[np.float64], yaw: float) -> tuple[float, ...]:
-    """The joints of a leg [rad], in the order of `JOINTS`, that hold its sole there and level, whatever the torso does.
+def hold_level(
+    legs: LegGeometry, side: Side, axes: NDArray[np.float64], sole: NDArray[np.float64], joints: Mapping[str, float]
+) -> dict[str, float]:
+    """The joints of a leg [rad] that hold its sole there and level, whatever the torso does.
 
     `axes` (3, 3) are forward, left and up in the torso's frame; `sole` (3,) [m] is seen from the torso along them. The
-    hip yaw pitch stays as it is (`yaw`), for the other leg shares its motor: the foot points where it then does.
+    hip's yaw stays as it is in `joints`, for the other leg may share its motor: the foot points where it then does.
     """
-    ankle = axes.T @ (sole + np.array((0.0, 0.0, FOOT)))
+    ankle = axes.T @ (sole + np.array((0.0, 0.0, legs.foot)))
+    yaw = legs.angles(side, joints)[0]
 
-    def bent(theta: float) -> tuple[float, ...]:
-        c, s = np.cos(theta), np.sin(theta)
-        return bend(side, axes.T @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), ankle)
+    def bent(theta: float) -> LegAngles:
+        return legs.bend(side, axes.T @ heading_rotation(theta), ankle)
 
-    theta, slope = 0.0, -sign(side) * _SLOPE
-    joints = bent(theta)
+    theta, slope = 0.0, round(1 / cos(legs.inclination), 1)
+    angles = bent(theta)
     for _ in range(_ROUNDS):
-        wrong = joints[0] - yaw
+        wrong = angles[0] - yaw
         if abs(wrong) < _ERROR:
             break
         step = min(max(-wrong / slope, -_STEP), _STEP)
-        theta, before, joints = theta + step, joints[0], bent(theta + step)
-        slope = (joints[0] - before) / step if abs(joints[0] - before) > _ERROR / 10 else slope
-    _, roll, hip, knee, pitch, tilt = joints
+        theta, before, angles = theta + step, angles[0], bent(theta + step)
+        slope = (angles[0] - before) / step if abs(angles[0] - before) > _ERROR / 10 else slope
+    _, roll, hip, knee, pitch, tilt = angles
     if hip > HIP_STRETCHED:
         back = atan2(axes[2, 0], axes[2, 2])
-        ahead = float(axes[0] @ (ankle - (0.0, sign(side) * HIP_OUT, -HIP_DOWN)))
-        far = min(max((-ahead - THIGH * sin(HIP_STRETCHED - back)) / TIBIA, -0.95), 0.95)
+        ahead = float(axes[0] @ (ankle - legs.hip(side)))
+        far = min(max((-ahead - legs.thigh * sin(HIP_STRETCHED - back)) / legs.tibia, -0.95), 0.95)
         level = hip + knee + pitch
         hip, knee = HIP_STRETCHED, asin(far) + back - HIP_STRETCHED
         pitch = level - hip - knee
-    return yaw, roll, hip, knee, pitch, tilt
+    return legs.joints(side, (yaw, roll, hip, knee, pitch, tilt))

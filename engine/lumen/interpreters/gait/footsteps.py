@@ -4,18 +4,12 @@ from collections.abc import Mapping, Sequence
 from math import ceil, hypot
 from typing import NamedTuple
 
-from lumen.interpreters.gait.legs import Side, other, sign
+from lumen.interpreters.gait.legs import Side, SoleSize, other, sign
 from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.poses import Pose
 
 Feet = Mapping[Side, Pose]
 """Both soles, below the ankles."""
-
-NARROWEST = 0.085
-"""How far apart two feet have to stand, across the one that bears [m]: nearer the soles touch."""
-
-TOE, HEEL, OUTER, INNER = 0.095, 0.045, 0.046, 0.028
-"""How far the sole reaches from the point below the ankle [m]."""
 
 
 class Footstep(NamedTuple):
@@ -48,17 +42,17 @@ def footsteps(feet: Feet, goal: Pose, first: Side, pace: GaitParameters) -> list
     while there < 2 and len(steps) < 2 * count + 4:
         part = min(1.0, (len(steps) + 1) / count)
         wanted = beside(here.then(Pose(way.x * part, way.y * part, way.theta * part)), side, pace)
-        step = Footstep(side, clear(wanted, side, bearing, pace.widest))
+        step = Footstep(side, clear(wanted, side, bearing, pace))
         there = there + 1 if part == 1.0 and abs(step.pose.place - wanted.place) < 1e-6 else 0
         steps.append(step)
         side, bearing = other(side), step.pose
     return steps
 
 
-def clear(foot: Pose, side: Side, bearing: Pose, widest: float) -> Pose:
+def clear(foot: Pose, side: Side, bearing: Pose, pace: GaitParameters) -> Pose:
     """That place for a foot, or the nearest that neither touches the bearing foot nor strains the hips."""
     seen = foot.seen_from(bearing)
-    out = sign(side) * min(max(sign(side) * seen.y, NARROWEST), widest)
+    out = sign(side) * min(max(sign(side) * seen.y, pace.narrowest), pace.widest)
     return bearing.then(Pose(seen.x, out, seen.theta))
 
 
@@ -69,10 +63,15 @@ def first_side(way: Pose) -> Side:
     return "L" if way.theta >= 0 else "R"
 
 
-def corners(step: Footstep) -> Sequence[complex]:
-    """The corners of a sole on the ground, x + iy [m]."""
+def corners(step: Footstep, sole: SoleSize) -> Sequence[complex]:
+    """The corners of a sole of that size on the ground, x + iy [m]."""
     s, foot = sign(step.side), step.pose
     return [
         foot.place + complex(ahead, s * out) * foot.ahead
-        for ahead, out in ((TOE, OUTER), (TOE, -INNER), (-HEEL, OUTER), (-HEEL, -INNER))
+        for ahead, out in (
+            (sole.toe, sole.outer),
+            (sole.toe, -sole.inner),
+            (-sole.heel, sole.outer),
+            (-sole.heel, -sole.inner),
+        )
     ]

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.interpreters.gait.footsteps import Feet, Footstep, first_side, footsteps, middle
-from lumen.interpreters.gait.legs import Placed, Side, Stance, foot_from, other, sign, sole, stand, torso_rotation
+from lumen.interpreters.gait.legs import LegGeometry, Placed, Side, other, sign, torso_rotation
 from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
 from lumen.interpreters.gait.planning import GaitPhase, StepPlanner, between
 from lumen.interpreters.gait.poses import Pose, wrap
+from lumen.interpreters.gait.stance import Stance, stand
 from lumen.interpreters.gait.velocity import Velocity, strides
 
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
@@ -49,10 +50,17 @@ class Gait:
     """
 
     def __init__(
-        self, feet: Feet, goal: Pose | Velocity, com: CentreOfMass, pace: GaitParameters | None = None, dt: float = 0.01
+        self,
+        legs: LegGeometry,
+        feet: Feet,
+        goal: Pose | Velocity,
+        com: CentreOfMass,
+        pace: GaitParameters,
+        dt: float = 0.01,
     ) -> None:
+        self._legs = legs
         self.goal: Pose | Velocity = goal
-        self.feet, self.pace, self.steps = feet, pace or GaitParameters(), 0
+        self.feet, self.pace, self.steps = feet, pace, 0
         self._com, self._dt = com, dt
         self._side = first_side(goal.seen_from(middle(feet)) if isinstance(goal, Pose) else Pose(*goal))
         self._most = 2 * len(self.coming) + _MORE if isinstance(goal, Pose) else inf
@@ -135,7 +143,7 @@ class Gait:
         side, bearing = self._side, other(self._side)
         slipped = wrap(heading - (self._north or 0.0) - self._heading(measured))
         stood = self.feet[bearing].then(Pose(0.0, 0.0, slipped if abs(slipped) > SLIP_ANGLE else 0.0))
-        landed = stood.then(foot_from(bearing, measured))
+        landed = stood.then(self._legs.foot_from(bearing, measured))
         self.feet = {bearing: stood, side: landed}
 
         def moved(point: complex) -> complex:
@@ -149,7 +157,7 @@ class Gait:
     def _heading(self, measured: Mapping[str, float]) -> float:
         """The torso's heading [rad], if the bearing foot has not slipped."""
         bearing = other(self._side)
-        turned, _ = sole(bearing, measured)
+        turned, _ = self._legs.sole(bearing, measured)
         return self.feet[bearing].theta - atan2(turned[1, 0], turned[0, 0])
 
     def _arrived(self, feet: Feet) -> bool:
@@ -188,7 +196,7 @@ class Gait:
         """The joints that bring the centre of mass where the plan wants it."""
         pace = self.pace
         torso = self._mass - complex(self._offset[0], self._offset[1])
-        stance = stand(torso, pace.torso, pace.lean, self.heading, feet)
+        stance = stand(self._legs, torso, pace.torso, pace.lean, self.heading, feet)
         self.heading = stance.yaw
         self._offset = torso_rotation(stance.yaw, pace.lean) @ self._com(stance.angles)
         return stance

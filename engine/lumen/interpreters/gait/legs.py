@@ -1,7 +1,8 @@
-"""NAO's legs: from where the feet are to what the joints do, and back."""
+"""A pair of legs: from where the feet are to what the joints do, and back."""
 
 from collections.abc import Mapping
-from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
+from dataclasses import dataclass
+from math import acos, asin, atan2, cos, hypot, sin, sqrt
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -11,22 +12,15 @@ from lumen.interpreters.gait.poses import Pose
 
 Side = Literal["L", "R"]
 SIDES: tuple[Side, Side] = ("L", "R")
-
-JOINTS = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
-"""From the hip down; with `L` or `R` before them they are NAOqi's names."""
-
-HIP_OUT, HIP_DOWN = 0.05, 0.085
-"""Where the hip joints' axes meet, beside and below the torso's origin [m]."""
-
-THIGH, TIBIA, FOOT = 0.1, 0.1029, 0.04511
-"""Hip to knee, knee to ankle, ankle to sole [m]."""
-
-STRETCHED = THIGH + TIBIA - 1e-4
-_SLOPE = 2.7
-_YAW_STEP, _YAW_ERROR, _ROUNDS = 0.2, 1e-4, 6
+SIDE_ROLES: Mapping[Side, str] = {"L": "left", "R": "right"}
+"""The sides as roles have them."""
 
 RotationMatrix = NDArray[np.float64]
 LegVector = NDArray[np.float64]
+LegAngles = tuple[float, float, float, float, float, float]
+"""What the joints of a leg do [rad], in the order of `LEG_ROLES`: yaw to the left, roll to the right, pitch forward."""
+
+_STRETCHED = 1e-4
 
 
 class Placed(NamedTuple):
@@ -34,6 +28,97 @@ class Placed(NamedTuple):
 
     pose: Pose
     height: float = 0.0
+
+
+class SoleSize(NamedTuple):
+    """How far a sole reaches from the point below the ankle [m]."""
+
+    toe: float
+    heel: float
+    outer: float
+    inner: float
+
+
+@dataclass(frozen=True, slots=True)
+class LegGeometry:
+    """What a pair of legs measures [m], [rad], and how its joints are called and counted.
+
+    Three axes meet in the hip (yaw, roll, pitch from the torso down), two in the ankle, and the knee lies between: that
+    has a closed form. The hips' middle is `hip_ahead` of the torso's origin, `hip_out` beside and `hip_down` below it.
+    `inclination` is how far the yaw axis leans inwards from upright; where both yaws share a motor, `shared`. `speed`
+    is that of the slowest joint that pitches [rad/s]. For each side, a joint of `names` stands at `signs` times (angle
+    minus `offsets`), in the order of `LEG_ROLES`.
+    """
+
+    hip_ahead: float
+    hip_out: float
+    hip_down: float
+    thigh: float
+    tibia: float
+    foot: float
+    inclination: float
+    shared: bool
+    sole_size: SoleSize
+    speed: float
+    names: Mapping[Side, tuple[str, ...]]
+    signs: Mapping[Side, tuple[float, ...]]
+    offsets: Mapping[Side, tuple[float, ...]]
+
+    @property
+    def length(self) -> float:
+        """From hip to ankle, stretched [m]."""
+        return self.thigh + self.tibia
+
+    def joints(self, side: Side, angles: LegAngles) -> dict[str, float]:
+        """These angles of a leg as the robot's own joints count them [rad]."""
+        ways = zip(self.names[side], self.signs[side], angles, self.offsets[side], strict=True)
+        return {name: sign * (angle - offset) for name, sign, angle, offset in ways}
+
+    def angles(self, side: Side, joints: Mapping[str, float]) -> LegAngles:
+        """What a leg does whose joints stand like this [rad]."""
+        yaw, roll, pitch, knee, ankle, tilt = (
+            sign * joints[name] + offset
+            for name, sign, offset in zip(self.names[side], self.signs[side], self.offsets[side], strict=True)
+        )
+        return yaw, roll, pitch, knee, ankle, tilt
+
+    def hip(self, side: Side) -> tuple[float, float, float]:
+        """Where the axes of that hip meet in the torso's frame [m]."""
+        return self.hip_ahead, sign(side) * self.hip_out, -self.hip_down
+
+    def bend(self, side: Side, rotation: RotationMatrix, ankle: LegVector) -> LegAngles:
+        """The angles of a leg that put its ankle there.
+
+        `rotation` (3, 3) of the foot and `ankle` (3,) [m] in the torso's frame. A place out of reach is approached as
+        far as the leg goes.
+        """
+        lean, thigh, tibia = sign(side) * self.inclination, self.thigh, self.tibia
+        hip = -rotation.T @ (ankle - self.hip(side))
+        x, y, z = hip * min(1.0, (self.length - _STRETCHED) / sqrt(hip @ hip))
+        reach = x * x + y * y + z * z
+        knee = acos(min(1.0, max(-1.0, (reach - thigh**2 - tibia**2) / (2 * thigh * tibia))))
+        roll = atan2(y, z)
+        pitch = atan2(-thigh * sin(knee), tibia + thigh * cos(knee)) - atan2(x, hypot(y, z))
+        m = _about_x(-lean) @ rotation @ _about_x(-roll) @ _about_y(-knee - pitch)
+        yaw, tilt, swing = atan2(-m[0, 1], m[1, 1]), asin(min(1.0, max(-1.0, m[2, 1]))), atan2(-m[2, 0], m[2, 2])
+        return yaw, tilt + lean, swing, knee, pitch, roll
+
+    def sole(self, side: Side, joints: Mapping[str, float]) -> tuple[RotationMatrix, LegVector]:
+        """The sole's rotation (3, 3) and place (3,) [m] in the torso's frame, of joints by the robot's names [rad]."""
+        yaw, roll, pitch, knee, ankle, tilt = self.angles(side, joints)
+        lean = sign(side) * self.inclination
+        hip = _about_x(lean) @ _about_z(yaw) @ _about_x(roll - lean)
+        thigh, tibia = hip @ _about_y(pitch), hip @ _about_y(pitch + knee)
+        foot = tibia @ _about_y(ankle) @ _about_x(tilt)
+        down = -self.thigh * thigh[:, 2] - self.tibia * tibia[:, 2] - self.foot * foot[:, 2]
+        return foot, np.array(self.hip(side)) + down
+
+    def foot_from(self, side: Side, joints: Mapping[str, float]) -> Pose:
+        """The pose of the other foot seen from this one, which stands flat on the ground."""
+        (here, origin), (there, place) = self.sole(side, joints), self.sole(other(side), joints)
+        x, y, _ = here.T @ (place - origin)
+        turned = here.T @ there
+        return Pose(float(x), float(y), atan2(turned[1, 0], turned[0, 0]))
 
 
 def other(side: Side) -> Side:
@@ -45,86 +130,15 @@ def sign(side: Side) -> int:
     return 1 if side == "L" else -1
 
 
-def bend(side: Side, rotation: RotationMatrix, ankle: LegVector) -> tuple[float, ...]:
-    """The joints of a leg [rad], in the order of `JOINTS`, that put its ankle there.
-
-    `rotation` (3, 3) of the foot and `ankle` (3,) [m] in the torso's frame. A place out of reach is approached as far
-    as the leg goes. Closed form: hip yaw pitch is a yaw about an axis inclined by 45 degrees.
-    """
-    s = sign(side)
-    hip = -rotation.T @ (ankle - (0.0, s * HIP_OUT, -HIP_DOWN))
-    x, y, z = hip * min(1.0, STRETCHED / sqrt(hip @ hip))
-    reach = x * x + y * y + z * z
-    knee = acos(min(1.0, max(-1.0, (reach - THIGH**2 - TIBIA**2) / (2 * THIGH * TIBIA))))
-    roll = atan2(y, z)
-    pitch = atan2(-THIGH * sin(knee), TIBIA + THIGH * cos(knee)) - atan2(x, hypot(y, z))
-    m = _about_x(-s * pi / 4) @ rotation @ _about_x(-roll) @ _about_y(-knee - pitch)
-    yaw, tilt, swing = atan2(-m[0, 1], m[1, 1]), asin(min(1.0, max(-1.0, m[2, 1]))), atan2(-m[2, 0], m[2, 2])
-    return -s * yaw, tilt + s * pi / 4, swing, knee, pitch, roll
-
-
-def sole(side: Side, angles: Mapping[str, float]) -> tuple[RotationMatrix, LegVector]:
-    """The sole's rotation (3, 3) and place (3,) [m] in the torso's frame, of joints by NAOqi's names [rad]."""
-    yaw, roll, pitch, knee, ankle, tilt = (angles[side + name] for name in JOINTS)
-    s = sign(side)
-    hip = _about_x(s * pi / 4) @ _about_z(-s * yaw) @ _about_x(roll - s * pi / 4)
-    thigh, tibia = hip @ _about_y(pitch), hip @ _about_y(pitch + knee)
-    foot = tibia @ _about_y(ankle) @ _about_x(tilt)
-    down = -THIGH * thigh[:, 2] - TIBIA * tibia[:, 2] - FOOT * foot[:, 2]
-    return foot, np.array([0.0, s * HIP_OUT, -HIP_DOWN]) + down
-
-
-def foot_from(side: Side, angles: Mapping[str, float]) -> Pose:
-    """The pose of the other foot seen from this one, which stands flat on the ground."""
-    (here, origin), (there, place) = sole(side, angles), sole(other(side), angles)
-    x, y, _ = here.T @ (place - origin)
-    turned = here.T @ there
-    return Pose(float(x), float(y), atan2(turned[1, 0], turned[0, 0]))
-
-
-class Stance(NamedTuple):
-    """Joints [rad] by NAOqi's names, and the torso's heading [rad] that they give it."""
-
-    angles: dict[str, float]
-    yaw: float
-
-
-def stand(torso: complex, height: float, lean: float, yaw: float, feet: Mapping[Side, Placed]) -> Stance:
-    """The joints that carry the torso over `torso` at `height` [m], leant forward by `lean` [rad].
-
-    Both hips share one yaw pitch motor, so that the torso's heading follows from the feet: it is sought from `yaw` on,
-    along secants, until both legs want the same of it.
-    """
-    bent, slope = _bend_both(torso, height, lean, yaw, feet), _SLOPE
-    apart = bent["L"][0] - bent["R"][0]
-    for _ in range(_ROUNDS):
-        if abs(apart) < _YAW_ERROR:
-            break
-        step = min(max(-apart / slope, -_YAW_STEP), _YAW_STEP)
-        yaw, before = yaw + step, apart
-        bent = _bend_both(torso, height, lean, yaw, feet)
-        apart = bent["L"][0] - bent["R"][0]
-        slope = min(max((apart - before) / step, _SLOPE / 2), 2 * _SLOPE)
-    angles = {side + name: angle for side in SIDES for name, angle in zip(JOINTS, bent[side], strict=True)}
-    return Stance(angles, yaw)
-
-
 def torso_rotation(yaw: float, lean: float) -> RotationMatrix:
     """The torso's rotation (3, 3), which does not roll."""
     rotation: RotationMatrix = _about_z(yaw) @ _about_y(lean)
     return rotation
 
 
-def _bend_both(
-    torso: complex, height: float, lean: float, yaw: float, feet: Mapping[Side, Placed]
-) -> dict[Side, tuple[float, ...]]:
-    upright = torso_rotation(yaw, lean).T
-    bent: dict[Side, tuple[float, ...]] = {}
-    for side, (pose, lifted) in feet.items():
-        to = pose.place - torso
-        ankle = upright @ np.array([to.real, to.imag, lifted + FOOT - height])
-        bent[side] = bend(side, upright @ _about_z(pose.theta), ankle)
-    return bent
+def heading_rotation(yaw: float) -> RotationMatrix:
+    """The rotation (3, 3) of what stands level and is turned to the left by that [rad]."""
+    return _about_z(yaw)
 
 
 def _about_x(angle: float) -> RotationMatrix:

@@ -10,9 +10,6 @@ from lumen.interpreters.gait.pendulum import Pendulum
 from lumen.interpreters.gait.poses import Pose
 from lumen.interpreters.gait.swing import Swing
 
-SOLE_AHEAD, SOLE_ASIDE = 0.035, 0.015
-"""How far the weight may be shifted on one sole from where a plan wants it [m]."""
-
 
 @dataclass(slots=True)
 class GaitPhase:
@@ -60,7 +57,7 @@ class StepPlanner:
         rests = rest(feet, other(side), self._pace)
         weight = [zmp] * wait + _ramp(zmp, rests, self._double) + [rests] * self._single
         swing = Swing(side, feet[side], goal, self._pace.lift)
-        weight = self._shifted(weight, dcm, self._end(feet, steps), feet[other(side)], SOLE_ASIDE)
+        weight = self._shifted(weight, dcm, self._end(feet, steps), feet[other(side)], self._pace.sole_aside)
         return GaitPhase(weight, swing, wait + self._double, len(steps) == 1)
 
     def settle(self, feet: Feet, dcm: complex, zmp: complex) -> GaitPhase:
@@ -76,7 +73,7 @@ class StepPlanner:
         phase.swing.turn(max(phase.part, 0.0), goal)
         end = self._end(feet, [Footstep(side, goal)])
         weight = phase.zmp[phase.tick :]
-        phase.zmp[phase.tick :] = self._shifted(weight, dcm, end, feet[other(side)], SOLE_ASIDE)
+        phase.zmp[phase.tick :] = self._shifted(weight, dcm, end, feet[other(side)], self._pace.sole_aside)
         phase.last = True
 
     def _end(self, feet: Feet, steps: Sequence[Footstep]) -> complex:
@@ -93,7 +90,8 @@ class StepPlanner:
     def _shifted(self, zmp: list[complex], dcm: complex, end: complex, foot: Pose, aside: float) -> list[complex]:
         """These points, shifted so that the body gets from `dcm` to `end`, as far as the sole of `foot` reaches."""
         shift = self._pendulum.shift(dcm, zmp, end) / foot.ahead
-        x = min(max(shift.real, -SOLE_AHEAD), SOLE_AHEAD)
+        most = self._pace.sole_ahead
+        x = min(max(shift.real, -most), most)
         y = min(max(shift.imag, -aside), aside)
         return [point + complex(x, y) * foot.ahead for point in zmp]
 

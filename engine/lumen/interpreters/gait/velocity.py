@@ -43,7 +43,7 @@ def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, c
         aside = 2 * speed.y * time if sign(side) * speed.y > 0 else 0.0
         here = bearing.then(Pose(0.0, sign(side) * pace.apart / 2))
         there = here.then(Pose(speed.x * time, aside, speed.theta * time))
-        step = Footstep(side, clear(beside(there, side, pace), side, bearing, pace.widest))
+        step = Footstep(side, clear(beside(there, side, pace), side, bearing, pace))
         steps.append(step)
         side, bearing = other(side), step.pose
     return steps

@@ -2,7 +2,10 @@
 
 import numpy as np
 
-from lumen.interpreters.gait import Side
+from lumen.interpreters.gait import SIDES, LegGeometry, Side
+from lumen.interpreters.gait.legs import SIDE_ROLES
+from lumen.interpreters.gait.parameters import scale_of
+from lumen.language.roles import Roles
 from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.motors import Motors
@@ -15,19 +18,17 @@ MAX_TRIM = 0.15
 _SMOOTHING = 0.5
 
 LEAN, LEAN_RATE, LEAN_GAIN = 0.08, 0.1, 5.0
-"""How far ankles and hips lean forward at most [rad], how fast [rad/s], and that for each metre [rad/s per m]."""
-
-MIDDLE_OF_SOLES = 0.02
-"""In front of the ankles the weight is wanted there [m]."""
+"""How far ankles and hips lean forward at most [rad], how fast [rad/s], and that for each metre [rad/s per m]; the last
+on legs as long as those that paces were found with."""
 
 HEEL_MARGIN = 0.01
-"""The DCM is falling backwards nearer than this to the heels' edge [m]."""
+"""The DCM is falling backwards nearer than this to the heels' edge [m], on such legs."""
 
 ARM_SWING, HIP_STRETCH = 3.0, 0.3
 """How far arms swing up and back, and hips stretch, against a fall [rad]."""
 
 ARM_SPEED, HIP_SPEED = 8.2, 6.0
-"""How fast they do [rad/s]: just inside the joints' greatest."""
+"""How fast they do [rad/s] where the joints can."""
 
 ARM_RETURN_TIME, HIP_RETURN_TIME = 1.0, 0.6
 """How long they take back [s], slowly: what they gave they take again."""
@@ -36,13 +37,23 @@ ARM_RETURN_TIME, HIP_RETURN_TIME = 1.0, 0.6
 class BalanceController:
     """Trims the joints' goals by what gyrometer, encoders and inertial unit feel.
 
-    `lifted` is the foot in the air (`L` or `R`), `walking` whether a walk shifts the weight itself; both for one trim.
-    `catching` is whether steps catch a fall; `falling` has to feel before each trim.
+    `lifted` is the foot in the air, `walking` whether a walk shifts the weight itself; both for one trim. `catching` is
+    whether steps catch a fall; `falling` has to feel before each trim. The weight is wanted `ahead` of the ankles [m].
     """
 
-    def __init__(self, motors: Motors, falling: FallingSense) -> None:
-        self._ankles = [[(s, motors.index[s + name]) for s in "LR"] for name in ("AnkleRoll", "AnklePitch")]
-        self._shoulders, self._hips = ([motors.index[s + n] for s in "LR"] for n in ("ShoulderPitch", "HipPitch"))
+    def __init__(self, motors: Motors, falling: FallingSense, legs: LegGeometry, roles: Roles, ahead: float) -> None:
+        def joint(side: Side, role: int) -> tuple[int, float]:
+            return motors.index[legs.names[side][role]], legs.signs[side][role]
+
+        self._ankles = [[(side, *joint(side, role)) for side in SIDES] for role in (5, 4)]
+        self._hips = [joint(side, 2) for side in SIDES]
+        arms = [roles.joint(f"arms.{SIDE_ROLES[side]}.shoulder-pitch") for side in SIDES]
+        self._shoulders = [(motors.index[arm.joint], arm.sign) for arm in arms if arm]
+        speed = motors.envelope.speed
+        self._arm_speed = min([ARM_SPEED, *(float(speed[i]) for i, _ in self._shoulders)])
+        self._hip_speed = min([HIP_SPEED, *(float(speed[i]) for i, _ in self._hips)])
+        self._ahead, scale = ahead, scale_of(legs)
+        self._heel_margin, self._lean_gain = HEEL_MARGIN * scale, LEAN_GAIN / scale
         self._falling = falling
         self._trim = np.zeros(len(motors.names))
         self._felt = [0.0, 0.0]
@@ -58,8 +69,8 @@ class BalanceController:
         for axis, rate in enumerate(gyro):
             felt = self._felt[axis] = _SMOOTHING * self._felt[axis] + (1 - _SMOOTHING) * rate
             angle = min(max(BALANCE_GAIN * felt, -MAX_TRIM), MAX_TRIM)
-            for side, i in self._ankles[axis]:
-                self._trim[i] = 0.0 if side == self.lifted else angle
+            for side, i, sign in self._ankles[axis]:
+                self._trim[i] = 0.0 if side == self.lifted else sign * angle
         self._catch(standing and not (self.walking or self.catching))
         self.lifted, self.walking = None, False
         return self._trim
@@ -70,16 +81,18 @@ class BalanceController:
         What turns backwards pushes the rest forward, over the feet: a NAO's heels end 45 mm behind its ankles, which a
         push of 2 N s from the front carries the DCM beyond.
         """
-        over = standing and self._falling.behind_heels > -HEEL_MARGIN
-        rate = LEAN_GAIN * (MIDDLE_OF_SOLES - self._falling.ahead) if standing else -LEAN_RATE
+        over = standing and self._falling.behind_heels > -self._heel_margin
+        rate = self._lean_gain * (self._ahead - self._falling.ahead) if standing else -LEAN_RATE
         self._lean += min(max(rate, -LEAN_RATE), LEAN_RATE) * CONTROL_PERIOD
         self._lean = min(max(self._lean, 0.0), LEAN)
-        self._swing = _toward(over, self._swing, ARM_SPEED / ARM_SWING, ARM_RETURN_TIME)
-        self._stretch = _toward(over, self._stretch, HIP_SPEED / HIP_STRETCH, HIP_RETURN_TIME)
-        self._trim[self._shoulders] = -ARM_SWING * self._swing
-        self._trim[self._hips] = HIP_STRETCH * self._stretch + self._lean
-        for _, i in self._ankles[1]:
-            self._trim[i] -= self._lean
+        self._swing = _toward(over, self._swing, self._arm_speed / ARM_SWING, ARM_RETURN_TIME)
+        self._stretch = _toward(over, self._stretch, self._hip_speed / HIP_STRETCH, HIP_RETURN_TIME)
+        for i, sign in self._shoulders:
+            self._trim[i] = -sign * ARM_SWING * self._swing
+        for i, sign in self._hips:
+            self._trim[i] = sign * (HIP_STRETCH * self._stretch + self._lean)
+        for _, i, sign in self._ankles[1]:
+            self._trim[i] -= sign * self._lean
 
 
 def _toward(over: bool, part: float, rate: float, back: float) -> float:

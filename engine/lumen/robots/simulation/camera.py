@@ -1,4 +1,4 @@
-"""What the camera in the robot's forehead sees."""
+"""What the robot's camera sees."""
 
 from lumen.interpreters.projection import project
 from lumen.language.robots import Camera
@@ -8,30 +8,30 @@ from lumen.robots.simulation.model import ROBOT_PREFIX
 from lumen.robots.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.world import World
 
-TOP_CAMERA = f"{ROBOT_PREFIX}/CameraTop"
 
-
-class TopCamera:
+class RobotCamera:
     """Takes images, to be drawn later by another thread, and computes where a point appears in them."""
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
+        self._name = f"{ROBOT_PREFIX}/{world.body.roles.eyes.camera}"
         self._renderer = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
 
     def image(self, now: float) -> Image | None:
         """The image of this moment; None where nothing can be drawn."""
         if self._renderer is None:
             return None
-        studio, camera, scene = self._renderer, self._camera, RenderState.of(self._world.model, self._world.data)
+        studio, camera, name = self._renderer, self._camera, self._name
+        scene = RenderState.of(self._world.model, self._world.data)
 
         def pixels(size: Size | None = None) -> PixelArray:
-            return studio.draw(scene, TOP_CAMERA, *(size or (camera.width, camera.height)))
+            return studio.draw(scene, name, *(size or (camera.width, camera.height)))
 
         return Image(now, pixels)
 
     def pixel(self, point: tuple[float, float, float]) -> tuple[float, float] | None:
         """Where a point of the hall [m] appears [px]; None outside the image or behind."""
-        view = self._world.data.camera(TOP_CAMERA)
+        view = self._world.data.camera(self._name)
         right, up, back = view.xmat.reshape(3, 3).T @ (point - view.xpos)
         return project((-float(back), -float(right), float(up)), self._camera)
 

@@ -5,17 +5,18 @@ from math import atan2, pi, sin
 
 import numpy as np
 
-from lumen.interpreters.gait import JOINTS, SIDES, Side
+from lumen.interpreters.gait import SIDES, GaitParameters, LegGeometry, Side
 from lumen.interpreters.gait.capture import CapturePoint, hold_level, landing
 from lumen.interpreters.gait.legs import other
+from lumen.interpreters.gait.parameters import scale_of, time_scale_of
 from lumen.interpreters.gait.swing import smooth
 from lumen.robots.simulation.falling_sense import FallingSense
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
-"""How long such a step takes [s], forward or aside, and backwards."""
+"""How long such a step takes [s], forward or aside, and backwards, on legs as long as those it was found with."""
 
 STEP_HEIGHT = 0.03
-"""How high a foot is lifted that steps forward or aside [m]."""
+"""How high a foot is lifted that steps forward or aside [m], on such legs."""
 
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
 """How far the knee of a foot that steps back bends on the way [rad], and how early: below 1 before half of it."""
@@ -30,17 +31,30 @@ hardly at all (0.48 rad), so that only a torso that leans forward lets a foot st
 _LANDS, _LOOK_AHEAD = 0.9, 0.02
 
 
+_HIP, _KNEE, _ANKLE = 2, 3, 4
+
+
 class CatchStep:
-    """Brings `side` to where the body falls; `joints` are what was last sent to the motors, `hold` those of the legs.
+    """Brings `side` to where the body falls; `sent` is what was last sent to the motors.
 
     `falling` has to feel before each `advance`.
     """
 
-    def __init__(self, falling: FallingSense, side: Side, sent: Mapping[str, float], now: float) -> None:
-        self.side, self.bears, self._falling = side, other(side), falling
+    def __init__(
+        self,
+        legs: LegGeometry,
+        pace: GaitParameters,
+        falling: FallingSense,
+        side: Side,
+        sent: Mapping[str, float],
+        now: float,
+    ) -> None:
+        self._legs, self._pace, self._falling = legs, pace, falling
+        self.side, self.bears = side, other(side)
         self._swings, self._rests = SIDES.index(side), SIDES.index(self.bears)
         self._begin, self._back = now, falling.beyond[1] > falling.beyond[0]
-        self._seconds = STEP_BACK_TIME if self._back else STEP_TIME
+        self._height = STEP_HEIGHT * scale_of(legs)
+        self._seconds = (STEP_BACK_TIME if self._back else STEP_TIME) * time_scale_of(legs)
         self._sent = dict(sent)
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
 
@@ -48,13 +62,13 @@ class CatchStep:
         """The legs' joints [rad] that are wanted next; `measured` is where they are."""
         gone = now - self._begin
         part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
-        falling = self._falling
-        goal = landing(falling.dcm[self._rests], falling.omega, max(self._seconds - gone, 0.0), self.bears)
+        falling, left = self._falling, max(self._seconds - gone, 0.0)
+        goal = landing(self._legs, self._pace, falling.dcm[self._rests], falling.omega, left, self.bears)
         if self._back:
             return self._step_back(part, goal, measured)
         done = smooth(part / _LANDS)
         place = self._start[:2] + (goal - self._start[:2]) * done
-        height = self._start[2] * (1 - done) + STEP_HEIGHT * sin(pi * part) ** 2
+        height = self._start[2] * (1 - done) + self._height * sin(pi * part) ** 2
         return {**self._sent, **self._level(np.array([*place, height]))}
 
     def over(self, now: float) -> bool:
@@ -67,20 +81,24 @@ class CatchStep:
         end, way = self._level(np.array([*goal, 0.0])), min(1.0, part / _LANDS)
         joints = {**sent, **{n: sent[n] + way * (angle - sent[n]) for n, angle in end.items()}}
         lift = KNEE_LIFT * sin(pi * part**LIFTS_EARLY)
-        joints[side + "KneePitch"] += lift
-        joints[side + "AnklePitch"] -= lift
+        self._turn(joints, side, _KNEE, lift)
+        self._turn(joints, side, _ANKLE, -lift)
         up = self._falling.axes[2]
         leant = atan2(up[0], up[2])
-        joints[bears + "HipPitch"] = measured[bears + "HipPitch"] - UPRIGHT_GAIN * (leant + UPRIGHT_LEAN)
+        hip = self._legs.names[bears][_HIP]
+        joints[hip] = measured[hip]
+        self._turn(joints, bears, _HIP, -UPRIGHT_GAIN * (leant + UPRIGHT_LEAN))
         gives = KNEE_GIVES * smooth(max(part - GIVES_LATE, 0.0) / (1 - GIVES_LATE))
-        joints[bears + "HipPitch"] -= gives / 2
-        joints[bears + "KneePitch"] += gives
-        joints[bears + "AnklePitch"] -= gives / 2
+        self._turn(joints, bears, _HIP, -gives / 2)
+        self._turn(joints, bears, _KNEE, gives)
+        self._turn(joints, bears, _ANKLE, -gives / 2)
         return joints
+
+    def _turn(self, joints: dict[str, float], side: Side, role: int, by: float) -> None:
+        """Turn one joint of a leg by that much more [rad]."""
+        joints[self._legs.names[side][role]] += self._legs.signs[side][role] * by
 
     def _level(self, place: CapturePoint) -> dict[str, float]:
         """The joints of the leg that swings with its sole at that place, seen from the other one."""
         sole = self._falling.soles[self._rests] + place
-        yaw = self._sent["LHipYawPitch"]
-        joints = hold_level(self.side, self._falling.axes, sole, yaw)
-        return {self.side + name: angle for name, angle in zip(JOINTS, joints, strict=True)}
+        return hold_level(self._legs, self.side, self._falling.axes, sole, self._sent)

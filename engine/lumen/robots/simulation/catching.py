@@ -1,9 +1,9 @@
 """Catches a fall that ankles, hips and arms can't: by steps, after which the robot goes on with what it did."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
-from lumen.interpreters.gait import JOINTS, SIDES, CentreOfMass, Gait, GaitParameters, Side, Velocity, foot_from, middle
+from lumen.interpreters.gait import SIDES, CentreOfMass, Gait, LegGeometry, Paces, Side, Velocity, middle
+from lumen.interpreters.gait.parameters import scale_of, time_scale_of
 from lumen.interpreters.gait.swing import smooth
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.catch_step import CatchStep
@@ -13,7 +13,8 @@ from lumen.robots.simulation.odometry import Odometry
 from lumen.robots.simulation.sensors import BodySensors
 
 BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
-"""The DCM is that far beyond the feet's edge where a step helps [m]; aside no foot can cross the other."""
+"""The DCM is that far beyond the feet's edge where a step helps [m], on legs as long as those
+it was found with; aside no foot can cross the other."""
 
 ASIDE = 0.008
 """A fall over the heels is caught where it goes aside by so much, too [m]: straight back both feet stay loaded, and
@@ -27,9 +28,6 @@ NEXT_STEP = 0.2
 
 MOST_STEPS = 4
 """A fall that so many steps did not catch is not caught."""
-
-CATCHING_GAIT = replace(GaitParameters(), torso=0.3)
-"""Lower than a walk: feet that stand far apart reach the ground."""
 
 
 class FallCatcher:
@@ -47,10 +45,14 @@ class FallCatcher:
         balance: BalanceController,
         odometry: Odometry,
         com: CentreOfMass,
+        legs: LegGeometry,
+        paces: Paces,
     ) -> None:
         self._motors, self._sensors, self._falling, self._balance = motors, sensors, falling, balance
         self._odometry, self._com = odometry, com
-        self._names = [side + name for side in SIDES for name in JOINTS]
+        self._geometry, self._pace = legs, paces.catching
+        self._scale, self._slow = scale_of(legs), time_scale_of(legs)
+        self._names = [name for side in SIDES for name in legs.names[side]]
         self._since = 0.0
         self._steps, self._north = 0, 0.0
         self._step: CatchStep | None = None
@@ -80,7 +82,9 @@ class FallCatcher:
     @property
     def _needed(self) -> bool:
         ahead, behind, _, _ = self._falling.beyond
-        return ahead > BEYOND_TOES or (behind > BEYOND_HEELS and abs(self._falling.aside) > ASIDE)
+        return ahead > BEYOND_TOES * self._scale or (
+            behind > BEYOND_HEELS * self._scale and abs(self._falling.aside) > ASIDE * self._scale
+        )
 
     def _measured(self) -> dict[str, float]:
         """Where the legs' joints are [rad]."""
@@ -96,7 +100,7 @@ class FallCatcher:
         side: Side = self._balance.lifted or ("L" if far[0] > far[1] else "R")
         if not self._steps:
             self._north = middle(self._odometry.feel(self._measured())).theta - self._sensors.heading
-        self._step = CatchStep(self._falling, side, self._sent(), now)
+        self._step = CatchStep(self._geometry, self._pace, self._falling, side, self._sent(), now)
         self._steps += 1
         self._does = self._swing
 
@@ -107,23 +111,24 @@ class FallCatcher:
         self._balance.lifted = self._step.side
         if self._step.over(now):
             bearing = self._odometry.feet[self._step.bears]
-            landed = bearing.then(foot_from(self._step.bears, measured))
+            landed = bearing.then(self._geometry.foot_from(self._step.bears, measured))
             self._odometry.land({self._step.bears: bearing, self._step.side: landed})
             self._landed, self._since = self._sent(), now
-            self._gait = Gait(self._odometry.feet, Velocity(), self._com, CATCHING_GAIT)
+            self._gait = Gait(self._geometry, self._odometry.feet, Velocity(), self._com, self._pace)
             self._does = self._brace
 
     def _brace(self, now: float) -> None:
         """Bring the body between the feet; where it falls on, step again."""
         assert self._gait
         gone = now - self._since
-        if gone > NEXT_STEP and max(self._falling.beyond) > 0.0 and self._steps < MOST_STEPS:
+        if gone > NEXT_STEP * self._slow and max(self._falling.beyond) > 0.0 and self._steps < MOST_STEPS:
             self._set_out(now)
-        elif gone > BRACE_TIME + CALM_TIME:
-            self._gait = Gait(self._odometry.feel(self._measured()), Velocity(), self._com, CATCHING_GAIT)
+        elif gone > (BRACE_TIME + CALM_TIME) * self._slow:
+            feet = self._odometry.feel(self._measured())
+            self._gait = Gait(self._geometry, feet, Velocity(), self._com, self._pace)
             self._does = self._follow
         else:
-            part = smooth(gone / BRACE_TIME)
+            part = smooth(gone / (BRACE_TIME * self._slow))
             end = self._gait.angles
             self._legs = {name: angle + part * (end[name] - angle) for name, angle in self._landed.items()}
 

@@ -5,7 +5,8 @@ from math import hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait.footsteps import HEEL, INNER, OUTER, TOE
+from lumen.interpreters.gait import LegGeometry
+from lumen.interpreters.gait.parameters import scale_of
 from lumen.interpreters.gait.pendulum import GRAVITY
 from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.sensors import BodySensors
@@ -13,7 +14,7 @@ from lumen.robots.simulation.world import CONTROL_PERIOD
 
 _SMOOTHING = 0.65
 _LOWEST = 0.15
-_SOLE = np.array([[[-HEEL, -INNER], [TOE, OUTER]], [[-HEEL, -OUTER], [TOE, INNER]]])
+"""The centre of mass is never taken for lower than this [m], above legs as long as those that paces were found with."""
 
 
 class FallingSense:
@@ -25,8 +26,12 @@ class FallingSense:
     step toward humanoid push recovery", 2006. The first row of what has two is of the left foot.
     """
 
-    def __init__(self, sensors: BodySensors, mass_model: MassModel) -> None:
+    def __init__(self, sensors: BodySensors, mass_model: MassModel, legs: LegGeometry) -> None:
         self._sensors, self._mass_model = sensors, mass_model
+        self._lowest = _LOWEST * scale_of(legs)
+        toe, self._heel, outer, inner = legs.sole_size
+        low, high = ((-self._heel, -inner), (-self._heel, -outer)), ((toe, outer), (toe, inner))
+        self._low, self._high = np.array(low), np.array(high)
         self._speed = np.zeros((2, 3))
         self._felt = False
         self.axes: NDArray[np.float64] = np.eye(3)
@@ -48,12 +53,12 @@ class FallingSense:
     @property
     def behind_heels(self) -> float:
         """How far the DCM is behind the rear edge of the feet [m], negative above them."""
-        return float(-HEEL - self.dcm[:, 0].max())
+        return float(-self._heel - self.dcm[:, 0].max())
 
     @property
     def beyond(self) -> tuple[float, float, float, float]:
         """How far the DCM is beyond front, rear, left and right edge of both feet together [m], negative inside."""
-        low, high = _SOLE[:, 0] - self.dcm, _SOLE[:, 1] - self.dcm
+        low, high = self._low - self.dcm, self._high - self.dcm
         front, left = -high.max(axis=0)
         rear, right = low.min(axis=0)
         return float(front), float(rear), float(left), float(right)
@@ -80,5 +85,5 @@ class FallingSense:
         before = self.mass if self._felt else here
         self._speed = _SMOOTHING * self._speed + (1 - _SMOOTHING) * (here - before) / CONTROL_PERIOD
         self.mass, self._felt = here, True
-        self.omega = sqrt(GRAVITY / max(float(here[:, 2].max()), _LOWEST))
+        self.omega = sqrt(GRAVITY / max(float(here[:, 2].max()), self._lowest))
         self.dcm = here[:, :2] + self._speed[:, :2] / self.omega

@@ -1,27 +1,32 @@
 """The force sensors under the feet: four in each, as NAO's `FSR`."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import mujoco
+import numpy as np
 
+from lumen.language.roles import Roles
 from lumen.robots.simulation.model import ROBOT_PREFIX
 
 NEWTONS_PER_KILOGRAM = 9.81
 """ALMemory counts these forces in kilograms: newtons divided by this."""
 
-SENSED_FEET = ("LFoot", "RFoot")
-SOLE_CORNERS = ("FrontLeft", "FrontRight", "RearLeft", "RearRight")
+SENSED_FEET = {"left": "LFoot", "right": "RFoot"}
+"""The feet as ALMemory calls them, by side."""
 
 
 class ForceSensors:
-    """Weighs what presses against each quarter of the soles, where the model has a touch sensor for it."""
+    """Weighs what presses against each quarter of the soles, where the model has a touch sensor at its site."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        sensors = {
-            name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, f"{ROBOT_PREFIX}/{sensor}")
-            for name, sensor in _names()
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, roles: Roles) -> None:
+        touch = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_TOUCH)
+        places = {int(model.sensor_objid[sensor]): int(model.sensor_adr[sensor]) for sensor in touch}
+        self._places = {
+            f"{SENSED_FEET[side]}/FSR/{corner}": places[site]
+            for side, names in roles.sensors.force.items()
+            for corner, site in _corners(model, names)
+            if site in places
         }
-        self._places = {name: int(model.sensor_adr[id]) for name, id in sensors.items() if id >= 0}
         self._data = data
 
     def weigh(self) -> Mapping[str, float]:
@@ -31,10 +36,15 @@ class ForceSensors:
         felt = {
             name: float(self._data.sensordata[place]) / NEWTONS_PER_KILOGRAM for name, place in self._places.items()
         }
-        total = {f"{foot}/FSR/TotalWeight": sum(felt[n] for n in felt if n.startswith(foot)) for foot in SENSED_FEET}
+        feet = SENSED_FEET.values()
+        total = {f"{foot}/FSR/TotalWeight": sum(felt[n] for n in felt if n.startswith(foot)) for foot in feet}
         return {name: round(weight, 3) for name, weight in (felt | total).items()}
 
 
-def _names() -> list[tuple[str, str]]:
-    """ALMemory's name of each sensor, and the one in the MJCF, where a slash means something else."""
-    return [(f"{foot}/FSR/{corner}", f"{foot}{corner}") for foot in SENSED_FEET for corner in SOLE_CORNERS]
+def _corners(model: mujoco.MjModel, names: Iterable[str]) -> list[tuple[str, int]]:
+    """Where each of these sites is under its sole (`FrontLeft`), and its number."""
+    sites = [model.site(f"{ROBOT_PREFIX}/{name}").id for name in names]
+    middle = model.site_pos[sites].mean(axis=0)
+    ahead = ["Front" if x > middle[0] else "Rear" for x in model.site_pos[sites, 0]]
+    aside = ["Left" if y > middle[1] else "Right" for y in model.site_pos[sites, 1]]
+    return [(f"{one}{other}", site) for one, other, site in zip(ahead, aside, sites, strict=True)]

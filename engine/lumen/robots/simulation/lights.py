@@ -1,12 +1,12 @@
 """The robot's lights, and what it holds: colours of materials of the model."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumen.language.lights import LIGHT_GROUPS, lights_of, rgb
+from lumen.language.lights import rgb
 from lumen.robots.simulation.model import ROBOT_PREFIX
 
 RENDERED_COLOURS: Mapping[object, int] = {
@@ -24,9 +24,13 @@ _WHITE = tuple(channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3
 
 
 class Lights:
-    """Sets colours of the model that is rendered; physics knows nothing of them."""
+    """Sets colours of the model that is rendered; physics knows nothing of them.
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    `groups` are the lights of this body: materials of its MJCF.
+    """
+
+    def __init__(self, model: mujoco.MjModel, groups: Mapping[str, Iterable[str]]) -> None:
+        self._groups = {group: tuple(names) for group, names in groups.items()}
         self._colours = model.mat_rgba
         prefix = f"{ROBOT_PREFIX}/"
         names = {model.material(i).name: i for i in range(model.nmat)}
@@ -37,10 +41,14 @@ class Lights:
 
     def show(self, colours: Mapping[str, object]) -> None:
         """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
-        for light, colour in lights_of(colours):
+        for light, colour in self.lights_of(colours):
             shown = rendered(colour)
             if shown is not None:
                 self.draw(light, shown)
+
+    def lights_of(self, groups: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+        """Each light of these groups with its group's colour; what this body lacks is left out."""
+        return ((light, colour) for group, colour in groups.items() for light in self._groups.get(group, ()))
 
     def hold(self, props: Iterable[str]) -> None:
         """Let the robot hold these things, and no others."""
@@ -50,7 +58,7 @@ class Lights:
 
     def speak(self, speaking: bool) -> None:
         """Light the ears while the robot speaks; then they are as they were before."""
-        for light in LIGHT_GROUPS["ears"]:
+        for light in self._groups.get("ears", ()):
             self._cover(light, _SPEAKING if speaking else None)
 
     def wear_eyes(self, colour: str) -> None:
@@ -61,7 +69,7 @@ class Lights:
         if colour == self._worn:
             return
         self._worn = colour
-        for light in LIGHT_GROUPS["eyes"]:
+        for light in self._groups.get("eyes", ()):
             if (i := self._ids.get(light)) is not None:
                 beneath = self.shown(light)
                 lit = not (np.allclose(beneath, self._first[i, :3]) or np.allclose(beneath, _WHITE))
@@ -78,7 +86,7 @@ class Lights:
 
     def restore(self, groups: Iterable[str]) -> None:
         """Give the lights of these groups the colours that they had when the robot was switched on."""
-        for light, _ in lights_of(dict.fromkeys(groups)):
+        for light, _ in self.lights_of(dict.fromkeys(groups)):
             if light in self._ids:
                 self.draw(light, self._first[self._ids[light], :3])
 
@@ -106,7 +114,7 @@ class LightFade:
 
     def __init__(self, lights: Lights, colours: Mapping[str, object], seconds: float, now: float) -> None:
         self._lights, self._seconds, self._begin = lights, seconds, now
-        goals = {light: rendered(colour) for light, colour in lights_of(colours)}
+        goals = {light: rendered(colour) for light, colour in lights.lights_of(colours)}
         self._ways = [(light, lights.shown(light), np.array(goal)) for light, goal in goals.items() if goal]
 
     def advance(self, now: float) -> bool:

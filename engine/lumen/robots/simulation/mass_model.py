@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
+from lumen.language.roles import SIDES
 
 
 class MassModel:
@@ -21,14 +22,15 @@ class MassModel:
             for name, link in body.links.items():
                 differs = spec.body(name)
                 differs.mass, differs.ipos, differs.fullinertia = link.mass, link.centre, link.inertia
-            self._model: mujoco.MjModel = spec.compile()
+            self.model: mujoco.MjModel = spec.compile()
         except ValueError as error:
             raise RobotModelError(f"{body.mjcf} is not MJCF: {' '.join(str(error).split())}") from error
-        self._data = mujoco.MjData(self._model)
-        self._places = {name: self._model.joint(name).qposadr[0] for name in body.joints}
-        self._torso = self._model.body("Torso").id
+        self._data = mujoco.MjData(self.model)
+        self._places = {name: self.model.joint(name).qposadr[0] for name in body.joints}
+        self._torso = self.model.body(body.roles.torso).id
+        self._whole = self.model.body_rootid[self._torso]
         self._order = np.array(list(self._places.values()))
-        self._soles = [self._model.site(name).id for name in ("LSole", "RSole")]
+        self._soles = [self.model.site(body.roles.soles[side]).id for side in SIDES if side in body.roles.soles]
 
     def pose(self, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The centre of mass (3,) and the points of both soles below the ankles (2, 3) [m], in the torso's frame.
@@ -36,15 +38,19 @@ class MassModel:
         `angles` are those of all joints in the body's order [rad].
         """
         self._data.qpos[self._order] = angles
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_comPos(self._model, self._data)
-        return self._data.subtree_com[self._torso], self._data.site_xpos[self._soles]
+        mujoco.mj_kinematics(self.model, self._data)
+        mujoco.mj_comPos(self.model, self._data)
+        return self._seen(self._data.subtree_com[self._whole]), self._seen(self._data.site_xpos[self._soles])
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
         """Where it is (3,) [m] in the torso's frame; joints that are not named [rad] stay as they were last."""
         for name, angle in angles.items():
             self._data.qpos[self._places[name]] = angle
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_comPos(self._model, self._data)
-        mass: NDArray[np.float64] = self._data.subtree_com[self._torso].copy()
-        return mass
+        mujoco.mj_kinematics(self.model, self._data)
+        mujoco.mj_comPos(self.model, self._data)
+        return self._seen(self._data.subtree_com[self._whole])
+
+    def _seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the world, Shape (..., 3), in the torso's frame [m]."""
+        seen: NDArray[np.float64] = (points - self._data.xpos[self._torso]) @ self._data.xmat[self._torso].reshape(3, 3)
+        return seen

@@ -12,6 +12,7 @@ from dm_control.mujoco import wrapper
 
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
+from lumen.language.roles import BaseKind
 from lumen.loading.memoization import memoize
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
@@ -31,7 +32,9 @@ class Variation:
 
 
 def load(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.RootElement:
-    """The hall with the robot on its stage, free to fall; `hall` is in `models`, or an absolute path.
+    """The hall with the robot on its stage; `hall` is in `models`, or an absolute path.
+
+    The robot is free to fall, unless its base is fixed: then it is part of what it stands on.
 
     Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
     """
@@ -39,7 +42,9 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
     _complain(hall, lacks_of_hall(world))
     stage = world.find("site", STAGE_SITE)
     try:
-        stage.attach(robot).add("freejoint")
+        frame = stage.attach(robot)
+        if body.roles.base.kind is not BaseKind.FIXED:
+            frame.add("freejoint")
     except ValueError as error:
         reason = " ".join(str(error).split())
         raise RobotModelError(f"{Path(hall).name} does not go with the robot's {body.mjcf}: {reason}") from error

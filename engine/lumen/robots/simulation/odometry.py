@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from lumen.errors import RobotRefusedError
 from lumen.interpreters.dead_reckoning import DeadReckoning
-from lumen.interpreters.gait import Feet, Footstep, Pose, corners, foot_from, middle
+from lumen.interpreters.gait import Feet, Footstep, LegGeometry, Pose, corners, middle
 from lumen.interpreters.gait.poses import wrap
 from lumen.interpreters.postures import lies
 from lumen.language.projects import Stage
@@ -29,8 +29,8 @@ class Odometry:
     steps add to that is in its `whereabouts`.
     """
 
-    def __init__(self, stage: Stage | None) -> None:
-        self._stage = stage
+    def __init__(self, legs: LegGeometry, stage: Stage | None) -> None:
+        self.legs, self._stage = legs, stage
         self._down = False
         self.doubt, self._before = 0.0, 0.0
         self._here, self._heading = Pose(), 0.0
@@ -64,7 +64,7 @@ class Odometry:
 
     def feel(self, angles: Mapping[str, float]) -> Feet:
         """Both feet, standing as the legs' angles [rad] say; the point between them is where it was."""
-        seen: Feet = {"L": Pose(), "R": foot_from("L", angles)}
+        seen: Feet = {"L": Pose(), "R": self.legs.foot_from("L", angles)}
         between = middle(seen)
         self.feet = {side: self._here.then(foot.seen_from(between)) for side, foot in seen.items()}
         return self.feet
@@ -90,9 +90,10 @@ class Odometry:
         """
         if self._stage is None:
             return
-        stand = [corner for side, pose in self.feet.items() for corner in corners(Footstep(side, pose))]
+        size = self.legs.sole_size
+        stand = [corner for side, pose in self.feet.items() for corner in corners(Footstep(side, pose), size)]
         for step in steps:
-            reached = corners(step)
+            reached = corners(step, size)
             for axis, (low, high), before, after in (
                 ("x", self._stage.x, [p.real for p in stand], [p.real for p in reached]),
                 ("y", self._stage.y, [p.imag for p in stand], [p.imag for p in reached]),

@@ -1,12 +1,12 @@
 """From posture to posture along the ways that do not fall, down to the floor and up again."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from math import cos, pi
 from typing import Protocol
 
 from lumen.errors import RobotFailedError, RobotRefusedError
-from lumen.interpreters.postures import UPRIGHT, lies, passage, route
+from lumen.interpreters.postures import lies, passage, route
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
@@ -32,16 +32,20 @@ class UprightSensor(Protocol):
 
 @dataclass
 class PostureState:
-    """In which posture the robot is; between two of them, on which passage, and how far along it [s]."""
+    """In which posture the robot is; between two of them, on which passage, and how far along it [s].
+
+    `standing` are those on both feet, or on what else it stands.
+    """
 
     posture: str
+    standing: Collection[str]
     passage: MotionDefinition | None = None
     reached: float = 0.0
 
     @property
     def upright(self) -> bool:
-        """Whether it stands on both feet."""
-        return self.posture in UPRIGHT and self.passage is None
+        """Whether it stands, on both feet where it has them."""
+        return self.posture in self.standing and self.passage is None
 
 
 def lying(feeling: UprightSensor) -> str:

@@ -1,35 +1,47 @@
 """What the simulation asks of a robot's and a hall's MJCF."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from dm_control import mjcf
 
 from lumen.language.robots import Body
+from lumen.language.roles import LEG_ROLES, SIDES, BaseKind
 
 MAX_TIMESTEP = 0.01
 """The longest timestep [s]: the joints get their goals as often."""
 MIN_TIMESTEP = 0.0001
 """The shortest [s]: with it no machine keeps real time any more."""
 
-_HEAD = ("HeadYaw", "HeadPitch")
-_LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
-REQUIRED_JOINTS = (*_HEAD, *(side + name for side in "LR" for name in _LEG))
-"""Those that looking, standing and walking name."""
-
-_ROBOT = (("body", "Torso"), ("site", "LSole"), ("site", "RSole"), ("sensor", "gyro"), ("sensor", "accelerometer"),
-          ("camera", "CameraTop"))  # fmt: skip
-_EARS = (("site", "LSonar"), ("site", "RSonar"))
 _HALL = (("site", "stage"), ("body", "visitor"), ("site", "visitor_face"))
 
 
 def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
-    """What a robot's MJCF does not have, in words."""
+    """What a robot's MJCF does not have of all that its body and the roles of its parts name, in words."""
+    roles, base = body.roles, body.roles.base
     driven = [name for name in body.joints if name not in body.shared]
-    needs = [*_ROBOT, *(_EARS if body.sonar else ())]
-    needs += [("joint", name) for name in dict.fromkeys((*REQUIRED_JOINTS, *body.joints))]
-    needs += [("actuator", name) for name in driven]
-    needs += [("body", name) for name in body.links]
-    return list(_lacks(robot, needs))
+    named = [
+        ("body", roles.torso),
+        ("camera", roles.eyes.camera),
+        ("body", roles.eyes.face),
+        *(("site", site) for site in roles.soles.values()),
+        ("sensor", roles.sensors.gyro),
+        ("sensor", roles.sensors.accelerometer),
+        *(("site", site) for site in (roles.sensors.sonar.values() if body.sonar else ())),
+        *(("site", site) for sites in roles.sensors.force.values() for site in sites),
+        *(("joint", name) for name in (base.left, base.right)),
+        *(("joint", name) for name in body.joints),
+        *(("actuator", name) for name in driven),
+        *(("body", name) for name in body.links),
+    ]
+    found = list(_lacks(robot, dict.fromkeys(need for need in named if need[1])))
+    wheels = [name for name in (base.left, base.right) if name and robot.find("joint", name) is not None]
+    return found + [f"a velocity actuator of the wheel `{name}`" for name in wheels if not wheel_motor(robot, name)]
+
+
+def wheel_motor(robot: mjcf.RootElement, wheel: str) -> str:
+    """The velocity actuator that turns a wheel's joint, empty where there is none."""
+    motors = (motor for motor in robot.find_all("actuator") if motor.tag == "velocity")
+    return next((motor.name for motor in motors if motor.joint is not None and motor.joint.name == wheel), "")
 
 
 def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
@@ -50,11 +62,23 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
 
 def lacks_of_body(body: Body) -> list[str]:
     """What a body's description does not have, in words."""
-    lost = [f"the joint `{name}`" for name in REQUIRED_JOINTS if name not in body.joints]
-    return lost + [f"the posture `{name}`" for name in ("Stand", "Crouch") if name not in body.postures]
+    roles = body.roles
+    if not roles.torso:
+        return ["the role `torso`"]
+    lost = [f"the joint `{role.joint}`" for role in roles.paths.values() if role.joint not in body.joints]
+    if roles.base.kind is BaseKind.BIPED:
+        legs = [f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES]
+        lost += [f"the role `{path}`" for path in legs if not roles.joint(path)]
+        lost += [f"the role `soles.{side}`" for side in SIDES if not roles.soles.get(side)]
+    if roles.base.kind is BaseKind.WHEELS:
+        lost += [f"the role `base.{side}`" for side in SIDES if not getattr(roles.base, side)]
+    if roles.base.kind is not BaseKind.FIXED:
+        lost += [f"the role `sensors.{name}`" for name in ("gyro", "accelerometer") if not getattr(roles.sensors, name)]
+    needed = ("Stand", "Crouch") if roles.base.kind is BaseKind.BIPED else ("Stand",)
+    return lost + [f"the posture `{name}`" for name in needed if name not in body.postures]
 
 
-def _lacks(root: mjcf.RootElement, needs: list[tuple[str, str]] | tuple[tuple[str, str], ...]) -> Iterator[str]:
+def _lacks(root: mjcf.RootElement, needs: Iterable[tuple[str, str]]) -> Iterator[str]:
     for kind, name in needs:
         if root.find(kind, name) is None:
             yield f"the {kind} `{name}`"

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Collection, Sequence
 from math import degrees
 from pathlib import Path
+from typing import assert_never
 
 import numpy as np
 
@@ -16,17 +17,18 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
+from lumen.language.roles import BaseKind
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation.aim_controller import AimController
-from lumen.robots.simulation.balance import BalanceController
+from lumen.robots.simulation.base import RobotBase
 from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
-from lumen.robots.simulation.camera import TopCamera
-from lumen.robots.simulation.catching import FallCatcher
-from lumen.robots.simulation.falling_sense import FallingSense
+from lumen.robots.simulation.biped import Biped
+from lumen.robots.simulation.camera import RobotCamera
+from lumen.robots.simulation.fixed import Fixed
 from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.imperfections import Imperfections
@@ -34,7 +36,6 @@ from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.odometry import Odometry
 from lumen.robots.simulation.playback import SpeechActivity
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.skills import SimulatedSkills
@@ -43,7 +44,7 @@ from lumen.robots.simulation.sound_playback import SoundPlayback
 from lumen.robots.simulation.speech_playback import SpeechPlayback
 from lumen.robots.simulation.tactile_sensors import TactileSensors
 from lumen.robots.simulation.visitor_figure import VisitorFigure
-from lumen.robots.simulation.walking import WalkController
+from lumen.robots.simulation.wheels import Wheels
 from lumen.robots.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
 
 _log = logging.getLogger(__name__)
@@ -83,45 +84,51 @@ class SimulatedRobot:
         self.world.set_up(body.postures[posture])
         lacking = imperfections or Imperfections()
         self.motors = Motors(self.world, lacking)
-        self.lights = Lights(self.world.model)
+        self.lights = Lights(self.world.model, body.roles.lights)
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
         self._aiming = AimController(self.motors)
         self._life = LifeLayer(body, seed)
         self._vigour = dict.fromkeys(body.parts, 1.0)
         self._sensors = BodySensors(self.world, lacking, seed)
-        mass_model = MassModel(body, Path(models))
-        self._falling = FallingSense(self._sensors, mass_model)
-        self._balance = BalanceController(self.motors, self._falling)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
         self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile)
-        self._force_sensors = ForceSensors(self.world.model, self.world.data)
-        self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
-        self._odometry = Odometry(stage)
-        walker = WalkController(
-            self.motors,
-            self._balance,
-            self._sensors,
-            self._odometry,
-            mass_model,
-            Hazards(self._sonars, self._pressed),
-            self._free,
-            lambda: self.condition.hot,
+        self._force_sensors = ForceSensors(self.world.model, self.world.data, body.roles)
+        ears = body.roles.sensors.sonar
+        self._sonars = (
+            Sonars(self.world.model, self.world.data, body.sonar, ears, seed) if body.sonar and ears else None
         )
-        self._catcher = FallCatcher(
-            self.motors, self._sensors, self._falling, self._balance, self._odometry, walker.centre_of_mass
-        )
+        hazards = Hazards(self._sonars, self._pressed)
+        self.base = self._based(Path(models), hazards, lacking, stage)
         self._skills = SimulatedSkills(
-            self.world, self.motors, self.lights, walker, self._sensors, posture, self._notice
+            self.world, self.motors, self.lights, self.base, self._sensors, posture, self._notice
         )
         self._executor = Executor(self._begin, self._skills.parts)
         self.figure = VisitorFigure(self.world.model, self.world.data)
-        self._camera = TopCamera(self.world, body.camera) if body.camera else None
+        self._camera = RobotCamera(self.world, body.camera) if body.camera and body.roles.eyes.camera else None
         self._events: list[Event] = []
         self._exhausted = False
         self._ticks = 0
         self._until = 0.0
+
+    def _based(self, models: Path, hazards: Hazards, lacking: Imperfections, stage: Stage | None) -> RobotBase:
+        """What this body stands on."""
+        world, sensors = self.world, self._sensors
+
+        def hot() -> bool:
+            return self.condition.hot
+
+        match self.body.roles.base.kind:
+            case BaseKind.BIPED:
+                mass_model = MassModel(self.body, models)
+                return Biped(self.body, self.motors, sensors, mass_model, hazards, self._free, hot, stage)
+            case BaseKind.WHEELS:
+                return Wheels(world, sensors, lacking, hazards, hot, stage)
+            case BaseKind.FIXED:
+                return Fixed(len(self.body.joints))
+            case _:
+                assert_never(self.body.roles.base.kind)
 
     @property
     def time(self) -> float:
@@ -187,7 +194,7 @@ class SimulatedRobot:
                 angles, stiffness = self._sensors.angles.tolist(), self.motors.stiffness.tolist()
                 heat = tuple(self.condition.temperatures.round(1).tolist())
                 felt = heat, self._sensors.inertial, self._force_sensors.weigh()
-                where, life = self._odometry.whereabouts, self._life.offsets
+                where, life = self.base.whereabouts, self._life.offsets
                 return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt, where, life)
             case Sense.SONAR:
                 return Sonar(now, *self._sonars.measure()) if self._sonars else None
@@ -228,7 +235,7 @@ class SimulatedRobot:
     def sound(self) -> None:
         face = self.figure.face()
         if face is not None and self.body.camera:
-            torso = self.world.data.body(f"{ROBOT_PREFIX}/Torso")
+            torso = self.world.data.body(f"{ROBOT_PREFIX}/{self.body.roles.torso}")
             x, y, z = (torso.xmat.reshape(3, 3).T @ (np.array(face) - torso.xpos)).tolist()
             yaw, pitch = centring((x, y, z), self.body.camera)
             head = self.motors.wanted((HEAD_YAW, HEAD_PITCH))
@@ -255,13 +262,12 @@ class SimulatedRobot:
         self._sensors.feel()
         if not self.awake:
             self._life.still()
+            self.base.relax()
         else:
-            standing = self._skills.upright and not self.fallen
-            gyro = self._sensors.gyro if self._skills.upright else (0.0, 0.0)
+            upright = self._skills.upright
             self._live(now)
-            self._falling.feel()
-            self._catcher.advance(now, standing=standing)
-            self.motors.drive(self._balance.trim(gyro, standing=standing), CONTROL_PERIOD)
+            trim = self.base.steady(now, standing=upright and not self.fallen, upright=upright)
+            self.motors.drive(trim, CONTROL_PERIOD)
         self.world.step()
         self._ticks += 1
         self._watch(self.time)
@@ -287,9 +293,9 @@ class SimulatedRobot:
         self._feel_touch()
         upright = self._skills.upright
         if not upright or self.fallen:
-            self._odometry.lose("" if self.fallen else self._skills.posture)
+            self.base.lose("" if self.fallen else self._skills.posture)
         elif tilt < STANDING_TILT:
-            self._odometry.keep(self._sensors.heading)
+            self.base.keep(self._sensors.heading)
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN_TILT and upright and not self.fallen:
             self._skills.fall(now)
@@ -307,7 +313,7 @@ class SimulatedRobot:
     def _calm(self) -> None:
         """Live less where motors are warm, or the battery is low."""
         for part, joints in self.body.parts.items():
-            warmest = max(self.condition.temperatures[self.motors.index[joint]] for joint in joints)
+            warmest = max((self.condition.temperatures[self.motors.index[joint]] for joint in joints), default=0.0)
             self._vigour[part] = vigour(float(warmest), self.condition.percentage)
 
     def _exhaust(self) -> None:

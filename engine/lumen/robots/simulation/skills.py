@@ -1,18 +1,20 @@
-"""What the simulated NAO can do: each command's parts of the body, and how it begins."""
+"""What a simulated robot can do: each command's parts of the body, and how it begins."""
 
 from collections.abc import Callable
 from math import inf, pi
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
-from lumen.interpreters.postures import RESTFUL, UPRIGHT
+from lumen.interpreters.postures import RESTFUL, standing
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
+from lumen.language.roles import BaseKind
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of, row_of
 from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
 from lumen.robots.silent_recording import SilentRecording
+from lumen.robots.simulation.base import RobotBase
 from lumen.robots.simulation.joint_transition import JointTransition
 from lumen.robots.simulation.lights import LightFade, Lights
 from lumen.robots.simulation.motors import Motors
@@ -21,7 +23,6 @@ from lumen.robots.simulation.posture_planner import PosturePlanner, PostureState
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.sound_playback import SilentSounds, SoundActivity, SoundPlayback
 from lumen.robots.simulation.speech_playback import SilentPlayback, SpeechPlayback
-from lumen.robots.simulation.walking import WalkController
 from lumen.robots.simulation.world import World
 
 FALLEN_STIFFNESS = 0.1
@@ -30,8 +31,17 @@ FALLEN_STIFFNESS = 0.1
 PROTECTING_STIFFNESS, PROTECTING_TIME = 0.6, 0.7
 """Stiffness of head and arms while the robot falls, and for how long [s]."""
 
-BREAKS_A_FALL = {"HeadPitch": -0.6, "LShoulderPitch": 0.2, "RShoulderPitch": 0.2, "LElbowRoll": -0.9, "RElbowRoll": 0.9}
+BREAKS_A_FALL = {
+    "head.pitch": -0.6,
+    "arms.left.shoulder-pitch": 0.2,
+    "arms.right.shoulder-pitch": 0.2,
+    "arms.left.elbow-roll": -0.9,
+    "arms.right.elbow-roll": 0.9,
+}
 """Head and arms of a robot that falls on its belly or aside [rad]. On the back nothing that was tried was better."""
+
+FIRST_POSTURE = "Stand"
+"""The posture that every body has."""
 
 BACKWARDS = 0.3
 """A torso in whose frame up is farther ahead than this falls on its back."""
@@ -55,16 +65,20 @@ class SimulatedSkills:
         world: World,
         motors: Motors,
         lights: Lights,
-        walker: WalkController,
+        base: RobotBase,
         sensors: BodySensors,
         posture: str,
         notice: EventSink,
     ) -> None:
-        self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
+        self._world, self._motors, self._lights, self._base = world, motors, lights, base
         self._sensors, self._notice = sensors, notice
         self._postures = world.body.postures
         self._part = part_of(world.body)
-        self._posture_state = PostureState(posture)
+        self._standing = standing(world.body)
+        self._posture_state = PostureState(posture, self._standing)
+        roles = world.body.roles
+        found = [(roles.joint(path), angle) for path, angle in BREAKS_A_FALL.items()]
+        self._breaks_a_fall = {role.joint: role.sign * angle for role, angle in found if role}
         self._way: PosturePlanner | None = None
         self.playing: MotionPlayback | None = None
         self.awake, self.fallen = True, False
@@ -121,9 +135,7 @@ class SimulatedSkills:
             case Walk() | Move():
                 if not self.upright:
                     raise RobotRefusedError(f"the robot is in {self._posture_state.posture}: send it to Stand first")
-                return (
-                    self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
-                )
+                return self._base.walk(command, now)
             case Stop() | Aim() | Live():
                 raise BadCommandError(f"{type(command).__name__} does not last")
             case _:
@@ -137,8 +149,8 @@ class SimulatedSkills:
         self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)
         if self._sensors.up[0] < BACKWARDS:
-            self._motors.stiffen(PROTECTING_STIFFNESS, BREAKS_A_FALL)
-            self._motors.aim(BREAKS_A_FALL)
+            self._motors.stiffen(PROTECTING_STIFFNESS, self._breaks_a_fall)
+            self._motors.aim(self._breaks_a_fall)
         self._lights.reset()
 
     def lie(self, now: float) -> None:
@@ -158,7 +170,7 @@ class SimulatedSkills:
         start = self._postures.get(motion.start, {})
         home = {name: angle for name, angle in start.items() if self._part[name] in owned}
         here = self._posture_state.posture
-        if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
+        if motion.start and motion.start != here and not (self.upright and motion.start in self._standing):
             raise RobotRefusedError(
                 f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first"
             )
@@ -176,11 +188,11 @@ class SimulatedSkills:
         """The way to one of these postures; a robot that has fallen, or was limp, begins with where it lies or sits."""
         limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:
-            self._posture_state = PostureState(down)
+            self._posture_state = PostureState(down, self._standing)
         elif self.fallen:
             if self._world.tilt > _UPRIGHT:
                 raise RobotRefusedError("the robot has fallen, but does not lie: put it on its feet first")
-            self._posture_state = PostureState(UPRIGHT[0])
+            self._posture_state = PostureState(FIRST_POSTURE, self._standing)
         if limp:
             self._motors.stiffen(1.0)
             self.awake, self.fallen = True, False
@@ -198,14 +210,20 @@ class SimulatedSkills:
         return self._way
 
     def _look(self, yaw: float, pitch: float, now: float) -> Activity:
-        self._motors.check({"HeadYaw": yaw, "HeadPitch": pitch})
-        target = {n: self._motors.inside(n, a) for n, a in (("HeadYaw", yaw), ("HeadPitch", pitch))}
+        roles = self._world.body.roles
+        angles = {
+            role.joint: role.sign * a for name, a in (("yaw", yaw), ("pitch", pitch)) if (role := roles.head.get(name))
+        }
+        if not angles:
+            raise RobotRefusedError("the robot has no head to turn")
+        self._motors.check(angles)
+        target = {name: self._motors.inside(name, angle) for name, angle in angles.items()}
         wanted = self._motors.wanted(target)
         farthest = max(abs(target[name] - wanted[name]) for name in target)
         return JointTransition(self._motors, target, now, max(0.3, farthest / _LOOK_SPEED))
 
     def _rest(self, now: float) -> Activity:
-        if self.fallen or not self.awake:
+        if self.fallen or not self.awake or self._world.body.roles.base.kind is not BaseKind.BIPED:
             self._sleep()
             return JointTransition(self._motors, {}, now, 0.01)
         return self._go(RESTFUL, now, _REST_SPEED, self._sleep)

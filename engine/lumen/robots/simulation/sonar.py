@@ -1,5 +1,6 @@
 """Two ultrasonic sensors, as rays in a cone."""
 
+from collections.abc import Mapping
 from math import cos, pi, sin
 
 import mujoco
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.language.robots import Ultrasound
+from lumen.language.roles import SIDES
 from lumen.robots.simulation.model import ROBOT_PREFIX
 
 _ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
@@ -19,19 +21,23 @@ SONAR_RESOLUTION, SONAR_NOISE = 0.01, 0.003
 class Sonars:
     """Measures the nearest echo on either side [m], with a little noise."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, sensor: Ultrasound, seed: int) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, sensor: Ultrasound, sites: Mapping[str, str], seed: int
+    ) -> None:
         self._model, self._data, self._sensor = model, data, sensor
+        self._sites = [f"{ROBOT_PREFIX}/{sites[side]}" for side in SIDES if side in sites]
         self._rays = _cone(sensor.cone / 2)
         self._noise = np.random.default_rng(seed)
         self._distances = np.zeros(len(self._rays))
         self._hit = np.zeros(len(self._rays), dtype=np.int32)
 
     def measure(self) -> tuple[float, float]:
-        """Left and right; the farthest that can be heard where nothing is."""
-        return self._side("LSonar"), self._side("RSonar")
+        """Left and right; the farthest that can be heard where nothing is. One sensor alone is heard on both sides."""
+        heard = [self._heard(name) for name in self._sites]
+        return heard[0], heard[-1]
 
-    def _side(self, name: str) -> float:
-        site = self._data.site(f"{ROBOT_PREFIX}/{name}")
+    def _heard(self, name: str) -> float:
+        site = self._data.site(name)
         rays = (self._rays @ site.xmat.reshape(3, 3).T).ravel()
         farthest, found = self._sensor.maximum, self._distances
         mujoco.mj_multiRay(

@@ -8,17 +8,19 @@ from numpy.typing import NDArray
 
 from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
 from lumen.interpreters.gait import (
-    BRISK_GAIT,
-    GENTLE_GAIT,
-    JOINTS,
     SIDES,
     Gait,
     GaitParameters,
+    LegGeometry,
+    Paces,
     Pose,
     Velocity,
     middle,
 )
+from lumen.interpreters.gait.legs import SIDE_ROLES, sign
+from lumen.interpreters.gait.parameters import scale_of
 from lumen.language.commands import Move, Walk
+from lumen.language.roles import Roles
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.joint_transition import JointTransition
@@ -43,7 +45,23 @@ HAZARD_CHECK_PERIOD = 0.1
 """Time between two looks at what may be in the way [s]."""
 
 ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
-"""Arms swing that far for each metre between the feet [rad/m], at most so far [rad]; those below this pitch [rad]."""
+"""Arms swing that far for each metre between the feet [rad/m], on legs as long as those that paces were found with, at
+most so far [rad]; those below this pitch [rad]."""
+
+
+def way_of(command: Walk | Move) -> Pose | Velocity:
+    """Where a walk goes, or how fast. Raises RobotError for what is no number, or too far."""
+    if isinstance(command, Move):
+        velocity = Velocity(command.vx, command.vy, command.vtheta)
+        if not all(map(isfinite, velocity)):
+            raise BadCommandError(f"there is no walking at ({velocity.x}, {velocity.y}, {velocity.theta})")
+        return velocity
+    x, y, theta = command.x, command.y, command.theta
+    if not all(map(isfinite, (x, y, theta))):
+        raise BadCommandError(f"there is no way to ({x}, {y}, {theta})")
+    if abs(complex(x, y)) > MAX_WALK_DISTANCE:
+        raise BadCommandError(f"({x:g}, {y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
+    return Pose(x, y, theta)
 
 
 class WalkController:
@@ -59,6 +77,9 @@ class WalkController:
         sensors: BodySensors,
         odometry: Odometry,
         mass_model: MassModel,
+        legs: LegGeometry,
+        paces: Paces,
+        roles: Roles,
         hazards: Hazards,
         free: Callable[[str], bool],
         hot: Callable[[], bool],
@@ -66,48 +87,41 @@ class WalkController:
         self.motors, self.balance, self.sensors = motors, balance, sensors
         self.odometry, self.hazards = odometry, hazards
         self._mass_model, self._free, self._hot = mass_model, free, hot
-        legs = {side + name for side in SIDES for name in JOINTS}
-        self._legs = [(name, i) for name, i in motors.index.items() if name in legs]
-        self._others = [name for name in motors.names if name not in legs]
+        self.legs, self._paces = legs, paces
+        names = {name for side in SIDES for name in legs.names[side]}
+        self._legs = [(name, i) for name, i in motors.index.items() if name in names]
+        self._others = [name for name in motors.names if name not in names]
+        arms = [(sign(side), roles.joint(f"arms.{SIDE_ROLES[side]}.shoulder-pitch")) for side in SIDES]
+        self._arms = [(role.joint, role.sign, side) for side, role in arms if role]
+        self._arm_gain = ARM_SWING_GAIN / scale_of(legs)
         self._walking: WalkActivity | None = None
 
-    def begin(self, command: Walk, now: float) -> "WalkActivity":
-        """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
-        x, y, theta = command.x, command.y, command.theta
-        if not all(map(isfinite, (x, y, theta))):
-            raise BadCommandError(f"there is no way to ({x}, {y}, {theta})")
-        if abs(complex(x, y)) > MAX_WALK_DISTANCE:
-            raise BadCommandError(f"({x:g}, {y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
-        return self._set_out(Pose(x, y, theta), now)
-
-    def move(self, command: Move, now: float) -> "WalkActivity":
-        """The walk at that speed under way; one that goes on already goes on like this.
+    def begin(self, command: Walk | Move, now: float) -> "WalkActivity":
+        """The walk under way; one that goes on at a speed already goes on like this where another is asked for.
 
         Raises RobotError, and changes nothing, for one that must not begin.
         """
-        velocity = Velocity(command.vx, command.vy, command.vtheta)
-        if not all(map(isfinite, velocity)):
-            raise BadCommandError(f"there is no walking at ({velocity.x}, {velocity.y}, {velocity.theta})")
-        if self._walking and self._walking.steer(velocity, now):
+        way = way_of(command)
+        if isinstance(way, Velocity) and self._walking and self._walking.steer(way, now):
             return self._walking
-        return self._set_out(velocity, now)
+        return self._set_out(way, now)
 
     def _set_out(self, way: Pose | Velocity, now: float) -> "WalkActivity":
         if reason := self.hazards.danger():
             raise RobotRefusedError(f"{reason}: the robot did not set out")
         feet = self.odometry.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
-        gait = Gait(feet, goal, self.centre_of_mass, self.pace(way))
+        gait = Gait(self.legs, feet, goal, self.centre_of_mass, self.pace(way))
         self.odometry.check(gait.coming)
         self._walking = WalkActivity(self, gait, now)
         return self._walking
 
     def pace(self, way: Pose | Velocity) -> GaitParameters:
         """Gently with hot motors; briskly only where a speed is asked for that takes it: a place asks for truth."""
-        usual = GaitParameters()
+        usual, gentle, brisk, _ = self._paces
         if self._hot():
-            return GENTLE_GAIT
-        return BRISK_GAIT if isinstance(way, Velocity) and way.within(usual) != way else usual
+            return gentle
+        return brisk if isinstance(way, Velocity) and way.within(usual) != way else usual
 
     def measured(self) -> dict[str, float]:
         """Where the encoders say the legs' joints are [rad]."""
@@ -116,10 +130,15 @@ class WalkController:
 
     def swing(self, stride: float) -> None:
         """Swing the arms that hang and do nothing else, against the legs; `stride`: the left foot's lead [m]."""
-        angle = min(max(ARM_SWING_GAIN * stride, -MAX_ARM_SWING), MAX_ARM_SWING)
-        arms = {"LShoulderPitch": angle, "RShoulderPitch": -angle}
-        hanging = self.motors.wanted(arms)
-        self.motors.sway({n: a for n, a in arms.items() if hanging[n] > HANGING_ARM_PITCH and self._free(n)})
+        angle = min(max(self._arm_gain * stride, -MAX_ARM_SWING), MAX_ARM_SWING)
+        hanging = self.motors.wanted(name for name, _, _ in self._arms)
+        self.motors.sway(
+            {
+                name: way * side * angle
+                for name, way, side in self._arms
+                if way * hanging[name] > HANGING_ARM_PITCH and self._free(name)
+            }
+        )
 
     def centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
         """Where it is (3,) [m] in the torso's frame, with legs bent like this [rad] and all else where it is wanted."""
@@ -176,7 +195,7 @@ class WalkActivity:
         """After a fall that was caught, walk on from where the feet stand now; a cancelled walk ends there."""
         walker, gait = self._walker, self._gait
         self._stumbled, self._landed = False, 0
-        self._gait = Gait(walker.odometry.feet, gait.goal, walker.centre_of_mass, gait.pace)
+        self._gait = Gait(walker.legs, walker.odometry.feet, gait.goal, walker.centre_of_mass, gait.pace)
         if self._cancelled:
             return self._end()
         self._rising = JointTransition(walker.motors, self._gait.angles, now, WALK_POSTURE_TIME)

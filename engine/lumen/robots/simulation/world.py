@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
+from lumen.language.roles import SIDES, BaseKind
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.model import ROBOT_PREFIX, Variation, physics
 
@@ -20,7 +21,6 @@ _UNSTABLE = [
     int(w)
     for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
 ]
-_FEET = (f"{ROBOT_PREFIX}/LSole", f"{ROBOT_PREFIX}/RSole")
 
 
 class World:
@@ -41,10 +41,13 @@ class World:
         names = list(body.joints)
         self.driven = np.array(driven)
         self.actuators = np.array([self.model.actuator(f"{ROBOT_PREFIX}/{names[i]}").id for i in driven])
-        self.torso = self.model.body(f"{ROBOT_PREFIX}/Torso").id
-        self._root = self.model.joint(f"{ROBOT_PREFIX}/").qposadr[0]
-        self._gyro = self.model.sensor(f"{ROBOT_PREFIX}/gyro").adr[0]
-        self._accelerometer = self.model.sensor(f"{ROBOT_PREFIX}/accelerometer").adr[0]
+        roles = body.roles
+        self.torso = self.model.body(f"{ROBOT_PREFIX}/{roles.torso}").id
+        self.free = roles.base.kind is not BaseKind.FIXED
+        """Whether the robot can be elsewhere than where it was built in."""
+        self._soles = [f"{ROBOT_PREFIX}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
+        self._root = self.model.joint(f"{ROBOT_PREFIX}/").qposadr[0] if self.free else 0
+        self._gyro, self._accelerometer = self._sensor(roles.sensors.gyro), self._sensor(roles.sensors.accelerometer)
         self._torso_axes = self.data.xmat[self.torso]
         self._substeps = round(CONTROL_PERIOD / self.model.opt.timestep)
         self._warnings = self.data.warning.number
@@ -83,13 +86,13 @@ class World:
     @property
     def gyro(self) -> tuple[float, float, float]:
         """How fast the torso rolls to the right, pitches forward and turns to the left [rad/s]."""
-        roll, pitch, yaw = self.data.sensordata[self._gyro : self._gyro + 3].tolist()
+        roll, pitch, yaw = self._felt(self._gyro)
         return roll, pitch, yaw
 
     @property
     def acceleration(self) -> tuple[float, float, float]:
         """What the accelerometer feels in the torso's axes: forward, left, up [m/s^2]."""
-        x, y, z = self.data.sensordata[self._accelerometer : self._accelerometer + 3].tolist()
+        x, y, z = self._felt(self._accelerometer)
         return x, y, z
 
     @property
@@ -104,26 +107,50 @@ class World:
         return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))
 
     def set_up(self, angles: Mapping[str, float]) -> None:
-        """Put the robot on its stage in this posture, both soles flat, the point between its feet at the stage's site.
+        """Put the robot on its stage in this posture: both soles flat, the point between its feet at the stage's site.
 
-        Only for the beginning of a run: nothing moves the robot but its motors afterwards. Raises RobotError where
-        something in the hall is nowhere.
+        One without feet stands where it was attached, as low as it goes. Only for the beginning of a run: nothing moves
+        the robot but its motors afterwards. Raises RobotError where something in the hall is nowhere.
         """
         data, root = self.data, self._root
         data.qpos[self._angles] = [angles[name] for name in self.body.joints]
-        data.qpos[root : root + 7] = self._start
-        mujoco.mj_kinematics(self.model, data)
-        axes = data.site(_FEET[0]).xmat.reshape(3, 3), data.site(_FEET[1]).xmat.reshape(3, 3)
-        data.qpos[root + 3 : root + 7] = _upright(axes[0], axes[1])
-        mujoco.mj_kinematics(self.model, data)
-        soles = np.array([data.site(name).xpos for name in _FEET])
-        middle = np.array([*soles[:, :2].mean(axis=0), soles[:, 2].min()])
-        data.qpos[root : root + 3] += self._start[:3] - middle
+        if self.free:
+            data.qpos[root : root + 7] = self._start
+            mujoco.mj_kinematics(self.model, data)
+            if len(self._soles) == 2:
+                axes = [data.site(name).xmat.reshape(3, 3) for name in self._soles]
+                data.qpos[root + 3 : root + 7] = _upright(axes[0], axes[1])
+                mujoco.mj_kinematics(self.model, data)
+                soles = np.array([data.site(name).xpos for name in self._soles])
+                middle = np.array([*soles[:, :2].mean(axis=0), soles[:, 2].min()])
+            else:
+                middle = np.array([*self._start[:2], self._lowest()])
+            data.qpos[root : root + 3] += self._start[:3] - middle
         data.ctrl[self.actuators] = data.qpos[self._angles][self.driven]
         self.physics.forward()
         lost = [self.model.geom(i).name or "one without a name" for i in _nowhere(data.geom_xpos)]
         if lost:
             raise RobotModelError(f"these geoms in models/ stand at no place that is a number: {', '.join(lost)}")
+
+    def _lowest(self) -> float:
+        """How low what touches of the robot reaches [m]."""
+        model, data = self.model, self.data
+        whole = model.body_rootid[self.torso]
+        touching = (model.geom_contype | model.geom_conaffinity).astype(bool)
+        own = np.flatnonzero(touching & (model.body_rootid[model.geom_bodyid] == whole))
+        axes = data.geom_xmat[own].reshape(-1, 3, 3)[:, 2, :]
+        centre, half = model.geom_aabb[own, :3], model.geom_aabb[own, 3:]
+        return float((data.geom_xpos[own, 2] + (axes * centre).sum(1) - (np.abs(axes) * half).sum(1)).min())
+
+    def _sensor(self, name: str) -> int:
+        """Where a sensor's readings begin, -1 where the body has none."""
+        return int(self.model.sensor(f"{ROBOT_PREFIX}/{name}").adr[0]) if name else -1
+
+    def _felt(self, sensor: int) -> tuple[float, float, float]:
+        if sensor < 0:
+            return 0.0, 0.0, 0.0
+        x, y, z = self.data.sensordata[sensor : sensor + 3].tolist()
+        return x, y, z
 
 
 def _nowhere(places: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -1,9 +1,9 @@
 """From where a motion is played: the postures in which the behaviours may leave the robot before it."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from lumen.interpreters.postures import UPRIGHT
+from lumen.interpreters.postures import standing
 from lumen.language.actions import If, Parallel, PlacedAction
 from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
@@ -66,7 +66,8 @@ def cases(project: Project) -> list[Case]:
     ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
     blocks = [block for machine in project.behaviors.values() for block in _blocks(machine)]
     ends = [end for block in blocks for step in block if (end := _end(motions, step.action)) is not None]
-    anywhere = [end for end in ends if _upright(end)]
+    upright = standing(project.body)
+    anywhere = [end for end in ends if _upright(end, upright)]
     for block in blocks:
         for i, step in enumerate(block):
             for name in ways.keys() & set(_played(step)):
@@ -98,10 +99,10 @@ def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | No
     return None
 
 
-def _upright(end: Before) -> bool:
+def _upright(end: Before, upright: Collection[str]) -> bool:
     match end[:1]:
         case (Posture(name),):
-            return name in UPRIGHT
+            return name in upright
     return True
 
 

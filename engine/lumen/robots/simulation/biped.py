@@ -1,0 +1,85 @@
+"""A robot on two legs: they walk, balance, and step to where it falls."""
+
+from collections.abc import Callable
+
+from lumen.interpreters.gait import paces_of
+from lumen.language.commands import Move, Walk
+from lumen.language.projects import Stage
+from lumen.language.robots import Body
+from lumen.ports import Whereabouts
+from lumen.robots.executor import Activity
+from lumen.robots.simulation.balance import BalanceController
+from lumen.robots.simulation.catching import FallCatcher
+from lumen.robots.simulation.falling_sense import FallingSense
+from lumen.robots.simulation.hazards import Hazards
+from lumen.robots.simulation.joint_envelope import JointVector
+from lumen.robots.simulation.leg_geometry import read_legs
+from lumen.robots.simulation.mass_model import MassModel
+from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.odometry import Odometry
+from lumen.robots.simulation.sensors import BodySensors
+from lumen.robots.simulation.walking import WalkController
+
+
+class Biped:
+    """Two legs under a body. Raises RobotModelError where they are none to walk on.
+
+    `free` says whether nothing else moves a joint, `hot` whether the motors should be spared; `stage` bounds where the
+    feet may go.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        motors: Motors,
+        sensors: BodySensors,
+        mass_model: MassModel,
+        hazards: Hazards,
+        free: Callable[[str], bool],
+        hot: Callable[[], bool],
+        stage: Stage | None,
+    ) -> None:
+        legs, roles = read_legs(mass_model.model, body), body.roles
+        paces = paces_of(legs, body.gait)
+        self._sensors = sensors
+        self.falling = FallingSense(sensors, mass_model, legs)
+        self.balance = BalanceController(motors, self.falling, legs, roles, paces.usual.ahead)
+        self.odometry = Odometry(legs, stage)
+        self.walker = WalkController(
+            motors, self.balance, sensors, self.odometry, mass_model, legs, paces, roles, hazards, free, hot
+        )
+        self.catcher = FallCatcher(
+            motors,
+            sensors,
+            self.falling,
+            self.balance,
+            self.odometry,
+            self.walker.centre_of_mass,
+            legs,
+            paces,
+        )
+
+    @property
+    def whereabouts(self) -> Whereabouts:
+        return self.odometry.whereabouts
+
+    @property
+    def catching(self) -> bool:
+        return self.catcher.active
+
+    def walk(self, command: Walk | Move, now: float) -> Activity:
+        return self.walker.begin(command, now)
+
+    def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
+        self.falling.feel()
+        self.catcher.advance(now, standing=standing)
+        return self.balance.trim(self._sensors.gyro if upright else (0.0, 0.0), standing=standing)
+
+    def relax(self) -> None:
+        """Legs have no brakes."""
+
+    def lose(self, posture: str) -> None:
+        self.odometry.lose(posture)
+
+    def keep(self, heading: float) -> None:
+        self.odometry.keep(heading)

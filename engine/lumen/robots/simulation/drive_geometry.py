@@ -1,0 +1,124 @@
+"""What a body's driven wheels measure, read from its MJCF, and how hard it may speed up and brake and not tip over."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.errors import RobotModelError
+from lumen.interpreters.gait.pendulum import GRAVITY
+from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.world import World
+
+TIPPING_SHARE = 0.25
+"""That part of what would tip the robot over, and of what its motors could, is what it speeds up or brakes with."""
+
+ON_THE_GROUND = 0.01
+"""What is no higher than this above the wheels' lowest points carries the robot [m]."""
+
+
+_ROUND = [
+    int(kind) for kind in (mujoco.mjtGeom.mjGEOM_CYLINDER, mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_CAPSULE)
+]
+
+
+class DriveGeometry(NamedTuple):
+    """Two wheels side by side: their joints' places in MuJoCo's `qpos`, motors, and which way they roll ahead.
+
+    `radius` of a wheel and `track` between them [m], `fastest` it rolls [m/s]; `acceleration` [m/s^2] along and `spin`
+    [rad/s^2] around. `ahead` is where the wheels' middle is in front of the robot's own place, `reach` how far what
+    carries the robot reaches from there [m].
+    """
+
+    angles: NDArray[np.intp]
+    motors: NDArray[np.intp]
+    signs: NDArray[np.float64]
+    radius: float
+    track: float
+    fastest: float
+    acceleration: float
+    spin: float
+    reach: float
+
+
+def read_drive(world: World) -> DriveGeometry:
+    """The wheels of a robot that stands in its world. Raises RobotModelError for such as it can't drive on."""
+    model, data, base = world.model, world.data, world.body.roles.base
+    torso = data.body(world.torso)
+    axes, names = torso.xmat.reshape(3, 3), (base.left, base.right)
+    joints = [model.joint(f"{ROBOT_PREFIX}/{name}") for name in names]
+    motors = [_motor(model, joint.id) for joint in joints]
+    places = [axes.T @ (data.joint(joint.id).xanchor - torso.xpos) for joint in joints]
+    ways = [axes.T @ data.joint(joint.id).xaxis for joint in joints]
+    radii = [_radius(model, int(joint.bodyid[0])) for joint in joints]
+    for name, joint, way, radius in zip(names, joints, ways, radii, strict=True):
+        if joint.type[0] != mujoco.mjtJoint.mjJNT_HINGE or abs(way[1]) < 0.99:
+            raise _refused(f"`{name}` is no hinge whose axis points straight aside")
+        if radius <= 0.0:
+            raise _refused(f"the wheel of `{name}` has no round geom that touches the ground")
+    track = float(places[0][1] - places[1][1])
+    if abs(radii[0] - radii[1]) > 1e-3 or abs(places[0][0] - places[1][0]) > 1e-3 or track <= 0.0:
+        raise _refused("the wheels differ in size, or do not stand side by side, the left one on the left")
+    radius = radii[0]
+    fastest = min(float(model.actuator_ctrlrange[motor, 1]) or np.inf for motor in motors) * radius
+    force = sum(float(model.actuator_forcerange[motor, 1]) or np.inf for motor in motors) / radius
+    carried = _carried(world, radius, float(places[0][2]))
+    mass, centre = _mass(world)
+    height = float(centre[2] - places[0][2] + radius)
+    near = min(float(carried[:, 0].max() - centre[0]), float(centre[0] - carried[:, 0].min()))
+    if near <= 0.0:
+        raise _refused("its centre of mass is not above what it stands on")
+    acceleration = TIPPING_SHARE * min(GRAVITY * near / height, force / mass)
+    return DriveGeometry(
+        np.array([joint.qposadr[0] for joint in joints]),
+        np.array(motors),
+        np.array([1.0 if way[1] > 0 else -1.0 for way in ways]),
+        radius,
+        track,
+        fastest,
+        acceleration,
+        acceleration / (track / 2),
+        float(np.hypot(carried[:, 0] - places[0][0], carried[:, 1]).max()),
+    )
+
+
+def _motor(model: mujoco.MjModel, joint: int) -> int:
+    """The actuator that turns a joint."""
+    turned = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (model.actuator_trnid[:, 0] == joint)
+    return int(np.flatnonzero(turned)[0])
+
+
+def _radius(model: mujoco.MjModel, link: int) -> float:
+    """Of the largest round geom of a link that touches [m], 0 without one."""
+    geoms = np.arange(model.body_geomadr[link], model.body_geomadr[link] + model.body_geomnum[link])
+    solid = (model.geom_contype[geoms] | model.geom_conaffinity[geoms]).astype(bool)
+    radii = model.geom_size[geoms[solid & np.isin(model.geom_type[geoms], _ROUND)], 0]
+    return float(radii.max(initial=0.0))
+
+
+def _carried(world: World, radius: float, axle: float) -> NDArray[np.float64]:
+    """The places (points, 2) [m] in the torso's frame of what carries the robot: wheels, and casters as low as they."""
+    model, data, torso = world.model, world.data, world.data.body(world.torso)
+    own = (model.geom_contype | model.geom_conaffinity) & (
+        model.body_rootid[model.geom_bodyid] == model.body_rootid[world.torso]
+    )
+    found = []
+    for geom in np.flatnonzero(own):
+        axes = torso.xmat.reshape(3, 3).T @ data.geom_xmat[geom].reshape(3, 3)
+        place = torso.xmat.reshape(3, 3).T @ (data.geom_xpos[geom] - torso.xpos)
+        low = place[2] - float(np.abs(axes[2]) @ model.geom_aabb[geom, 3:])
+        if low < axle - radius + ON_THE_GROUND:
+            found.append(place[:2])
+    return np.array(found)
+
+
+def _mass(world: World) -> tuple[float, NDArray[np.float64]]:
+    """Of the whole robot [kg], and where its centre is in the torso's frame (3,) [m]."""
+    root, torso = int(world.model.body_rootid[world.torso]), world.data.body(world.torso)
+    centre: NDArray[np.float64] = torso.xmat.reshape(3, 3).T @ (world.data.subtree_com[root] - torso.xpos)
+    return float(world.model.body_subtreemass[root]), centre
+
+
+def _refused(reason: str) -> RobotModelError:
+    return RobotModelError(f"the robot can't drive on its wheels: {reason}")

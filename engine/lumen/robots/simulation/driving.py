@@ -1,0 +1,206 @@
+"""Driving on two wheels side by side, to a place or on and on: what turns the wheels, and when they brake."""
+
+from collections.abc import Callable
+from math import atan2, copysign, hypot, sqrt
+
+import numpy as np
+
+from lumen.errors import RobotError, RobotFailedError
+from lumen.interpreters.gait import Pose, Velocity
+from lumen.robots.simulation.drive_geometry import DriveGeometry
+from lumen.robots.simulation.hazards import Hazards
+from lumen.robots.simulation.walking import ARRIVAL_TOLERANCE, HAZARD_CHECK_PERIOD, HEADING_TOLERANCE
+from lumen.robots.simulation.wheel_odometry import WheelOdometry
+from lumen.robots.simulation.world import CONTROL_PERIOD, World
+
+NEAR, FACING = 0.008, 0.015
+"""So near to where it should be [m], [rad] the robot need not drive or turn on."""
+
+BACKS_UP = 0.6
+"""A place behind it that is no farther than this [m] the robot reaches backwards."""
+
+STEERING, CREEPING, CREEPING_TURN = 2.0, 0.03, 0.1
+"""How fast it turns back to its way [1/s], and how slowly it drives [m/s] and turns [rad/s] at the end of one."""
+
+BRAKES_EARLY = 0.85
+"""The part of the speed from which the robot could just brake: motors follow late."""
+
+MOTORS_LATE = 0.06
+"""How long wheels go on at the speed they had [s]."""
+
+STUCK_TIME = 3.0
+"""A robot that has not moved for so long [s] is held by something."""
+
+
+class Drive:
+    """Turns the wheels, never faster or sooner than the base allows; a period in which nobody steers brakes.
+
+    `limit` is how fast it goes straight ahead and around at most; `share` of that is left where motors are hot.
+    """
+
+    def __init__(self, world: World, geometry: DriveGeometry, limit: Velocity, hot: Callable[[], bool]) -> None:
+        self._world, self.geometry, self._limit, self._hot = world, geometry, limit, hot
+        self.speed = self.turning = 0.0
+        self._wanted = 0.0, 0.0
+
+    @property
+    def limit(self) -> Velocity:
+        """How fast the robot goes straight ahead [m/s] or around [rad/s] at most: half as fast with hot motors."""
+        part = 0.5 if self._hot() else 1.0
+        return Velocity(part * self._limit.x, 0.0, part * self._limit.theta)
+
+    @property
+    def still(self) -> bool:
+        return self.speed == 0.0 and self.turning == 0.0
+
+    def steer(self, speed: float, turning: float) -> None:
+        """Go ahead [m/s] and around to the left [rad/s] like this in this period, as far as the base can by then."""
+        self._wanted = speed, turning
+
+    def turn_wheels(self) -> None:
+        """Tell the motors how fast to turn in this control period."""
+        geometry, most = self.geometry, self.limit
+        (speed, turning), self._wanted = self._wanted, (0.0, 0.0)
+        self.speed = _toward(self.speed, min(max(speed, -most.x), most.x), geometry.acceleration)
+        self.turning = _toward(self.turning, min(max(turning, -most.theta), most.theta), geometry.spin)
+        apart = self.turning * geometry.track / 2
+        rolling = np.array((self.speed - apart, self.speed + apart))
+        rolling *= min(1.0, geometry.fastest / max(float(np.abs(rolling).max()), 1e-9))
+        self._world.data.ctrl[geometry.motors] = geometry.signs * rolling / geometry.radius
+
+    def halt(self) -> None:
+        """Brake at once, as hard as the motors can."""
+        self.speed = self.turning = 0.0
+        self._wanted = 0.0, 0.0
+        self._world.data.ctrl[self.geometry.motors] = 0.0
+
+
+class DriveActivity:
+    """A drive under way. What gets in the way ends it, as `cancel` does: by braking."""
+
+    def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, now: float) -> None:
+        self.drive, self.odometry, self._hazards = drive, odometry, hazards
+        self._look = now + HAZARD_CHECK_PERIOD
+        self._now = now
+        self._reason = ""
+        self._cancelled = False
+
+    def advance(self, now: float) -> bool:
+        self._now = now
+        if not self._cancelled and now >= self._look:
+            self._look += HAZARD_CHECK_PERIOD
+            self._reason = self._hazards.danger() or self._leaves()
+            self._cancelled = bool(self._reason)
+        if not self._cancelled:
+            return self._go(now)
+        if not self.drive.still:
+            return False
+        if self._reason:
+            raise RobotFailedError(f"{self._reason}: the drive was ended")
+        return True
+
+    def cancel(self) -> None:
+        self._cancelled = True
+
+    def _go(self, now: float) -> bool:
+        """Steer in this period; true at the end of the way."""
+        raise NotImplementedError
+
+    def _leaves(self) -> str:
+        """Why the robot must not go on where it would come to if it braked now; empty where it may."""
+        speed, here = self.drive.speed, self.odometry.here
+        late = HAZARD_CHECK_PERIOD + MOTORS_LATE
+        comes = speed * late + speed * abs(speed) / (2 * self.drive.geometry.acceleration)
+        try:
+            self.odometry.check(here.then(Pose(comes)))
+        except RobotError as error:
+            return str(error)
+        return ""
+
+
+class DriveOn(DriveActivity):
+    """On and on at a speed, which `wanted` may change under way."""
+
+    def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, wanted: Velocity, now: float) -> None:
+        super().__init__(drive, odometry, hazards, now)
+        self._wanted = wanted
+
+    def change(self, wanted: Velocity, now: float) -> bool:
+        """Go on at that speed; false for a drive that ends, or did not live until now."""
+        alive = self._now == now and not self._cancelled
+        if alive:
+            self._wanted = wanted
+        return alive
+
+    def _go(self, now: float) -> bool:
+        self.drive.steer(self._wanted.x, self._wanted.theta)
+        return not any(self._wanted) and self.drive.still
+
+
+class DriveTo(DriveActivity):
+    """To a place: turn towards it, drive there, turn as wanted; a near place behind is reached backwards."""
+
+    def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, goal: Pose, now: float) -> None:
+        super().__init__(drive, odometry, hazards, now)
+        self._goal = goal
+        seen = goal.seen_from(odometry.here)
+        far = hypot(seen.x, seen.y)
+        self._back = seen.x < 0 and far <= BACKS_UP and abs(seen.y) < abs(seen.x)
+        self._phase = self._face if far > NEAR else self._turn
+        self._been, self._since = odometry.here, now
+
+    def _go(self, now: float) -> bool:
+        seen = self._goal.seen_from(self.odometry.here)
+        gone = self.odometry.here.seen_from(self._been)
+        if hypot(gone.x, gone.y) > NEAR or abs(gone.theta) > FACING:
+            self._been, self._since = self.odometry.here, now
+        stuck = now - self._since > STUCK_TIME
+        if not stuck and not self._phase(seen):
+            return False
+        far, turned = hypot(seen.x, seen.y), abs(seen.theta)
+        if stuck or far > ARRIVAL_TOLERANCE or turned > HEADING_TOLERANCE:
+            raise RobotFailedError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
+        return True
+
+    def _face(self, seen: Pose) -> bool:
+        """Turn towards the goal, or the back to it."""
+        bearing = atan2(-seen.y, -seen.x) if self._back else atan2(seen.y, seen.x)
+        if self._round(bearing):
+            self._phase = self._approach
+        return False
+
+    def _approach(self, seen: Pose) -> bool:
+        """Drive there; what is left aside is steered at while there is way enough."""
+        ahead = -1.0 if self._back else 1.0
+        left, drive = ahead * seen.x, self.drive
+        if left < NEAR:
+            if drive.still:
+                self._phase = self._turn
+            return False
+        aside = STEERING * atan2(ahead * seen.y, left) if left > ARRIVAL_TOLERANCE else 0.0
+        speed = _braking(left, drive.limit.x, drive.geometry.acceleration, CREEPING)
+        drive.steer(ahead * speed, aside)
+        return False
+
+    def _turn(self, seen: Pose) -> bool:
+        """Turn as the goal does."""
+        return self._round(seen.theta)
+
+    def _round(self, angle: float) -> bool:
+        """Turn by that angle [rad]; true once that is done."""
+        drive = self.drive
+        if abs(angle) < FACING:
+            return drive.still
+        drive.steer(0.0, copysign(_braking(abs(angle), drive.limit.theta, drive.geometry.spin, CREEPING_TURN), angle))
+        return False
+
+
+def _braking(left: float, most: float, rate: float, least: float) -> float:
+    """How fast one may still be where so much of a way is left, to come to rest at its end."""
+    return min(most, max(least, BRAKES_EARLY * sqrt(2 * rate * left)))
+
+
+def _toward(speed: float, wanted: float, rate: float) -> float:
+    """A speed a control period later."""
+    step = rate * CONTROL_PERIOD
+    return min(max(wanted, speed - step), speed + step)

@@ -1,0 +1,33 @@
+"""A robot that is built in where it stands."""
+
+import numpy as np
+
+from lumen.errors import RobotRefusedError
+from lumen.language.commands import Move, Walk
+from lumen.robots.executor import Activity
+from lumen.robots.simulation.joint_envelope import JointVector
+
+
+class Fixed:
+    """Holds the robot: it neither walks nor falls, and `joints` are all that moves."""
+
+    whereabouts = None
+    catching = False
+
+    def __init__(self, joints: int) -> None:
+        self._nothing = np.zeros(joints)
+
+    def walk(self, command: Walk | Move, now: float) -> Activity:
+        raise RobotRefusedError("the robot has no legs and no wheels to walk with")
+
+    def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
+        return self._nothing
+
+    def relax(self) -> None:
+        """Nothing moves it."""
+
+    def lose(self, posture: str) -> None:
+        """It is where it is."""
+
+    def keep(self, heading: float) -> None:
+        """It is where it is."""

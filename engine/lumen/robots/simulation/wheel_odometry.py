@@ -1,0 +1,98 @@
+"""Where a robot on wheels believes to be, from where it began: by its wheels' encoders and the gyrometer."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.errors import RobotRefusedError
+from lumen.interpreters.dead_reckoning import DeadReckoning
+from lumen.interpreters.gait import Pose
+from lumen.interpreters.gait.poses import wrap
+from lumen.language.projects import Stage
+from lumen.ports import Whereabouts
+from lumen.robots.simulation.drive_geometry import DriveGeometry
+from lumen.robots.simulation.imperfections import Imperfections
+from lumen.robots.simulation.odometry import DRIFT_AFTER_FALL
+from lumen.robots.simulation.sensors import BodySensors
+from lumen.robots.simulation.world import World
+
+STILL_RATE = 0.15
+"""A robot whose wheels stand still and that seems to turn slower than this [rad/s] does not turn: a gyrometer errs."""
+
+
+class WheelOdometry:
+    """The wheels' middle in the frame of the robot's start. `stage`, in the same frame, bounds where it may drive."""
+
+    def __init__(
+        self, world: World, sensors: BodySensors, drive: DriveGeometry, lacking: Imperfections, stage: Stage | None
+    ) -> None:
+        self._world, self._sensors, self._drive, self._stage = world, sensors, drive, stage
+        self._step = lacking.encoder_step
+        self._rolled, self._heading = self._encoders(), sensors.heading
+        self._reckoning = DeadReckoning()
+        self._lost = False
+        self.here = Pose()
+        self.speed = 0.0
+        """How fast the wheels roll ahead [m/s]."""
+
+    @property
+    def whereabouts(self) -> Whereabouts:
+        """Where the robot believes to be, and how far that may be wrong."""
+        return self._reckoning.whereabouts
+
+    @property
+    def doubt(self) -> float:
+        """How far from there the robot may be after it was down [m]."""
+        return self._reckoning.slid
+
+    def feel(self, dt: float) -> None:
+        """Take note of this control period: as far as the wheels rolled, the way the gyrometer says it faces."""
+        rolled, heading = self._encoders(), self._sensors.heading
+        moved, turned = rolled - self._rolled, wrap(heading - self._heading)
+        self._rolled, self._heading = rolled, heading
+        if not moved.any() and abs(turned) < STILL_RATE * dt:
+            turned = 0.0
+        way = float(moved.mean())
+        self.speed = way / dt
+        ahead = self.here.then(Pose(0.0, 0.0, turned / 2)).then(Pose(way)).then(Pose(0.0, 0.0, turned / 2))
+        self.here = Pose(ahead.x, ahead.y, wrap(ahead.theta))
+        self._reckoning.follow(*self.here)
+
+    def lose(self) -> None:
+        """The robot has fallen: nothing measures how it slid."""
+        if not self._lost:
+            self._lost = True
+            self._reckoning.slid += DRIFT_AFTER_FALL
+
+    def keep(self) -> None:
+        """The robot stands."""
+        self._lost = False
+
+    def check(self, *places: Pose) -> None:
+        """Raises RobotError for a place where the robot would reach farther beyond the stage than it does already.
+
+        In doubt, the stage is that much smaller on every side.
+        """
+        if self._stage is None:
+            return
+        for axis, (low, high), now, to in (
+            ("x", self._stage.x, self.here.x, [place.x for place in places]),
+            ("y", self._stage.y, self.here.y, [place.y for place in places]),
+        ):
+            room, doubt = self._drive.reach + self.doubt, f", and may be {self.doubt:g} m off" if self.doubt else ""
+            least, most = min(low + room, now), max(high - room, now)
+            for place in to:
+                if not least <= place <= most:
+                    reached = place + (self._drive.reach if place > most else -self._drive.reach)
+                    raise RobotRefusedError(
+                        f"the base would leave the stage: it would reach {axis} = {reached:.2f} m, and the stage is "
+                        f"{low:g} to {high:g} m{doubt}"
+                    )
+
+    def _encoders(self) -> NDArray[np.float64]:
+        """How far each wheel has rolled ahead [m], as its encoder counts."""
+        drive = self._drive
+        angles = drive.signs * self._world.data.qpos[drive.angles]
+        if self._step:
+            angles = np.round(angles / self._step) * self._step
+        rolled: NDArray[np.float64] = angles * drive.radius
+        return rolled

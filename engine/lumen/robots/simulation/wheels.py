@@ -1,0 +1,95 @@
+"""A robot on two driven wheels: it walks by driving, brakes where it stands, and tips over where it is pushed hard."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from lumen.errors import RobotRefusedError
+from lumen.interpreters.gait import Velocity
+from lumen.language.commands import Move, Walk
+from lumen.language.projects import Stage
+from lumen.ports import Whereabouts
+from lumen.robots.executor import Activity
+from lumen.robots.simulation.drive_geometry import read_drive
+from lumen.robots.simulation.driving import Drive, DriveOn, DriveTo
+from lumen.robots.simulation.hazards import Hazards
+from lumen.robots.simulation.imperfections import Imperfections
+from lumen.robots.simulation.joint_envelope import JointVector
+from lumen.robots.simulation.sensors import BodySensors
+from lumen.robots.simulation.walking import way_of
+from lumen.robots.simulation.wheel_odometry import WheelOdometry
+from lumen.robots.simulation.world import CONTROL_PERIOD, World
+
+
+class Wheels:
+    """Two wheels side by side under a body. Raises RobotModelError where it can't drive on them.
+
+    `hot` says whether the motors should be spared; `stage` bounds where the robot may drive.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        sensors: BodySensors,
+        lacking: Imperfections,
+        hazards: Hazards,
+        hot: Callable[[], bool],
+        stage: Stage | None,
+    ) -> None:
+        base, drive = world.body.roles.base, read_drive(world)
+        limit = Velocity(min(base.speed, drive.fastest), 0.0, min(base.turn, 2 * drive.fastest / drive.track))
+        self.drive = Drive(world, drive, limit, hot)
+        self.odometry = WheelOdometry(world, sensors, drive, lacking, stage)
+        self._hazards, self._nothing = hazards, np.zeros(len(world.body.joints))
+        self._on: DriveOn | None = None
+
+    @property
+    def whereabouts(self) -> Whereabouts:
+        return self.odometry.whereabouts
+
+    @property
+    def catching(self) -> bool:
+        return False
+
+    def walk(self, command: Walk | Move, now: float) -> Activity:
+        way = way_of(command)
+        if isinstance(way, Velocity):
+            return self._move(way, now)
+        self._ready()
+        goal = self.odometry.here.then(way)
+        self.odometry.check(goal)
+        return DriveTo(self.drive, self.odometry, self._hazards, goal, now)
+
+    def _move(self, wanted: Velocity, now: float) -> Activity:
+        if wanted.y:
+            raise RobotRefusedError("wheels don't drive aside: turn first")
+        if self._on and self._on.change(wanted, now):
+            return self._on
+        self._ready()
+        self._on = DriveOn(self.drive, self.odometry, self._hazards, wanted, now)
+        return self._on
+
+    def _ready(self) -> None:
+        if reason := self._hazards.danger():
+            raise RobotRefusedError(f"{reason}: the robot did not set out")
+
+    def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
+        """Let the wheels turn as wanted, or brake; arms and head are left alone."""
+        self.odometry.feel(CONTROL_PERIOD)
+        if standing:
+            self.drive.turn_wheels()
+        else:
+            self.drive.halt()
+        return self._nothing
+
+    def relax(self) -> None:
+        """Wheels brake while the motors are off, as gears with a brake do."""
+        self.odometry.feel(CONTROL_PERIOD)
+        self.drive.halt()
+
+    def lose(self, posture: str) -> None:
+        if not posture:
+            self.odometry.lose()
+
+    def keep(self, heading: float) -> None:
+        self.odometry.keep()
