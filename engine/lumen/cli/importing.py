@@ -1,4 +1,4 @@
-"""`lumen import`: a statechart, a motion or a fuzzy controller of another tool as a file of ours."""
+"""`lumen import`: a statechart, a motion, a fuzzy controller or a robot of another tool as a file of ours."""
 
 import argparse
 import re
@@ -11,6 +11,7 @@ from typing import Any
 from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
+from lumen.cli.importing_robot import body_faults, robot_body, write_beside
 from lumen.cli.progress import progress
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
@@ -21,6 +22,7 @@ from lumen.formats.fcl import read_fcl
 from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
 from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
+from lumen.formats.robot_models import begins_robot
 from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
 from lumen.formats.yaml_document import document_yaml
@@ -50,16 +52,17 @@ READ, WRITTEN = 20, 50
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
-        " Python) into a motion file, or a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
-        " controller file. What can't be carried over is listed, with its line; then the exit code is 1, and"
-        " the rest is written all the same. A file that we could not load ourselves is never written (2)."
+        " Python) into a motion file, a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
+        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. What can't be carried"
+        " over is listed, with its line; then the exit code is 1, and the rest is written all the same. A file that"
+        " we could not load ourselves is never written (2)."
     )
     add = parser.add_argument
     add(
         "file",
         metavar="FILE",
         type=Path,
-        help="chart.scxml, machine.json, wave.motion, behavior.xar, keyframes.py, head.fll",
+        help="chart.scxml, machine.json, wave.motion, behavior.xar, keyframes.py, head.fll, robot.urdf, robot.xml",
     )
     add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
     add("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
@@ -72,6 +75,8 @@ def run(options: argparse.Namespace) -> int:
     """0 where everything was carried over, 1 where something is left out, 2 where nothing can be written."""
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
+    if begins_robot(content) or options.file.suffix.lower() == ".urdf":
+        return _robot(options, content, title)
     body = _body(options.project) if options.file.suffix.lower() in GESTURE_ENDINGS else None
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"
@@ -90,8 +95,26 @@ def run(options: argparse.Namespace) -> int:
         faults = _faults(str(options.output or "the result"), text, kind, body)
         if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
             raise UsageError(_refusal(options.file, text, refused, diagnostics))
-    diagnostics += faults
     write_result(text, options.output)
+    return _told(options, content, [*diagnostics, *faults])
+
+
+def _robot(options: argparse.Namespace, content: bytes, title: str) -> int:
+    """A body file, and the MJCF that goes with it."""
+    try:
+        text, diagnostics, beside = robot_body(options.file, content, options.output, title)
+    except ForeignFileError as error:
+        raise UsageError(one_line(error.diagnostic)) from None
+    faults = body_faults(str(options.output or "the result"), text)
+    if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
+        raise UsageError(_refusal(options.file, text, refused, diagnostics))
+    write_result(text, options.output)
+    write_beside(beside)
+    return _told(options, content, [*diagnostics, *faults])
+
+
+def _told(options: argparse.Namespace, content: bytes, diagnostics: list[Diagnostic]) -> int:
+    """List them on standard error; the exit code."""
     if diagnostics or options.format != "text":
         files = {str(options.file): content}
         print(render(options.format, [Findings(diagnostics, files)], coloured=coloured(sys.stderr)), file=sys.stderr)

@@ -111,6 +111,7 @@ class _Builder:
             links={n: self.link(spec) for n, spec in (data.get("links") or {}).items()},
             roles=roles,
             gait=self.gait(),
+            give=(data.get("motors") or {}).get("give", 0.0) * self.angle,
         )
 
     def like(self, other: Body, name: str) -> Body:

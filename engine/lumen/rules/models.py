@@ -14,6 +14,7 @@ from lumen.language.roles import Roles
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import MAX_FILE_BYTES, Unreadable
 from lumen.loading.memoization import memoize
+from lumen.loading.packaged_models import in_package, package_file
 from lumen.loading.regular_files import read_regular
 from lumen.rules.mjcf_elements import ModelElement, ModelFault, mjcf_elements
 from lumen.rules.model_files import missing, outside
@@ -63,7 +64,7 @@ class _ModelReader:
         if fault:
             _say(self.draft, BROKEN_MODEL, name, *fault)
             return []
-        if f"models/{name}" not in self.draft.lent:
+        if f"models/{name}" not in self.draft.lent and not in_package(name):
             self.around.append(name)
             self.named(name, elements)
             self.around.pop()
@@ -71,6 +72,9 @@ class _ModelReader:
 
     def content(self, file: str) -> bytes | None:
         """What a file holds; one in a folder within models/, too."""
+        if in_package(file):
+            path = package_file(file.removeprefix("models/"))
+            return read_regular(path, MAX_FILE_BYTES) if path else None
         content = self.draft.files.get(file, self.draft.lent.get(file))
         if content is None and self.draft.root:
             try:

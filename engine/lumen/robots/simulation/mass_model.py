@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES
+from lumen.loading.packaged_models import mjcf_path
 
 
 class MassModel:
@@ -17,7 +18,7 @@ class MassModel:
 
     def __init__(self, body: Body, models: Path) -> None:
         try:
-            spec = mujoco.MjSpec.from_file(str(models / body.mjcf))
+            spec = mujoco.MjSpec.from_file(str(mjcf_path(body.mjcf, models)))
             spec.compiler.discardvisual = True
             for name, link in body.links.items():
                 differs = spec.body(name)

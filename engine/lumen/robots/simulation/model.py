@@ -14,6 +14,8 @@ from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import BaseKind
 from lumen.loading.memoization import memoize
+from lumen.loading.packaged_models import mjcf_path
+from lumen.robots.simulation.added_servos import add_servos
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
 ROBOT_PREFIX = "nao"
@@ -56,7 +58,8 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
 def alone(body: Body, models: Path) -> mjcf.RootElement:
     """The robot without a world and without a free joint, to be attached to one; raises RobotError as `load` does."""
     _complain("the description of the robot's body", lacks_of_body(body))
-    robot = _read(models / body.mjcf)
+    robot = _read(mjcf_path(body.mjcf, models))
+    add_servos(robot, body)
     _complain(body.mjcf, lacks_of_robot(robot, body))
     robot.model = ROBOT_PREFIX
     _differ(robot, body)

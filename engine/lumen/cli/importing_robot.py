@@ -1,0 +1,84 @@
+"""`lumen import` of a robot: URDF or MJCF as a body file of ours, and URDF as the MJCF that goes with it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from lumen.errors import LumenError, UsageError
+from lumen.extras import MissingExtraError
+from lumen.formats.conversion_findings import LOST
+from lumen.formats.robot_models import read_robot
+from lumen.formats.xml_elements import XmlElement, parse_xml
+from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.loading.bodies import build_body
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.schema import check_schema
+from lumen.loading.yaml_reader import parse
+
+
+def robot_body(
+    path: Path, content: bytes, output: Path | None, title: str
+) -> tuple[str, list[Diagnostic], dict[Path, bytes]]:
+    """The body file, what there is to say of it, and files that go beside it.
+
+    Raises ForeignFileError for what is no robot. A URDF becomes MJCF where `output` says where, and MuJoCo is there.
+    """
+    urdf = parse_xml(str(path), content).tag == "robot"
+    mjcf = path.name if not urdf and path.suffix == ".xml" else f"{title}.xml"
+    text, found = read_robot(str(path), content, title, mjcf)
+    beside: dict[Path, bytes] = {}
+    if output is not None and urdf:
+        beside, told = _converted(path, content, output, title)
+        found += told
+    elif output is not None and path.resolve() != (output.parent / mjcf).resolve():
+        message = f"the body names {mjcf} beside it, and the model is {path}"
+        hint = f"put it there as {output.parent / mjcf}, with the files that it names"
+        found.append(Diagnostic(LOST, message, Place(str(path)), hint, Severity.WARNING))
+    return text, found, beside
+
+
+def body_faults(file: str, text: str) -> list[Diagnostic]:
+    """What the loader has against the result."""
+    document, found = parse(file, text.encode())
+    if document is None:
+        return found
+    report = DocumentReport(document)
+    build_body(check_schema(document, "body", report), report, name="imported")
+    return [*found, *report.diagnostics]
+
+
+def write_beside(files: Mapping[Path, bytes]) -> None:
+    """Write what goes with a body file; raises UsageError where it can't be written."""
+    for path, content in files.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        except OSError as error:
+            raise UsageError(f"can't write {path}: {(error.strerror or str(error)).lower()}") from None
+    if files:
+        print(f"wrote {next(iter(files))}" + (f" and {len(files) - 1} meshes" if len(files) > 1 else ""))
+
+
+def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[dict[Path, bytes], list[Diagnostic]]:
+    """The MJCF of a URDF and its meshes, and what was lost on the way."""
+    here = Place(str(path), 1, 1)
+    try:
+        from lumen.robots.simulation import installed  # noqa: F401
+        from lumen.robots.simulation.urdf_conversion import urdf_as_mjcf
+    except MissingExtraError as error:
+        return {}, [Diagnostic(LOST, f"there is no {title}.xml: {error}", here, "then import it again")]
+    try:
+        robot = urdf_as_mjcf(content, path.parent, title)
+    except LumenError as error:
+        hint = f"correct the URDF, or write models/{title}.xml by hand; the body file is written all the same"
+        return {}, [Diagnostic(LOST, f"there is no {title}.xml: {error}", here, hint)]
+    places = [element for element in parse_xml(str(path), content).walk() if element.tag == "mesh"]
+    lost = [_without(places[number], reason) for number, reason in robot.lost.items()]
+    folder = output.parent
+    text = robot.mjcf.replace("<compiler ", f'<compiler meshdir="{title}" ', 1) if robot.meshes else robot.mjcf
+    beside = {folder / f"{title}.xml": text.encode()}
+    return beside | {folder / title / name: mesh for name, mesh in robot.meshes.items()}, lost
+
+
+def _without(mesh: XmlElement, reason: str) -> Diagnostic:
+    message = f"the mesh `{mesh.get('filename')[:80]}` is left out: {reason}"
+    return Diagnostic(LOST, message, mesh.place, "put it there as STL or OBJ, and import again")

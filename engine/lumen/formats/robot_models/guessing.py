@@ -1,0 +1,191 @@
+"""Which joint of a model is what: guessed from names and from how axes lie."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel
+from lumen.language.roles import LEG_ROLES, SIDES
+
+_WORDS: Mapping[str, tuple[str, ...]] = {
+    "head": ("head", "neck", "lowerneck", "upperneck"),
+    "shoulder": ("shoulder", "sho", "humerus", "upperarm", "arm"),
+    "elbow": ("elbow", "el", "radius", "forearm", "lowerarm"),
+    "wrist": ("wrist", "wri"),
+    "hip": ("hip", "femur", "thigh"),
+    "knee": ("knee", "tibia", "shin", "calf"),
+    "ankle": ("ankle", "ank", "foot"),
+    "toe": ("toe", "toes"),
+    "antenna": ("antenna", "ear"),
+    "wheel": ("wheel",),
+}
+_PARTS: Mapping[str, str] = {"head": "head", "hip": "legs", "knee": "legs", "ankle": "legs", "toe": "legs"}
+_TORSO = ("torso", "trunk", "chest", "thorax", "pelvis", "base", "body", "root")
+_TURNS = {"yaw": "yaw", "pan": "yaw", "pitch": "pitch", "tilt": "pitch", "roll": "roll"}
+_AXES = {"yaw": 2, "pitch": 1, "roll": 0}
+
+
+@dataclass
+class GuessedRoles:
+    """Joints by the path of their role, `reversed` those whose angle grows the other way, and what else was found.
+
+    `limbs` says which part of the body moves a joint: head, arms or legs.
+    """
+
+    joints: dict[str, str] = field(default_factory=dict)
+    reversed: set[str] = field(default_factory=set)
+    wheels: dict[str, str] = field(default_factory=dict)
+    soles: dict[str, str] = field(default_factory=dict)
+    eyes: list[str] = field(default_factory=list)
+    camera: ModelCamera | None = None
+    face: str = ""
+    torso: str = ""
+    biped: bool = False
+    limbs: dict[str, str] = field(default_factory=dict)
+
+
+def guess_roles(model: RobotModel, findings: ConversionFindings) -> GuessedRoles:
+    """The roles that names and axes give away; what keeps a robot from walking, or arms from gesturing, is told."""
+    return _Guesser(model, findings).guess()
+
+
+class _Guesser:
+    def __init__(self, model: RobotModel, findings: ConversionFindings) -> None:
+        self.model, self.findings, self.roles = model, findings, GuessedRoles()
+        self.known = [(joint, *_place_of(joint.name)) for joint in model.joints]
+
+    def guess(self) -> GuessedRoles:
+        roles, model = self.roles, self.model
+        for joint, side, limb, turn in self.known:
+            if joint.wheel or (limb == "wheel" and joint.low is None):
+                if side and abs(joint.axis[1]) > 0.7:
+                    roles.wheels.setdefault(side, joint.name)
+            elif limb in ("head", "antenna", "hip", "knee", "ankle"):
+                self.role(joint, side, limb, turn)
+            roles.limbs[joint.name] = _PARTS.get(limb, "arms")
+        for side in SIDES:
+            self.arm(side)
+        roles.torso = next(
+            (n for word in _TORSO for n in model.links if word in n.lower()), next(iter(model.links), "")
+        )
+        roles.soles = self.soles()
+        head = next(
+            (
+                j.link
+                for j in reversed(model.joints)
+                if j.name in (roles.joints.get("head.pitch"), roles.joints.get("head.yaw"))
+            ),
+            "",
+        )
+        roles.camera = next(
+            (c for c in model.cameras if head and model.carries(head, c.link) and c.ahead[0] > 0.5), None
+        )
+        roles.face = roles.camera.link if roles.camera else head
+        roles.eyes = [name for name in model.materials if "eye" in name.lower()]
+        roles.biped = self.walks()
+        return roles
+
+    def role(self, joint: ModelJoint, side: str, limb: str, turn: str) -> None:
+        """Give a joint its role, where nobody has it."""
+        turn = turn or _dominant(joint)
+        path = {
+            "head": f"head.{turn}" if turn in ("yaw", "pitch") else "",
+            "antenna": f"antennas.{side}" if side else "",
+            "hip": f"legs.{side}.hip-{turn}" if side else "",
+            "knee": f"legs.{side}.knee" if side and turn == "pitch" else "",
+            "ankle": f"legs.{side}.ankle-{turn}" if side and turn != "yaw" else "",
+        }[limb]
+        self.give(path, joint, joint.axis[_AXES[turn]] < -0.1)
+
+    def give(self, path: str, joint: ModelJoint, backwards: bool) -> None:
+        if path and path not in self.roles.joints:
+            self.roles.joints[path] = joint.name
+            if backwards:
+                self.roles.reversed.add(path)
+
+    def arm(self, side: str) -> None:
+        """The roles of an arm that points ahead at zero; one that hangs or lies aside is told instead."""
+        joints = {
+            k: [(j, t) for j, s, limb, t in self.known if s == side and limb == k]
+            for k in ("shoulder", "elbow", "wrist")
+        }
+        if not joints["shoulder"]:
+            return
+        start = joints["shoulder"][0][0]
+        ends = [j for k in ("elbow", "wrist") for j, _ in joints[k]]
+        way = [b - a for a, b in zip(start.position, ends[-1].position, strict=True)] if ends else [0.0] * 3
+        if not ends or way[0] < 0.8 * sum(c * c for c in way) ** 0.5:
+            message = f"the {side} arm has no roles: at zero it does not point straight ahead, from where roles count"
+            hint = "motions name its joints; or turn its links in the model so that all zeros point ahead"
+            self.findings.changed(start.place, message, hint)
+            return
+        for joint, _ in joints["shoulder"]:
+            turn = _dominant(joint)
+            role = {"pitch": "shoulder-pitch", "yaw": "shoulder-roll", "roll": "elbow-yaw"}[turn]
+            self.give(f"arms.{side}.{role}", joint, joint.axis[_AXES[turn]] < 0)
+        for joint, _ in joints["elbow"]:
+            along = _dominant(joint) == "roll"
+            bent = (joint.low or 0.0) + (joint.high or 0.0)
+            backwards = joint.axis[0] < 0 if along else bent > 0 if side == "left" else bent < 0
+            self.give(f"arms.{side}.{'elbow-yaw' if along else 'elbow-roll'}", joint, backwards)
+        for joint, _ in joints["wrist"]:
+            if _dominant(joint) == "roll":
+                self.give(f"arms.{side}.wrist-yaw", joint, joint.axis[0] < 0)
+
+    def soles(self) -> dict[str, str]:
+        """A site beneath each foot, by its name."""
+        found: dict[str, str] = {}
+        for site in self.model.sites:
+            side, words = _side(_tokens(site)), site.lower()
+            if side and ("sole" in words or "foot" in words):
+                shortest = min(found.get(side, site), site, key=len)
+                found[side] = shortest
+        return found if len(found) == len(SIDES) else {}
+
+    def walks(self) -> bool:
+        """Whether it has all that walking on feet needs; what is missing of two legs is told."""
+        has = {side: [name for name in LEG_ROLES if f"legs.{side}.{name}" in self.roles.joints] for side in SIDES}
+        if not all(has.values()):
+            return False
+        lacking = [f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES if name not in has[side]]
+        lacking += [] if self.roles.soles else ["a site `left_sole` and `right_sole` beneath the feet (x ahead, z up)"]
+        lacking += [f"a sensor `{kind}`" for kind in ("gyro", "accelerometer") if kind not in self.model.sensors]
+        if lacking:
+            message = "it has legs, but lacks what walking needs, and is written as one that stays where it is"
+            self.findings.changed(self.model.root, message, f"in the model: {', '.join(lacking)}")
+        return not lacking
+
+
+def _dominant(joint: ModelJoint) -> str:
+    """What a turn about the joint's axis is, all joints at zero."""
+    return max(_AXES, key=lambda turn: abs(joint.axis[_AXES[turn]]))
+
+
+def _tokens(name: str) -> list[str]:
+    return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)]
+
+
+def _side(tokens: Sequence[str]) -> str:
+    for token in tokens:
+        if token in ("l", "left", "r", "right"):
+            return "left" if token[0] == "l" else "right"
+    return ""
+
+
+def _place_of(name: str) -> tuple[str, str, str]:
+    """Side, limb and turn that a joint's name says, each empty where it does not."""
+    tokens = _tokens(name)
+    side = _side(tokens)
+    if tokens and not side and tokens[0][0] in "lr" and _limb(tokens[0][1:]):
+        side, tokens = "left" if tokens[0][0] == "l" else "right", [tokens[0][1:], *tokens[1:]]
+    limb = next((found for token in tokens if (found := _limb(token))), "")
+    return side, limb, next((_TURNS[token] for token in tokens if token in _TURNS), "")
+
+
+def _limb(token: str) -> str:
+    """The limb that a word names, or begins with where that is long enough to be meant."""
+    for limb, words in _WORDS.items():
+        if token in words or any(len(word) > 3 and token.startswith(word) for word in words):
+            return limb
+    return ""

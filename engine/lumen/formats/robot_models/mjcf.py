@@ -1,0 +1,185 @@
+"""A robot of MJCF, as far as roles go. MuJoCo is not asked: the file is read where no simulator is installed, too."""
+
+from math import pi, radians
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.robot_models.mjcf_defaults import ACTUATORS, Defaults
+from lumen.formats.robot_models.numbers import Numbers
+from lumen.formats.robot_models.orientation import (
+    AXES,
+    NestedFrame,
+    Quaternion,
+    between,
+    euler,
+    of_axes,
+    rotated,
+    turn,
+    unit,
+)
+from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel
+from lumen.formats.xml_elements import XmlElement
+
+_ORIGIN = (0.0, 0.0, 0.0)
+_FOVY = 45.0
+_PLACED_ELSEWHERE = ("include", "attach", "replicate", "composite", "flexcomp")
+_SENSORS = ("gyro", "accelerometer")
+
+
+def mjcf_model(root: XmlElement, file: str, findings: ConversionFindings) -> RobotModel:
+    """The robot; joints that a body file has no word for, and parts that stand in other files, are told."""
+    return _MjcfReader(root, file, findings).read()
+
+
+class _MjcfReader:
+    def __init__(self, root: XmlElement, file: str, findings: ConversionFindings) -> None:
+        self.root, self.file, self.findings = root, file, findings
+        self.numbers, self.defaults = Numbers(findings), Defaults(root)
+        compiler = {key: value for element in root.of("compiler") for key, value in element.attributes.items()}
+        self.angle = 1.0 if compiler.get("angle") == "radian" else radians(1.0)
+        self.sequence = compiler.get("eulerseq", "xyz")
+        self.autolimits = compiler.get("autolimits", "true") != "false"
+        self.motors: dict[str, XmlElement] = {}
+        self.followers: dict[str, str] = {}
+        self.joints: list[ModelJoint] = []
+        self.links: dict[str, str] = {}
+        self.cameras: list[ModelCamera] = []
+        self.sites: dict[str, str] = {}
+
+    def read(self) -> RobotModel:
+        for element in self.root.walk():
+            if element.tag in _PLACED_ELSEWHERE:
+                message = f"`<{element.tag}>` is not followed: joints that it makes are not seen"
+                self.findings.changed(
+                    element.place, message, "import what `mj_saveLastXML` writes, where joints are missing"
+                )
+        for actuator in (e for block in self.root.of("actuator") for e in block.of(*ACTUATORS)):
+            whole = self.defaults.whole(actuator)
+            self.motors.setdefault(whole.get("joint"), whole)
+        for pair in (e for block in self.root.of("equality") for e in block.of("joint")):
+            self.equality(pair)
+        for world in self.root.of("worldbody"):
+            for body in world.of("body"):
+                self.body(body, NestedFrame(), "", "")
+        sensors = {e.tag: e.get("name") for block in self.root.of("sensor") for e in reversed(block.children)}
+        materials = [e.get("name") for block in self.root.of("asset") for e in block.of("material")]
+        known = {kind: sensors[kind] for kind in _SENSORS if sensors.get(kind)}
+        name = self.root.get("model")
+        return RobotModel(
+            name, self.file, self.root.place, self.joints, self.links, self.cameras, self.sites, known, materials
+        )
+
+    def equality(self, pair: XmlElement) -> None:
+        """A joint that equals another; in another way it follows without us."""
+        follower, leader = pair.get("joint1"), pair.get("joint2")
+        coefficients = tuple(pair.get("polycoef", "0 1 0 0 0").split())
+        if follower and leader:
+            equal = [float(c) if _is_number(c) else None for c in coefficients] == [0.0, 1.0, 0.0, 0.0, 0.0]
+            self.followers[follower] = leader if equal else ""
+
+    def body(self, body: XmlElement, outer: NestedFrame, above: str, childclass: str) -> None:
+        """What hangs on a link, and what hangs on that."""
+        childclass = body.get("childclass") or childclass
+        frame = self.frame(body).within(outer)
+        name = body.get("name") or above
+        if body.tag == "body" and body.get("name"):
+            self.links[name] = above
+        for element in body.children:
+            match element.tag:
+                case "freejoint":
+                    self.free(element)
+                case "joint":
+                    self.joint(self.defaults.whole(element, childclass), frame, name)
+                case "camera":
+                    self.camera(self.defaults.whole(element, childclass), name)
+                case "site" if element.get("name"):
+                    self.sites[element.get("name")] = name
+                case "body" | "frame":
+                    self.body(element, frame, name, childclass)
+
+    def frame(self, element: XmlElement) -> NestedFrame:
+        """Where an element is in the one around it."""
+        return NestedFrame(self.numbers.vector(element, "pos", _ORIGIN), self.turned(element))
+
+    def turned(self, element: XmlElement) -> Quaternion:
+        numbers = self.numbers
+        if q := numbers.all(element, "quat", 4):
+            return unit((q[0], q[1], q[2], q[3]))
+        if e := numbers.all(element, "euler", 3):
+            return euler((e[0] * self.angle, e[1] * self.angle, e[2] * self.angle), self.sequence)
+        if a := numbers.all(element, "axisangle", 4):
+            return turn((a[0], a[1], a[2]), a[3] * self.angle)
+        if xy := numbers.all(element, "xyaxes", 6):
+            return of_axes((xy[0], xy[1], xy[2]), (xy[3], xy[4], xy[5]))
+        if z := numbers.all(element, "zaxis", 3):
+            return between(AXES["z"], (z[0], z[1], z[2]))
+        return NestedFrame().turned
+
+    def joint(self, joint: XmlElement, frame: NestedFrame, link: str) -> None:
+        name, kind = joint.get("name"), joint.get("type", "hinge")
+        if kind == "free":
+            self.free(joint)
+        elif kind != "hinge":
+            self.findings.lost(joint.place, f"the joint `{name}` is a `{kind}`, and a body's joints turn")
+        elif not name:
+            self.findings.lost(joint.place, f"a joint of `{link}` has no name", "give it one in the model")
+        elif self.followers.get(name) != "":
+            low, high = self.limits(joint)
+            motor = self.motors.get(name)
+            self.joints.append(
+                ModelJoint(
+                    name, link, joint.place,
+                    NestedFrame(self.numbers.vector(joint, "pos", _ORIGIN)).within(frame).place,
+                    rotated(frame.turned, self.numbers.vector(joint, "axis", AXES["z"])),
+                    low, high, None, self.effort(joint, motor), self.followers.get(name, ""),
+                    motor is not None and motor.tag == "position" and motor.get("name") == name,
+                    motor is not None and motor.tag == "velocity",
+                )
+            )  # fmt: skip
+
+    def free(self, joint: XmlElement) -> None:
+        hint = "delete it from the model: Lumen gives the robot one in its hall"
+        self.findings.lost(joint.place, "the model frees itself from the world", hint)
+
+    def limits(self, joint: XmlElement) -> tuple[float | None, float | None]:
+        """The joint's range [rad], or nothing where it turns for ever."""
+        span = self.numbers.all(joint, "range", 2)
+        limited = joint.get("limited", "auto")
+        if not span or limited == "false" or (limited == "auto" and not self.autolimits):
+            return None, None
+        if span[0] >= span[1]:
+            self.findings.lost(
+                joint.place, f"the range {span[0]:g} to {span[1]:g} leaves no room", "the second is greater"
+            )
+            return None, None
+        return span[0] * self.angle, span[1] * self.angle
+
+    def effort(self, joint: XmlElement, motor: XmlElement | None) -> float | None:
+        """The greatest torque [N m] that model and motor let through; None where neither says one."""
+        most = []
+        if span := self.numbers.all(joint, "actuatorfrcrange", 2):
+            most.append(max(span))
+        if motor is not None:
+            gear = abs(float(word)) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
+            spans = ["forcerange", "ctrlrange"] if motor.tag == "motor" else ["forcerange"]
+            given = (self.numbers.all(motor, key, 2) for key in spans)
+            most += [max(span) * gear for span in given if span][:1]
+        return min((torque for torque in most if torque > 0), default=None)
+
+    def camera(self, camera: XmlElement, link: str) -> None:
+        if not camera.get("name"):
+            return
+        given = self.numbers.one(camera, "fovy")
+        fovy = _FOVY if given is None else given
+        if not 0.0 < fovy < 180.0:
+            self.findings.lost(camera.place, f"`fovy` of {fovy:g} degrees is no angle of view")
+            return
+        position, ahead = self.numbers.vector(camera, "pos", _ORIGIN), rotated(self.turned(camera), (0.0, 0.0, -1.0))
+        self.cameras.append(ModelCamera(camera.get("name"), link, position, ahead, fovy * pi / 180.0))
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True

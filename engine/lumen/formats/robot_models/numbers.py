@@ -1,0 +1,40 @@
+"""Numbers in attributes of a robot's model."""
+
+from math import isfinite
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.robot_models.orientation import Vector
+from lumen.formats.xml_elements import XmlElement
+
+
+class Numbers:
+    """Reads attributes; what is no number is reported with its place, and then nothing is said there."""
+
+    def __init__(self, findings: ConversionFindings) -> None:
+        self.findings = findings
+
+    def all(self, element: XmlElement, name: str, count: int) -> tuple[float, ...] | None:
+        """That many numbers; None where the attribute is missing or holds something else."""
+        text = element.get(name)
+        if not text:
+            return None
+        try:
+            numbers = tuple(float(word) for word in text.replace(",", " ").split())
+        except ValueError:
+            numbers = ()
+        if len(numbers) != count or not all(map(isfinite, numbers)):
+            wanted = "a number" if count == 1 else f"{count} numbers"
+            message = f'`{name}="{text[:40]}"` of `<{element.tag}>` is not {wanted}'
+            self.findings.lost(element.place, message, "correct it in the model")
+            return None
+        return numbers
+
+    def one(self, element: XmlElement, name: str) -> float | None:
+        """One number, or None."""
+        found = self.all(element, name, 1)
+        return found[0] if found else None
+
+    def vector(self, element: XmlElement, name: str, otherwise: Vector) -> Vector:
+        """Three numbers."""
+        found = self.all(element, name, 3)
+        return (found[0], found[1], found[2]) if found else otherwise

@@ -1,0 +1,93 @@
+"""A robot's model as a body file."""
+
+import re
+from collections.abc import Sequence
+
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.robot_models.body_text import CIRCLE, body_text
+from lumen.formats.robot_models.guessing import guess_roles
+from lumen.formats.robot_models.mjcf import mjcf_model
+from lumen.formats.robot_models.parts import ModelJoint, RobotModel
+from lumen.formats.robot_models.urdf import urdf_model
+from lumen.formats.xml_elements import parse_xml
+from lumen.language.diagnostics import Diagnostic
+
+_READERS = {"robot": urdf_model, "mujoco": mjcf_model}
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_BEFORE = re.compile(rb"<\?.*?\?>|<!--.*?-->", re.DOTALL)
+_ROOT = re.compile(rb"<(robot|mujoco)[\s>/]")
+MAX_JOINTS = 1_000
+"""Of a robot; a centipede has fewer."""
+
+
+def begins_robot(content: bytes) -> bool:
+    """Whether XML is a robot's model, by its first element."""
+    start = content.removeprefix(b"\xef\xbb\xbf")[:100_000].lstrip()
+    while before := _BEFORE.match(start):
+        start = start[before.end() :].lstrip()
+    return bool(_ROOT.match(start))
+
+
+def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, list[Diagnostic]]:
+    """The text of the body file, and what is missing, lost or guessed; `mjcf` is the model's name beside that file.
+
+    Raises ForeignFileError for what is no such model, or has no joint that a body could have.
+    """
+    root = parse_xml(file, content)
+    reader = _READERS.get(root.tag)
+    if reader is None:
+        message = f"this is no robot's model: it begins with <{root.tag}>"
+        raise broken(root.place, "not-a-robot", message, "URDF begins with <robot>, MJCF with <mujoco>")
+    if sum(element.tag == "joint" for element in root.walk()) > MAX_JOINTS:
+        raise broken(
+            root.place, "too-large", f"the model has more than {MAX_JOINTS:,} joints", "import the robot alone"
+        )
+    findings = ConversionFindings()
+    model = reader(root, file, findings)
+    roles = guess_roles(model, findings)
+    driving = {*roles.wheels.values()} if len(roles.wheels) == 2 else set()
+    with_role = {*roles.joints.values()}
+    wanted = [j for j in model.joints if j.name not in driving and (not j.follows or j.name in with_role)]
+    joints = _named(wanted, findings)
+    if not joints:
+        message = "the model has no joint that turns and has a name"
+        raise broken(root.place, "not-a-robot", message, "import the robot itself, not a scene or a part of it")
+    names = {joint.name for joint in joints}
+    roles.joints = {path: name for path, name in roles.joints.items() if name in names}
+    roles.biped = roles.biped and all(
+        joint.name in names for joint in model.joints if roles.limbs[joint.name] == "legs"
+    )
+    _missing(model, joints, findings)
+    return body_text(model, roles, joints, title, mjcf), findings.diagnostics
+
+
+def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[ModelJoint]:
+    """The joints whose names a body file can say, each once."""
+    found: dict[str, ModelJoint] = {}
+    for joint in joints:
+        if not _NAME.fullmatch(joint.name):
+            hint = "rename it in the model: letters, digits and _"
+            findings.lost(joint.place, f"the joint `{joint.name[:60]}` has a name that can't be written", hint)
+        elif joint.name in found:
+            findings.lost(joint.place, f"there is another joint `{joint.name}`", "rename one of them in the model")
+        else:
+            found[joint.name] = joint
+    return [joint for joint in found.values() if not joint.follows or joint.follows in found]
+
+
+def _missing(model: RobotModel, joints: Sequence[ModelJoint], findings: ConversionFindings) -> None:
+    """What a body needs that the model does not say."""
+    for joint in joints:
+        if joint.low is None:
+            hint = f"write how far it turns; until then `range: [-{CIRCLE:.4g}, {CIRCLE:.4g}]`"
+            findings.changed(joint.place, f"`{joint.name}` turns for ever, or says no limits", hint)
+        if joint.effort is None and not joint.servo and not joint.follows:
+            message = f"nothing says what torque `{joint.name}` has, and no servo drives it"
+            findings.lost(joint.place, message, "write `effort:` [N m] from its motor's data sheet")
+    if still := [joint.name for joint in joints if joint.speed is None]:
+        names = ", ".join(f"`{name}`" for name in still[:3]) + (
+            f" and {len(still) - 3} others" if len(still) > 3 else ""
+        )
+        findings.changed(
+            model.root, f"nothing says how fast {names} turn", "write `speed:` from their motors' data sheet"
+        )

@@ -1,0 +1,126 @@
+"""A robot of URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and simulators' tags say nothing here."""
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.robot_models.numbers import Numbers
+from lumen.formats.robot_models.orientation import AXES, NestedFrame, Quaternion, euler, rotated
+from lumen.formats.robot_models.parts import ModelJoint, RobotModel
+from lumen.formats.xml_elements import XmlElement
+
+_HINGES = ("revolute", "continuous")
+_ORIGIN = (0.0, 0.0, 0.0)
+
+
+def urdf_model(root: XmlElement, file: str, findings: ConversionFindings) -> RobotModel:
+    """The robot; what its joints say that a body file has no word for is told."""
+    return _UrdfReader(root, file, findings).read()
+
+
+class _UrdfReader:
+    def __init__(self, root: XmlElement, file: str, findings: ConversionFindings) -> None:
+        self.root, self.file, self.findings = root, file, findings
+        self.numbers = Numbers(findings)
+        self.links: dict[str, str] = {link.get("name"): "" for link in root.of("link") if link.get("name")}
+        self.above: dict[str, XmlElement] = {}
+
+    def read(self) -> RobotModel:
+        joints = [joint for joint in self.root.of("joint") if self.known(joint)]
+        frames: dict[str, NestedFrame] = {}
+        found = [hinge for joint in joints if (hinge := self.hinge(joint, self.frame(joint, frames)))]
+        names = {hinge.name for hinge in found}
+        for hinge in found:
+            if hinge.follows and hinge.follows not in names:
+                self.findings.lost(
+                    hinge.place, f"`{hinge.name}` follows `{hinge.follows}`, which is no joint that turns"
+                )
+        return RobotModel(self.root.get("name"), self.file, self.root.place, found, self.links)
+
+    def known(self, joint: XmlElement) -> bool:
+        """Whether a joint stands between two links of the file, each of which hangs on one alone."""
+        name, ends = joint.get("name"), []
+        for end in ("parent", "child"):
+            link = next((element.get("link") for element in joint.of(end)), "")
+            if link not in self.links:
+                said = f"names the {end} `{link}`" if link else f"has no {end}"
+                hint = f"give `<joint>` a `<{end} link=…>` that the file has"
+                self.findings.lost(joint.place, f"the joint `{name}` {said}, and there is no such link", hint)
+                return False
+            ends.append(link)
+        parent, child = ends
+        if child in self.above or self.hangs(parent, child):
+            self.findings.lost(joint.place, f"`{child}` hangs on two joints", "a link hangs on one joint, in a tree")
+            return False
+        self.links[child], self.above[child] = parent, joint
+        return True
+
+    def hangs(self, link: str, on: str) -> bool:
+        """Whether a link hangs on another already, or is it."""
+        while link and link != on:
+            link = self.links.get(link, "")
+        return link == on
+
+    def frame(self, joint: XmlElement, frames: dict[str, NestedFrame]) -> NestedFrame:
+        """Where the joint's link is in the robot's frame, all joints at zero."""
+        chain: list[XmlElement] = []
+        link = next(joint.of("child")).get("link")
+        while link in self.above and link not in frames:
+            chain.append(self.above[link])
+            link = self.links[link]
+        frame = frames.get(link, NestedFrame())
+        for step in reversed(chain):
+            origin = next(step.of("origin"), None)
+            if origin is not None:
+                turned = euler(self.numbers.vector(origin, "rpy", _ORIGIN), "XYZ")
+                frame = NestedFrame(self.numbers.vector(origin, "xyz", _ORIGIN), turned).within(frame)
+            frames[next(step.of("child")).get("link")] = frame
+        return frame
+
+    def hinge(self, joint: XmlElement, frame: NestedFrame) -> ModelJoint | None:
+        kind, name = joint.get("type"), joint.get("name")
+        if kind == "fixed":
+            return None
+        if kind not in _HINGES:
+            hint = "a body's joints turn; leave it to the model, or make it `revolute`"
+            self.findings.lost(joint.place, f"the joint `{name}` is `{kind or 'of no type'}`", hint)
+            return None
+        axis = next(joint.of("axis"), None)
+        axis_here = self.numbers.vector(axis, "xyz", AXES["x"]) if axis is not None else AXES["x"]
+        limit = next(joint.of("limit"), None)
+        low, high, speed, effort = self.limits(limit)
+        if kind == "revolute" and low is None:
+            hint = 'give it `<limit lower="-1" upper="1" …/>` [rad]'
+            self.findings.lost(joint.place, f"the joint `{name}` says no limits", hint)
+        return ModelJoint(
+            name, next(joint.of("child")).get("link"), joint.place, frame.place, _turned(frame.turned, axis_here),
+            low if kind == "revolute" else None, high if kind == "revolute" else None, speed, effort, self.mimic(joint),
+        )  # fmt: skip
+
+    def limits(self, limit: XmlElement | None) -> tuple[float | None, float | None, float | None, float | None]:
+        """Lowest and highest angle, speed, torque; speed and torque above zero, or None."""
+        if limit is None:
+            return None, None, None, None
+        low, high, speed, effort = (self.numbers.one(limit, key) for key in ("lower", "upper", "velocity", "effort"))
+        if low is None and high is not None:
+            low = 0.0
+        if high is None and low is not None:
+            high = 0.0
+        if low is not None and high is not None and low >= high:
+            self.findings.lost(limit.place, f"the limits {low:g} to {high:g} leave no room", "`upper` is above `lower`")
+            low = high = None
+        return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
+
+    def mimic(self, joint: XmlElement) -> str:
+        """The joint that this one equals; one that follows it in another way is told, and stays a joint of its own."""
+        mimic = next(joint.of("mimic"), None)
+        if mimic is None:
+            return ""
+        factor, offset = self.numbers.one(mimic, "multiplier"), self.numbers.one(mimic, "offset")
+        if factor not in (None, 1.0) or offset not in (None, 0.0):
+            message = f"`{joint.get('name')}` follows `{mimic.get('joint')}` times a factor, or shifted"
+            hint = "`shared` knows joints that equal another; leave this one to the model (an equality of the MJCF)"
+            self.findings.lost(mimic.place, message, hint)
+            return ""
+        return mimic.get("joint")
+
+
+def _turned(turned: Quaternion, axis: tuple[float, float, float]) -> tuple[float, float, float]:
+    return rotated(turned, axis)

@@ -1,0 +1,122 @@
+"""A robot of URDF as MJCF: MuJoCo's own compiler reads it, after what it could not read was taken out."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import mujoco
+
+from lumen.errors import RobotModelError
+
+READ = (".stl", ".obj", ".msh")
+"""Endings of meshes that MuJoCo reads."""
+
+MAX_MESH_BYTES = 50_000_000
+"""Of one mesh: larger ones are left out."""
+
+_COMPILER = {
+    "strippath": "true", "discardvisual": "false", "fusestatic": "false", "balanceinertia": "true",
+    "boundmass": "0.001", "boundinertia": "0.0000001",
+}  # fmt: skip
+_SEEN, _TOUCHING = 2, 3
+"""Groups of geoms, as in our own models."""
+
+
+@dataclass(frozen=True)
+class ConvertedRobot:
+    """The MJCF, the meshes that it names by their new names, and why others are lost, by their number in the URDF."""
+
+    mjcf: str
+    meshes: Mapping[str, bytes]
+    lost: Mapping[int, str]
+
+
+def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
+    """The robot of a URDF that was found to be XML without entities; its meshes are sought from `folder`.
+
+    A mesh that is not there, or that MuJoCo can't read, is left out with the shape that it is. Raises RobotModelError
+    where MuJoCo can't build what is left.
+    """
+    root = ElementTree.fromstring(content)
+    meshes, lost = _take_meshes(root, folder)
+    for old in root.findall("mujoco"):
+        root.remove(old)
+    ElementTree.SubElement(ElementTree.SubElement(root, "mujoco"), "compiler", _COMPILER)
+    root.set("name", name)
+    try:
+        spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"), assets=dict(meshes))
+        _sort_geoms(spec)
+        spec.compile()
+        text = spec.to_xml()
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:
+        reason = " ".join(str(error).split())
+        raise RobotModelError(f"MuJoCo can't build it: {reason[:200]}") from error
+    return ConvertedRobot(text, meshes, lost)
+
+
+def _sort_geoms(spec: mujoco.MjSpec) -> None:
+    """Let shapes that are seen and shapes that touch be in the groups of ours; what stands in a hall stops these."""
+    for body in spec.bodies:
+        seen = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
+        for geom in body.geoms:
+            geom.group = _TOUCHING if seen and geom not in seen else _SEEN
+            if geom not in seen:
+                geom.conaffinity = 3
+
+
+def _take_meshes(root: ElementTree.Element, folder: Path) -> tuple[dict[str, bytes], dict[int, str]]:
+    """Give meshes names of their own, and take out the shapes of those that can't be had."""
+    meshes, lost, names = dict[str, bytes](), dict[int, str](), dict[Path, str]()
+    numbers = {mesh: number for number, mesh in enumerate(root.iter("mesh"))}
+    for link in list(root.iter("link")):
+        for shape in [child for child in link if child.tag in ("visual", "collision")]:
+            for mesh in shape.iter("mesh"):
+                path, reason = _found(mesh.get("filename", ""), folder)
+                if path is None:
+                    lost[numbers[mesh]] = reason
+                    link.remove(shape)
+                    break
+                if path not in names:
+                    stem = re.sub(r"[^A-Za-z0-9_]+", "_", path.stem) or "mesh"
+                    names[path] = _unused(stem, path.suffix.lower(), meshes)
+                    meshes[names[path]] = path.read_bytes()
+                mesh.set("filename", names[path])
+    return meshes, lost
+
+
+def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
+    """The mesh that a URDF names, or why it can't be had."""
+    inner = re.sub(r"^(package|file|model)://", "", filename).lstrip("/")
+    ending = Path(inner).suffix.lower()
+    if not inner or "\0" in inner:
+        return None, "it names no file"
+    if ending not in READ:
+        return None, f"MuJoCo reads {', '.join(READ)}, not `{ending or 'a file without an ending'}`"
+    for path in _candidates(inner, folder):
+        try:
+            if path.is_file() and path.stat().st_size <= MAX_MESH_BYTES:
+                return path.resolve(), ""
+        except OSError:
+            continue
+    return None, "there is no such file here, in `meshes/`, or in a folder above"
+
+
+def _candidates(inner: str, folder: Path) -> Iterator[Path]:
+    """Where a mesh may lie: as it is named, without its package, beside the URDF, each from every folder above."""
+    here = folder.resolve()
+    parts = [part for part in Path(inner).parts if part != ".."]
+    for above in (here, *list(here.parents)[:4]):
+        for start in range(min(len(parts), 3)):
+            yield above.joinpath(*parts[start:])
+    yield here / "meshes" / parts[-1]
+    yield here / parts[-1]
+
+
+def _unused(stem: str, ending: str, names: Mapping[str, bytes]) -> str:
+    number, name = 1, stem + ending
+    while name in names:
+        number += 1
+        name = f"{stem}_{number}{ending}"
+    return name
