@@ -59,11 +59,13 @@ class Puppet:
 class Stand:
     """A server with its puppet, its bus, and all that is said on it."""
 
-    def __init__(self, bus: Bus | None = None, **changes: Any) -> None:
+    def __init__(self, bus: Bus | None = None, *, direct: bool = False, **changes: Any) -> None:
         self.robot, self.bus, self.heard = Puppet(), bus or connect("memory://"), Collector()
         self.bus.subscribe("avatar.NAO.data.#", self.heard)
         self.clock = 0.0
-        self.server = RobotServer(project(**changes), self.robot, self.bus, date=lambda: DATE, clock=lambda: self.clock)
+        self.server = RobotServer(
+            project(**changes), self.robot, self.bus, date=lambda: DATE, clock=lambda: self.clock, direct=direct
+        )
 
     def live(self, seconds: float, tick: float = 0.02) -> None:
         for i in range(round(seconds / tick)):

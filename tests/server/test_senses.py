@@ -87,8 +87,9 @@ def test_ticks_coarser_than_a_period_read_once_a_tick() -> None:
     stand.server.close()
 
 
-def test_the_same_samples_leave_in_the_same_order() -> None:
-    stand = Stand(**without("image"))
+@pytest.mark.parametrize("direct", [False, True])
+def test_the_same_samples_leave_in_the_same_order(direct: bool) -> None:
+    stand = Stand(direct=direct, **without("image"))
     stand.live(2.0)
     keys = [m.key.rpartition(".")[2] for m in stand.heard.messages]
     assert keys[:4] == ["joint", "sonar", "tactile", "battery"]
@@ -103,6 +104,39 @@ def test_each_sense_publishes_from_a_thread_of_its_own() -> None:
     stand.server.sample(0.0)
     stand.server.close()
     assert threads == {f"avatar.NAO.data.{sense}": f"lumen-{sense}" for sense in Sense}
+
+
+def test_where_time_waits_readings_but_images_are_published_by_who_samples() -> None:
+    stand, threads, me = Stand(direct=True), {}, threading.current_thread().name
+    stand.bus.subscribe("avatar.NAO.data.#", lambda m: threads.setdefault(m.key, threading.current_thread().name))
+    stand.server.sample(0.0)
+    assert {threads[f"avatar.NAO.data.{sense}"] for sense in set(Sense) - {Sense.IMAGE}} == {me}
+    stand.server.close()
+    assert threads["avatar.NAO.data.image"] == "lumen-image"
+
+
+def test_a_sense_that_fails_where_time_waits_is_off_until_another_bundle() -> None:
+    stand = Stand(direct=True, **without("image"))
+    publish, stand.bus.publish = stand.bus.publish, failing("joint")  # type: ignore[method-assign]
+    stand.live(0.2)
+    assert stand.server.counts["joint"].off == "there is no joint"
+    assert (stand.server.counts["joint"].published, stand.server.counts["sonar"].published) == (0, 2)
+    stand.bus.publish = publish  # type: ignore[method-assign]
+    stand.server.use(PROJECT)
+    stand.live(0.2)
+    assert stand.server.counts["joint"].off == ""
+    assert stand.of("joint")
+    stand.server.close()
+
+
+def failing(sense: str) -> Any:
+    """What stands for a robot that can't give a sense."""
+
+    def publish(key: str, body: dict[str, Any], **_: Any) -> None:
+        if key.endswith(sense):
+            raise RobotError(f"there is no {sense}")
+
+    return publish
 
 
 def test_a_camera_that_is_slow_keeps_nobody_waiting_and_the_newest_frame_wins() -> None:
@@ -170,11 +204,12 @@ def wrong(sense: str) -> Project:
     return project(messages={**PROJECT.messages, sense: {"required": ["nobody has this"]}})
 
 
+@pytest.mark.parametrize("direct", [False, True])
 def test_a_refused_body_costs_that_body_alone_and_a_repaired_schema_is_enough(
-    caplog: pytest.LogCaptureFixture,
+    caplog: pytest.LogCaptureFixture, direct: bool
 ) -> None:
     bus = validated(connect("memory://"), wrong("joint"))
-    stand = Stand(bus=bus, **without("image"))
+    stand = Stand(bus=bus, direct=direct, **without("image"))
     stand.live(0.6)
     counts = stand.server.counts
     assert (counts["joint"].published, counts["joint"].refused, counts["joint"].off) == (0, 10, "")

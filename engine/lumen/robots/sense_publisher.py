@@ -1,4 +1,4 @@
-"""A sense's own thread: it encodes and publishes what it is handed, and never keeps anybody waiting."""
+"""A sense's own thread: it encodes and publishes what it is handed, and keeps nobody waiting but who wants to."""
 
 import logging
 import re
@@ -56,12 +56,20 @@ class SensePublisher:
 
     `encode` makes the body and `publish` sends it, both on this thread. A body that the bus refuses (BusError) costs
     that body alone, and each reason a line in the log. Where the robot can't give the sense (RobotError: a camera
-    without OpenGL) it switches itself off, with a line in the log, until `arm`.
+    without OpenGL) it switches itself off, with a line in the log, until `arm`. A `direct` one has no thread: what it
+    is handed has been published when `hand` returns.
     """
 
     PATIENCE = 1.0
 
-    def __init__(self, name: str, encode: Callable[[Any], dict[str, Any]], publish: Callable[[Any], None]) -> None:
+    def __init__(
+        self,
+        name: str,
+        encode: Callable[[Any], dict[str, Any]],
+        publish: Callable[[Any], None],
+        *,
+        direct: bool = False,
+    ) -> None:
         self.name = name
         self.count = PublishCounts()
         self._encode, self._publish = encode, publish
@@ -69,10 +77,13 @@ class SensePublisher:
         self._changed = threading.Condition()
         self._ending = False
         self._said: set[str] = set()
-        self._thread = self._started()
+        self._thread = None if direct else self._started()
 
     def hand(self, handed: PendingReading) -> None:
         """Take this reading next; the one that still waits gives way."""
+        if self._thread is None and not self.count.off:
+            self._perform(handed)
+            return
         with self._changed:
             if self.count.off:
                 handed.end()
@@ -88,7 +99,7 @@ class SensePublisher:
         with self._changed:
             self._said.clear()
             off, self.count.off = self.count.off, ""
-            if off and not self._ending:
+            if self._thread and off and not self._ending:
                 self._thread = self._started()
 
     def close(self, timeout: float) -> bool:
@@ -96,7 +107,7 @@ class SensePublisher:
         with self._changed:
             self._ending = True
             self._changed.notify()
-        return self._thread.join(max(0.0, timeout))
+        return self._thread is None or self._thread.join(max(0.0, timeout))
 
     def _started(self) -> WatchedThread:
         thread = WatchedThread(f"lumen-{self.name}", self._run)

@@ -43,7 +43,8 @@ class RobotServer:
     `clock` [s] measures how long a command has waited: time as modules live through it, whatever the robot's clock
     says. `started` is called with each command that the robot is given from the bus and its id, `refused` with the
     method and the reason for each that it is not given, `hurry` when the next sample can't wait: something came that
-    stops the robot. Nobody moves a robot that a person stopped (`hold`).
+    stops the robot. Nobody moves a robot that a person stopped (`hold`). A `direct` one publishes readings but images
+    in `sample` itself, for time that waits for whoever hears them: threads would take turns at every tick.
     """
 
     def __init__(
@@ -57,8 +58,9 @@ class RobotServer:
         started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
         refused: Callable[[str, str], None] = lambda _method, _reason: None,
         hurry: Callable[[], None] = lambda: None,
+        direct: bool = False,
     ) -> None:
-        self._robot, self._bus, self._started = robot, bus, started
+        self._robot, self._bus, self._started, self._direct = robot, bus, started, direct
         self._frames, self._date = count(), date
         self._project = project
         self._routes: dict[Sense, Route] = {}
@@ -192,12 +194,13 @@ class RobotServer:
         self._broadcasts[sense].hand(handed)
 
     def _listen(self, project: Project) -> None:
-        """Give every sense that has a route its thread."""
+        """Give every sense that has a route what publishes it."""
         self._project = project
         self._routes = {sense: project.routes[sense] for sense in Sense if sense in project.routes}
         for sense in self._routes.keys() - self._broadcasts.keys():
             encode = self._picture if sense is Sense.IMAGE else encode_reading
-            self._broadcasts[sense] = SensePublisher(sense, encode, partial(self._publish, sense))
+            direct = self._direct and sense is not Sense.IMAGE
+            self._broadcasts[sense] = SensePublisher(sense, encode, partial(self._publish, sense), direct=direct)
             self._next[sense] = 0.0
 
     def _publish(self, sense: Sense, body: dict[str, Any]) -> None:

@@ -24,8 +24,8 @@ class RobotPart(Part, Observer):
 
     What comes from elsewhere is told by `foreign`. It watches the brain's loop: what the robot says and answers is on
     the bus, too. Where nobody shares the bus a tick waits until its readings are published, so that a run is the same
-    each time; else it waits for nobody. A `silent` one publishes only those senses that the behaviour hears of, as
-    events or by controllers.
+    each time, and publishes them itself where time goes as fast as it can; else it waits for nobody. A `silent` one
+    publishes only those senses that the behaviour hears of, as events or by controllers.
     """
 
     name = ROBOT_PART
@@ -51,6 +51,7 @@ class RobotPart(Part, Observer):
             started=foreign.given,
             refused=foreign.refused,
             hurry=setup.hurry,
+            direct=presence is None and getattr(setup.clock, "speed", 1.0) is None,
         )
         self.server.hold.noticed.append(foreign.noticed)
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
