@@ -3,10 +3,12 @@
 import json
 from pathlib import Path
 
+from lumen.language.lights import LIGHT_GROUPS
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body, Camera, Joint
+from lumen.language.roles import Base, BaseKind, JointRole, Roles
 from lumen.language.routes import Direction, Route
 
 MESSAGES = Path(__file__).parents[1] / "schemas" / "messages"
@@ -36,6 +38,11 @@ BODY = Body(
     camera=Camera(320, 240, 1.06, 0.83, (0.0, 0.0, 0.0), 0.0),
     tactile=TACTILE,
     hands=("RHand",),
+    roles=Roles(
+        head={"yaw": JointRole("HeadYaw"), "pitch": JointRole("HeadPitch")},
+        base=Base(BaseKind.BIPED),
+        lights={name: (name,) for name in LIGHT_GROUPS},
+    ),
 )
 SENSES = {"image": 0.066, "joint": 0.06, "sonar": 0.1, "tactile": 0.1, "battery": 1.0}
 

@@ -3,6 +3,7 @@
 from math import radians
 
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint
+from lumen.language.roles import JointRole, Roles
 
 TOP = Camera(320, 240, radians(60.97), radians(47.64), (0.05871, 0.0, 0.06364), 0.0209)
 
@@ -29,4 +30,5 @@ HEAD = Body(
     coupled=(COUPLED,),
     camera=TOP,
     tactile=(),
+    roles=Roles(head={"yaw": JointRole("HeadYaw"), "pitch": JointRole("HeadPitch")}),
 )

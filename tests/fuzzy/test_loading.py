@@ -71,7 +71,7 @@ CASES = [
     ("resolution: 1000", "resolution: 1", "wrong-value", "1", "points"),
     ("FaceXLoc: face.x", "FaceXLok: face.x", "unknown-variable", "FaceXLok", "did you mean `FaceXLoc`?"),
     ("    FaceXLoc: face.x\n", "", "unbound-input", "FaceXLoc", "route.field"),
-    ("    AngleX: {joint: HeadYaw, gain: 1.5, limits: [-60, 60]}\n", "", "unbound-output", "AngleX", "HeadYaw"),
+    ("    AngleX: {joint: head.yaw, gain: 1.5, limits: [-60, 60]}\n", "", "unbound-output", "AngleX", "HeadYaw"),
     ("limits: [-60, 60]", "limits: [60, -60]", "empty-range", "[60, -60]", "greater"),
     ("search: 8s", "search: 8", "wrong-type", "8", ""),
     ("      Zero: {gaussian: [160, 50]}", "      very: {gaussian: [160, 50]}", "reserved-name", "very", "another name"),
@@ -131,7 +131,7 @@ def test_a_word_is_found_in_every_kind_of_text(written: str, line: int, column: 
 
 
 def test_an_unbound_output_is_only_a_warning() -> None:
-    (found,) = diagnose(HEAD.replace("    AngleX: {joint: HeadYaw, gain: 1.5, limits: [-60, 60]}\n", ""))
+    (found,) = diagnose(HEAD.replace("    AngleX: {joint: head.yaw, gain: 1.5, limits: [-60, 60]}\n", ""))
     assert found.severity is Severity.WARNING
 
 
@@ -154,12 +154,12 @@ def test_a_dict_is_checked_alike() -> None:
 def test_angles_and_times_arrive_in_si() -> None:
     head = Controller.load("fuzzy/head.yaml")
     yaw, pitch = head.output_bindings
-    assert (yaw.joint, yaw.gain, pitch.gain) == ("HeadYaw", 1.5, -1.5)
+    assert (yaw.joint, yaw.gain, pitch.gain) == ("head.yaw", 1.5, -1.5)
     assert yaw.maximum == pytest.approx(1.0472, abs=1e-4)
     assert yaw.angle == pytest.approx(0.0174533)
     assert [(b.route, b.path) for b in head.input_bindings] == [("face", ("x",)), ("face", ("y",))]
     assert (head.tracking.hold, head.tracking.search) == (2.0, 8.0)
-    assert head.tracking.sweep["HeadYaw"] == pytest.approx(0.5236, abs=1e-4)
+    assert head.tracking.sweep["head.yaw"] == pytest.approx(0.5236, abs=1e-4)
 
 
 def test_the_schema_knows_the_whole_vocabulary() -> None:

@@ -23,6 +23,7 @@ from lumen.language.stories import (
 )
 from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
+from lumen.runtime.performer import LEFT_OUT
 
 
 class Narrator(Observer):
@@ -93,6 +94,8 @@ class Narrator(Observer):
         running = self._running.pop(id, "")
         if kind == "error":
             self.line("trouble", f"could not {_base(running) or 'do that'}: {reason_of(event)}")
+        elif kind == "done" and event.data and LEFT_OUT in event.data:
+            self.line("robot", f"leaves that out: {event.data[LEFT_OUT]}")
         elif kind == "done" and running.startswith("plays "):
             motion = running.removeprefix("plays ")
             self.played[motion] = self.played.get(motion, 0) + 1

@@ -16,6 +16,7 @@ from math import inf, isfinite, pi, sin
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.interpreters.controllers_by_role import by_role
 from lumen.interpreters.joint_history import JointAngles, JointHistory
 from lumen.interpreters.limits import coupled_range
 from lumen.interpreters.message_numbers import number, number_at
@@ -47,7 +48,7 @@ class Tracker:
     """
 
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
-        self.controller = controller
+        self.controller = controller = by_role(controller, body)
         self.routes = frozenset(binding.route for binding in controller.input_bindings)
         self.joints = tuple(dict.fromkeys(b.joint for b in controller.output_bindings if b.joint in body.joints))
         self._body = body

@@ -18,11 +18,10 @@ from lumen.interpreters.joint_history import JointAngles
 from lumen.interpreters.projection import after_turning
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
+from lumen.language.roles import HEAD_PITCH, HEAD_YAW, JointRole
 
 ZOOM_STEP = 2**0.5
 """From one magnification to the next."""
-
-_YAW, _PITCH = "HeadYaw", "HeadPitch"
 
 
 class VisualServo:
@@ -30,6 +29,7 @@ class VisualServo:
 
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
         self._controller, self._body = controller, body
+        self._yaw, self._pitch = body.roles.joint(HEAD_YAW), body.roles.joint(HEAD_PITCH)
         self._evaluator = Evaluator(controller)
         self._bindings = [b for b in controller.output_bindings if b.joint in body.joints]
         self._neutral = {
@@ -84,12 +84,20 @@ class VisualServo:
         self, inputs: Mapping[str, float], pose: Mapping[str, float], turned: Mapping[str, float]
     ) -> dict[str, float] | None:
         """The inputs as the camera would have them after the turn; None where that can't be computed."""
-        if not (self._across and self._down and _YAW in pose and _PITCH in pose):
+        yaw, pitch, camera = self._yaw, self._pitch, self._body.camera
+        if not (self._across and self._down and camera and (yaw or pitch)):
             return None
-        camera, before = self._body.camera, (pose[_YAW], pose[_PITCH])
-        after = (pose[_YAW] + turned[_YAW], pose[_PITCH] + turned[_PITCH])
-        pixel = after_turning((inputs[self._across], inputs[self._down]), camera, before, after) if camera else None
+        if any(role and role.joint not in pose for role in (yaw, pitch)):
+            return None
+        before = _angle(yaw, pose), _angle(pitch, pose)
+        after = before[0] + _angle(yaw, turned), before[1] + _angle(pitch, turned)
+        pixel = after_turning((inputs[self._across], inputs[self._down]), camera, before, after)
         return {**inputs, self._across: pixel[0], self._down: pixel[1]} if pixel else None
+
+
+def _angle(role: JointRole | None, angles: Mapping[str, float]) -> float:
+    """The angle of a role [rad]: 0 where the head does not turn that way."""
+    return role.sign * angles[role.joint] if role else 0.0
 
 
 def _image_inputs(controller: ControllerDefinition) -> tuple[str, str]:

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
+from lumen.interpreters.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
@@ -68,6 +69,8 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     found.behaviors = link(_built(behaviors), reports, found.names["behaviors"])
     found.stories = _built(_each(found, "behaviors/stories", build_story))
     found.controllers = _built(_each(found, "fuzzy", build_controller))
+    if body := found.body:
+        found.controllers = {name: by_role(each, body) for name, each in found.controllers.items()}
     passages = _motions(found, PASSAGES)
     found.motions = _motions(found, "motions")
     _accompany(found)

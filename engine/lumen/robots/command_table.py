@@ -16,6 +16,7 @@ from lumen.language.gestures import NO_GESTURES, merged
 from lumen.language.life import STILL, STILL_STYLE, LifeStyle
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
+from lumen.language.skills import lack_of
 from lumen.loading.sounds import MAX_SOUND_DURATION
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
@@ -350,6 +351,8 @@ def row_of(command: RobotCommand) -> CommandRow[Any]:
 
 def check_command(command: RobotCommand, body: Body) -> None:
     """Raises BadCommandError for a command that no robot of that body can perform."""
+    if lack := lack_of(command, body):
+        raise BadCommandError(f"`{row_of(command).verb}`: {lack.message}")
     row_of(command).check(command, body)
 
 

@@ -7,7 +7,9 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
+from lumen.loading.role_names import RoleNames
 from lumen.rules import aims, rulebooks, shapes, surfaces
+from lumen.rules.lookups import first
 
 LIMIT_TOLERANCE = 2e-3
 """How far a limit may lie outside the joint's own [rad]: people round."""
@@ -33,13 +35,23 @@ def _sense(controller: ControllerDefinition, report: DocumentReport, draft: Proj
 
 
 def _joints(controller: ControllerDefinition, report: DocumentReport, body: Body, lost: set[str]) -> None:
+    roles = RoleNames(report, body)
     for binding in controller.output_bindings:
         path: NodePath = ("bind", "outputs", binding.variable)
+        if "." in binding.joint:
+            roles.joint(binding.joint, (*path, "joint"))
+            continue
         if _known(report, (*path, "joint"), binding.joint, body, lost):
             _limits(controller, report, (*path, "limits"), binding, body)
     for what, joints in (("sweep", controller.tracking.sweep), ("ahead", controller.tracking.ahead)):
         for joint in joints:
-            _known(report, ("track", what, joint), joint, body, lost, key=True)
+            path = ("track", what, joint)
+            if "." in joint:
+                roles.joint(joint, path)
+            else:
+                named = next((name for name in body.roles.paths if body.roles.name(name) == joint), joint)
+                _known(report, first(report, path, ("track", what, named)), joint, body, lost, key=True)
+    roles.tell_left_out("this controller")
 
 
 def _known(

@@ -22,10 +22,14 @@ from lumen.language.commands import (
 )
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.skills import lack_of
 from lumen.loading.sounds import sound_duration
 from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.runtime.navigator import Navigator
 from lumen.runtime.sending import send
+
+LEFT_OUT = "left_out"
+"""The field of an answer that says what the body lacks for a command, which was left out."""
 
 _log = logging.getLogger(__name__)
 
@@ -33,9 +37,10 @@ _log = logging.getLogger(__name__)
 class Performer:
     """Hands commands to the robot and the bus.
 
-    `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, and
-    of those that can't even begin: `refuse` gives the reason why the robot may not begin one, empty where it may.
-    `navigator` makes single walks of the walks to places.
+    `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, of
+    those that are left out because the body lacks what they need, and of those that can't even begin: `refuse` gives
+    the reason why the robot may not begin one, empty where it may. `navigator` makes single walks of the walks to
+    places.
     """
 
     def __init__(self, robot: Robot, bus: Bus, track: Callable[[Track], None]) -> None:
@@ -59,6 +64,9 @@ class Performer:
                 _log.info(text)
 
     def _start(self, project: Project, id: str, wanted: BodyCommand, now: float) -> None:
+        if lack := lack_of(wanted, project.body):
+            self.events.append(Event(f"done.command.{id}", {LEFT_OUT: lack.message}, now))
+            return
         match wanted:
             case Play(name) if name in project.motions:
                 self._begin(id, Perform(project.motions[name]), now)

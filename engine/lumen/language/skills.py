@@ -1,0 +1,49 @@
+"""What commands ask of a body: the roles without which it can't perform them. Lint, runtime and robots ask here."""
+
+from typing import NamedTuple
+
+from lumen.language.commands import GoTo, Leds, Look, Move, Track, Walk
+from lumen.language.controllers import ControllerDefinition
+from lumen.language.robots import Body
+from lumen.language.roles import JOINT_PATHS, BaseKind
+
+_WOULD_GIVE = " under `roles` of its body would give it"
+
+
+class Lack(NamedTuple):
+    """What a body lacks for a command, `NAO has no legs and no wheels`, and which roles would give it that."""
+
+    message: str
+    hint: str
+
+
+def lack_of(command: object, body: Body) -> Lack | None:
+    """What that body lacks to perform a command at all, None where it can."""
+    roles = body.roles
+    match command:
+        case Walk() | Move() | GoTo() if roles.base.kind is BaseKind.FIXED:
+            wanted = "`base: {kind: biped}` with `legs`, `soles` and `sensors`, or `base: {kind: wheels, …}`"
+            return Lack(f"{body.name} has no legs and no wheels", wanted + _WOULD_GIVE)
+        case Look() if not roles.head:
+            return Lack(
+                f"{body.name} has no head that turns", "`head: {yaw: …}` under `roles` of its body would give it"
+            )
+        case Leds(colours) if colours and not any(group in roles.lights for group in colours):
+            names = ", ".join(f"`{group}`" for group in colours)
+            wanted = f"`lights: {{{next(iter(colours))}: […]}}`"
+            return Lack(f"{body.name} has no lights {names}", wanted + _WOULD_GIVE)
+    return None
+
+
+def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:
+    """What that body lacks for `track` of a controller that moves joints by role: all of them."""
+    wanted = [binding.joint for binding in controller.output_bindings]
+    if not wanted or any(name in body.joints for name in wanted) or not all(name in JOINT_PATHS for name in wanted):
+        return None
+    names = ", ".join(f"`{name}`" for name in wanted)
+    return Lack(f"{body.name} has no {names}", "these" + _WOULD_GIVE)
+
+
+def tracked(command: object) -> str:
+    """The controller that a command switches on, empty for any other."""
+    return command.controller if isinstance(command, Track) and command.on else ""

@@ -1,0 +1,25 @@
+"""Actions that the robot's body lacks the roles for: they are left out when it runs."""
+
+from lumen.language.diagnostics import NodePath
+from lumen.language.skills import lack_of, tracked, tracking_lack
+from lumen.language.verbs import verb_of
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.role_names import LEFT_OUT
+from lumen.rules.lookups import first
+from lumen.rules.walk import action_sites
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report each action that this body leaves out, at its verb."""
+    body = draft.body
+    if body is None:
+        return
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for site in action_sites(machine):
+            action = site.step.action
+            controller = draft.controllers.get(tracked(action))
+            if lack := tracking_lack(controller, body) if controller else lack_of(action, body):
+                verb = verb_of(action).name  # type: ignore[arg-type]
+                path: NodePath = first(report, (*site.step.where, verb), site.step.where)
+                report(LEFT_OUT, path, f"`{verb}`: {lack.message}, and leaves this out", lack.hint, key=True)

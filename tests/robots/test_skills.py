@@ -1,0 +1,108 @@
+"""What a body lacks for a command: robots refuse it, behaviours leave it out, and say so in the same words."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.errors import BadCommandError
+from lumen.language.commands import GoTo, Leds, Look, Move, Posture, Rest, Say, Walk
+from lumen.language.roles import Base, BaseKind, Roles
+from lumen.language.skills import lack_of, tracking_lack
+from lumen.robots.command_table import check_command
+from tests.exhibits import BODY
+
+STUMP = replace(BODY, name="Stump", roles=Roles())
+SHIPPED = Path(__file__).parents[2]
+TABLE = """\
+joints: {Spin: {range: [-1, 1]}}
+parts: {head: [Spin]}
+postures: {Stand: {Spin: 0}}
+"""
+BEHAVIOUR = """\
+id: hello
+initial: here
+states:
+  here:
+    do:
+      - {walk: {x: 0.1}}
+      - {look: {yaw: 0.1}}
+      - {leds: {eyes: blue}}
+      - {say: Hello}
+    onDone: there
+  there: {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "lacks"),
+    [
+        (Walk(0.1), "Stump has no legs and no wheels"),
+        (Move(0.1), "Stump has no legs and no wheels"),
+        (Look(0.1), "Stump has no head that turns"),
+        (Leds({"eyes": "blue", "chest": "red"}), "Stump has no lights `eyes`, `chest`"),
+    ],
+)
+def test_robots_refuse_what_the_body_lacks_in_lint_s_words(command: object, lacks: str) -> None:
+    lack = lack_of(command, STUMP)
+    assert lack is not None
+    assert lack.message == lacks
+    with pytest.raises(BadCommandError, match=lacks):
+        check_command(command, STUMP)  # type: ignore[arg-type]
+    assert lack_of(command, BODY) is None
+
+
+def test_what_every_body_can_do_lacks_nothing() -> None:
+    for command in (Say("Hello"), Rest(), Posture("Stand")):
+        assert lack_of(command, STUMP) is None
+    assert lack_of(GoTo("organ"), STUMP) is not None
+
+
+def test_wheels_walk_and_one_light_of_two_is_enough() -> None:
+    body = replace(STUMP, roles=Roles(base=Base(BaseKind.WHEELS), lights={"eyes": ("eyes",)}))
+    assert lack_of(Walk(0.1), body) is None
+    assert lack_of(Leds({"eyes": "blue", "feet": "red"}), body) is None
+
+
+def test_a_controller_that_finds_one_of_its_joints_tracks() -> None:
+    controller = lumen.load(SHIPPED).controllers["head"]
+    bindings = tuple(
+        replace(b, joint=f"head.{way}") for b, way in zip(controller.output_bindings, ("yaw", "pitch"), strict=True)
+    )
+    by_role = replace(controller, output_bindings=bindings)
+    lack = tracking_lack(by_role, STUMP)
+    assert lack is not None
+    assert lack.message == "Stump has no `head.yaw`, `head.pitch`"
+    turning = replace(bindings[0], joint="HeadYaw")
+    assert tracking_lack(replace(controller, output_bindings=(turning, bindings[1])), STUMP) is None
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    for name, text in {
+        "lumen.yaml": "behavior: hello\nlanguages: [en]\nrobot: {name: Lamp, model: lamp}\nhall: hall.xml\n",
+        "behaviors/hello.yaml": BEHAVIOUR,
+        "models/lamp.yaml": TABLE,
+        "models/lamp.xml": '<mujoco><worldbody><body><joint name="Spin"/></body></worldbody></mujoco>\n',
+    }.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text, "utf-8")
+    return tmp_path
+
+
+def test_lint_says_at_the_verb_what_is_left_out_and_nothing_is_wrong(table: Path) -> None:
+    found = [d for d in lumen.check(table) if d.code == "left-out"]
+    assert [(d.place.line, d.place.column, d.severity) for d in found] == [
+        (6, 10, "info"),
+        (7, 10, "info"),
+        (8, 10, "info"),
+    ]
+    assert found[0].message == "`walk`: lamp has no legs and no wheels, and leaves this out"
+    assert "base: {kind: biped}" in found[0].hint
+
+
+def test_a_behaviour_goes_on_without_it(table: Path) -> None:
+    with lumen.open(table, robot="recording", speed="max") as exhibition:
+        exhibition.run(seconds=3)
+        assert exhibition.configuration == frozenset({"there"}) or "there" in exhibition.configuration
