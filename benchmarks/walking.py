@@ -1,6 +1,6 @@
-"""How well the simulated NAO walks: how fast, how straight, over what; and whether it knows where it is.
+"""How well a simulated biped walks: how fast, how straight, over what; and whether it knows where it is.
 
-    python benchmarks/walking.py [--robots N]
+    python benchmarks/walking.py [--robots N] [--model NAME]
 
 Each robot differs from the model: every link up to 10 % lighter or heavier, friction 0.5 to 1.0, and noisy sensors.
 Speeds are asked for by `move`, for 8 s. `off` is how far from its goal a robot ends, `odometry` how far from where it
@@ -18,12 +18,11 @@ import numpy as np
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
+from tests.simulation.bodies import shipped  # noqa: E402
 from tests.simulation.walks import START, any_robot, truth, walk  # noqa: E402
 
-import lumen  # noqa: E402
 from lumen.interpreters.gait import Pose  # noqa: E402
 from lumen.language.commands import Move, Walk  # noqa: E402
-from lumen.language.robots import Body  # noqa: E402
 from lumen.robots.simulation import SimulatedRobot  # noqa: E402
 
 SECONDS = 8.0
@@ -94,8 +93,9 @@ def bump(height: float) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--robots", type=int, default=2, help="how many for each row (20 for the figures)")
-    robots = parser.parse_args().robots
-    body: Body = lumen.load(ROOT).body
+    parser.add_argument("--model", default="nao", help="the body in models/ (nao)")
+    options = parser.parse_args()
+    robots, body = options.robots, shipped(options.model)
 
     def on(more: str = "") -> Start:
         return lambda seed: any_robot(body, seed, more=more)
@@ -103,6 +103,7 @@ def main() -> None:
     fast("forward [m/s]", on(), robots, Move(1.0, 0.0, 0.0), lambda way: way.x)
     fast("aside [m/s]", on(), robots, Move(0.0, 1.0, 0.0), lambda way: way.y)
     fast("turning [rad/s]", on(), robots, Move(0.0, 0.0, 9.0), lambda way: way.theta)
+    far("0.5 m straight", on(), robots, Walk(0.5))
     far("5 m straight", on(), robots, Walk(5.0))
     far("over rails of 5 mm", on(bump(0.005)), robots, Walk(1.2))
     far("up 5 degrees", on(ramp(5.0)), robots, Walk(1.0))

@@ -11,10 +11,12 @@ import mujoco
 import numpy as np
 
 from lumen.interpreters.gait import SIDES, Feet, Pose, Side, middle
+from lumen.interpreters.gait.legs import SIDE_ROLES
 from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.model import ROBOT_PREFIX
 from tests.simulation.conftest import MODELS, answer
 
 START = (3.0, -3.0)
@@ -69,7 +71,7 @@ def any_robot(body: Body, seed: int, posture: str = "Stand", more: str = "") -> 
     model = robot.world.model
     model.geom_friction *= friction
     for i in range(model.nbody):
-        if model.body(i).name.startswith("nao/"):
+        if model.body(i).name.startswith(f"{ROBOT_PREFIX}/"):
             factor = draw.uniform(0.9, 1.1)
             model.body_mass[i] *= factor
             model.body_inertia[i] *= factor
@@ -82,7 +84,7 @@ def feet(robot: SimulatedRobot) -> Feet:
     """Where both feet really stand, from where the robot began."""
     found: dict[Side, Pose] = {}
     for side in SIDES:
-        site = robot.world.data.site(f"nao/{side}Sole")
+        site = robot.world.data.site(f"{ROBOT_PREFIX}/{robot.body.roles.soles[SIDE_ROLES[side]]}")
         axes = site.xmat.reshape(3, 3)
         found[side] = Pose(site.xpos[0] - START[0], site.xpos[1] - START[1], atan2(axes[1, 0], axes[0, 0]))
     return found

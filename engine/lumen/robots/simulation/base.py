@@ -5,6 +5,7 @@ from typing import Protocol
 from lumen.language.commands import Move, Walk
 from lumen.ports import Whereabouts
 from lumen.robots.executor import Activity
+from lumen.robots.simulation.contact_shadows import Soles
 from lumen.robots.simulation.joint_envelope import JointVector
 
 
@@ -18,6 +19,10 @@ class RobotBase(Protocol):
     @property
     def catching(self) -> bool:
         """Whether a fall is being caught."""
+
+    @property
+    def soles(self) -> Soles:
+        """Its soles, for what a film draws beneath them."""
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
         """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""

@@ -10,11 +10,13 @@ from lumen.ports import Whereabouts
 from lumen.robots.executor import Activity
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.catching import FallCatcher
+from lumen.robots.simulation.contact_shadows import Soles
 from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.leg_geometry import read_legs
 from lumen.robots.simulation.mass_model import MassModel
+from lumen.robots.simulation.model import ROBOT_PREFIX
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.odometry import Odometry
 from lumen.robots.simulation.sensors import BodySensors
@@ -42,6 +44,7 @@ class Biped:
         legs, roles = read_legs(mass_model.model, body), body.roles
         paces = paces_of(legs, body.gait)
         self._sensors = sensors
+        self._soles = [f"{ROBOT_PREFIX}/{name}" for name in roles.soles.values()]
         self.falling = FallingSense(sensors, mass_model, legs)
         self.balance = BalanceController(motors, self.falling, legs, roles, paces.usual.ahead)
         self.odometry = Odometry(legs, stage)
@@ -66,6 +69,11 @@ class Biped:
     @property
     def catching(self) -> bool:
         return self.catcher.active
+
+    @property
+    def soles(self) -> Soles:
+        toe, heel, outer, inner = self.odometry.legs.sole_size
+        return dict.fromkeys(self._soles, ((toe + heel) / 2, (outer + inner) / 2))
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
         return self.walker.begin(command, now)

@@ -1,23 +1,22 @@
 """Soft dark spots where somebody stands: what little light there is under a shoe, which a shadow map misses."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import mujoco
 import numpy as np
 
-from lumen.robots.simulation.model import ROBOT_PREFIX
 from lumen.robots.simulation.visitor_figure import VISITOR_BODY
 
-FOOT_BODIES = (f"{ROBOT_PREFIX}/LAnkleRoll", f"{ROBOT_PREFIX}/RAnkleRoll")
-ANKLE_HEIGHT = 0.045
-"""Of a foot's joint above its sole [m] (data sheet of NAO: FootHeight 45.19 mm)."""
+Soles = Mapping[str, tuple[float, float]]
+"""The sites below a robot's ankles, and half the length and half the width of each sole [m]."""
+NO_SOLES: Soles = {}
 
 SHADOW_FADES = 0.05
 """How high above the ground [m] a sole is when nothing is left of the spot beneath it."""
 
 LAYERS, LAYER_OPACITY = (0.75, 1.0, 1.3, 1.65), 0.13
-FOOT_SIZE, VISITOR_SIZE = (0.088, 0.052), (0.17, 0.2)
-"""Of a spot: half its length and half its width [m]."""
+BEYOND_SOLE, VISITOR_SIZE = (0.018, 0.015), (0.17, 0.2)
+"""How much farther than half a sole a spot reaches ahead and aside; half the length and width of a visitor's [m]."""
 
 _THICKNESS = 4e-4
 _GROUND = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
@@ -27,10 +26,14 @@ _GROUND = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 class ContactShadows:
     """Adds the spots to a scene of one model, whatever of the robot and the visitor there is."""
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    def __init__(self, model: mujoco.MjModel, soles: Soles) -> None:
         self._model = model
-        bodies = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in (*FOOT_BODIES, VISITOR_BODY))
-        *self._feet, self._visitor = (body if body >= 0 else None for body in bodies)
+        self._soles = [
+            (model.site(name).id, (length + BEYOND_SOLE[0], width + BEYOND_SOLE[1]))
+            for name, (length, width) in soles.items()
+        ]
+        visitor = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, VISITOR_BODY)
+        self._visitor = visitor if visitor >= 0 else None
 
     def add(self, scene: mujoco.MjvScene, data: mujoco.MjData) -> None:
         """Put the spots into the scene, as far as it has room."""
@@ -47,15 +50,13 @@ class ContactShadows:
                 scene.ngeom += 1
 
     def _spots(self, data: mujoco.MjData) -> Iterator[tuple[np.ndarray, np.ndarray, tuple[float, float], float]]:
-        for foot in self._feet:
-            if foot is None:
-                continue
-            sole = data.xpos[foot] - data.xmat[foot].reshape(3, 3)[:, 2] * ANKLE_HEIGHT
-            ahead = data.xmat[foot].reshape(3, 3)[:, 0]
-            if spot := self._on_ground(data, data.xpos[foot] + 0.02 * ahead, float(sole[2])):
+        for site, size in self._soles:
+            axes, sole = data.site_xmat[site].reshape(3, 3), data.site_xpos[site]
+            ahead = axes[:, 0]
+            if spot := self._on_ground(data, sole + 0.045 * axes[:, 2] + 0.02 * ahead, float(sole[2])):
                 place, height = spot
                 if height < SHADOW_FADES:
-                    yield place, _flat(ahead), FOOT_SIZE, 1.0 - max(height, 0.0) / SHADOW_FADES
+                    yield place, _flat(ahead), size, 1.0 - max(height, 0.0) / SHADOW_FADES
         if self._visitor is not None and data.xpos[self._visitor][2] > -1.0:
             yield data.xpos[self._visitor].copy(), data.xmat[self._visitor].reshape(3, 3), VISITOR_SIZE, 1.0
 

@@ -1,4 +1,4 @@
-"""The NAO as a building block of dm_control's composer, for worlds and tasks of others."""
+"""The NAO, or another biped, as a building block of dm_control's composer, for worlds and tasks of others."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,10 +9,9 @@ from dm_control.locomotion.walkers import base, legacy_base
 from dm_control.locomotion.walkers.initializers import WalkerInitializer
 
 from lumen.language.robots import Body
+from lumen.language.roles import SIDES
 from lumen.robots.simulation.model import ROBOT_PREFIX, alone
 from lumen.robots.simulation.observables import NaoObservables
-
-SIDES = "LR"
 
 
 class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
@@ -49,7 +48,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def joints(self) -> list[mjcf.Element]:
-        """The joints in NAOqi's order."""
+        """The joints in the body's order."""
         return self._named("joint", list(self.body.joints))
 
     @property
@@ -58,26 +57,34 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def actuators(self) -> list[mjcf.Element]:
-        """The motors, which take angles [rad] and openings, in NAOqi's order; RHipYawPitch has none of its own."""
+        """The motors, which take angles [rad] and openings, in the body's order; a joint that shares one has none."""
         return self._named("actuator", [name for name in self.body.joints if name not in self.body.shared])
 
     @property
     def root_body(self) -> mjcf.Element:
-        return self._mjcf_root.find("body", "Torso")
+        return self._mjcf_root.find("body", self.body.roles.torso)
 
     @property
     def end_effectors(self) -> list[mjcf.Element]:
         """Hands and feet."""
-        return self._named("body", [f"{side}{part}" for part in ("WristYaw", "AnkleRoll") for side in SIDES])
+        roles = self.body.roles
+        ends = [
+            list(limbs[side].values())[-1].joint
+            for limbs in (roles.arms, roles.legs)
+            for side in SIDES
+            if side in limbs
+        ]
+        return [joint.parent for joint in self._named("joint", ends)]
 
     @property
     def ground_contact_geoms(self) -> list[mjcf.Element]:
-        """The soles."""
-        return self._named("geom", [f"{side}Sole" for side in SIDES])
+        """The soles: what of the feet has a name."""
+        soles = self._named("site", list(self.body.roles.soles.values()))
+        return [geom for site in soles for geom in site.parent.geom if geom.name]
 
     @property
     def egocentric_camera(self) -> mjcf.Element:
-        return self._mjcf_root.find("camera", "CameraTop")
+        return self._mjcf_root.find("camera", self.body.roles.eyes.camera)
 
     @property
     def upright_pose(self) -> base.WalkerPose:
@@ -115,9 +122,11 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
             root = alone(self.body, self._models)  # ours may stand in a world by now
             physics, joints = mjcf.Physics.from_mjcf_model(root), root.find_all("joint")
             angles = self.body.postures[posture]
-            qpos = [angles[j.name] if j.name in angles else angles[f"{j.name[0]}Hand"] for j in joints]
+            led = {equal.joint1.name: equal.joint2.name for equal in root.find_all("equality") if equal.tag == "joint"}
+            qpos = [angles.get(j.name, angles.get(led.get(j.name, ""), 0.0)) for j in joints]
             physics.bind(joints).qpos = qpos
-            lowest = min(float(physics.bind(root.find("site", f"{side}Sole")).xpos[2]) for side in SIDES)
+            soles = [root.find("site", name) for name in self.body.roles.soles.values()]
+            lowest = min(float(physics.bind(site).xpos[2]) for site in soles)
             self._taken[posture] = base.WalkerPose(qpos=qpos, xpos=(0.0, 0.0, -lowest))
         return self._taken[posture]
 

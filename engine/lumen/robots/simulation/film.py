@@ -70,8 +70,10 @@ class Film:
         if camera and mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
             raise RobotModelError(f"the hall has no camera `{camera}` to film with")
         self._robot, self._camera, self._size, self._title = robot, camera, size, title
-        self._renderer = SceneRenderer(model, FILM_QUALITY)
-        self._head, self._torso = (model.body(f"{ROBOT_PREFIX}/{name}").id for name in ("HeadPitch", "Torso"))
+        roles = robot.body.roles
+        self._renderer = SceneRenderer(model, FILM_QUALITY, robot.base.soles)
+        links = roles.eyes.face or roles.torso, roles.torso
+        self._head, self._torso = (model.body(f"{ROBOT_PREFIX}/{name}").id for name in links)
         self._director = ShotDirector()
         self._shown: tuple[Shot, HallPoint, HallPoint] | None = None
         self._drawers = [ThreadPoolExecutor(1, "lumen-film") for _ in range(min(os.cpu_count() or 1, 8))]

@@ -5,6 +5,7 @@ import numpy as np
 from lumen.errors import RobotRefusedError
 from lumen.language.commands import Move, Walk
 from lumen.robots.executor import Activity
+from lumen.robots.simulation.contact_shadows import NO_SOLES
 from lumen.robots.simulation.joint_envelope import JointVector
 
 
@@ -13,6 +14,7 @@ class Fixed:
 
     whereabouts = None
     catching = False
+    soles = NO_SOLES
 
     def __init__(self, joints: int) -> None:
         self._nothing = np.zeros(joints)

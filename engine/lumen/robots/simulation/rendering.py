@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.robots.simulation import gl
-from lumen.robots.simulation.contact_shadows import ContactShadows
+from lumen.robots.simulation.contact_shadows import NO_SOLES, ContactShadows, Soles
 
 PixelArray = NDArray[np.uint8]
 """Shape (height, width, 3), RGB."""
@@ -63,8 +63,8 @@ class RenderState:
 class SceneRenderer:
     """Draws scenes of one model; every thread that uses it gets its own OpenGL context, made at its first picture."""
 
-    def __init__(self, model: mujoco.MjModel, quality: RenderQuality) -> None:
-        self._model, self._quality = model, quality
+    def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles = NO_SOLES) -> None:
+        self._model, self._quality, self._soles = model, quality, soles
         self._local = threading.local()
 
     def draw(
@@ -80,7 +80,7 @@ class SceneRenderer:
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
         canvas = cameras.get((width, height))
         if canvas is None:
-            canvas = cameras[width, height] = _Canvas(self._model, self._quality, width, height)
+            canvas = cameras[width, height] = _Canvas(self._model, self._quality, self._soles, width, height)
         return canvas.draw(scene, camera, field_of_view)
 
     def close(self) -> None:
@@ -92,7 +92,7 @@ class SceneRenderer:
 class _Canvas:
     """A renderer with a model and a state of its own, for one thread and one size."""
 
-    def __init__(self, model: mujoco.MjModel, quality: RenderQuality, width: int, height: int) -> None:
+    def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles, width: int, height: int) -> None:
         self._model = copy.copy(model)
         self._model.vis.quality.shadowsize = quality.shadows
         self._model.vis.quality.offsamples = quality.samples
@@ -102,7 +102,7 @@ class _Canvas:
         self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
         atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
-        self._contact = ContactShadows(self._model) if quality.contact else None
+        self._contact = ContactShadows(self._model, soles) if quality.contact else None
 
     def draw(
         self, scene: RenderState, camera: str | mujoco.MjvCamera, field_of_view: float | None = None

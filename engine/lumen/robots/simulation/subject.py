@@ -6,6 +6,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from lumen.interpreters.gait.legs import SIDE_ROLES
 from lumen.language.robots import Body
 from lumen.ports import Sole, Strain
 from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
@@ -53,18 +54,26 @@ class ExaminedRobot(SimulatedRobot):
             yield (self._link(one), self._link(other)), float(force[0])
 
     def _link(self, geom: int) -> str:
-        """The name of a part of the robot, empty for what is none."""
-        name = str(self.world.model.geom(geom).name)
-        return name.removeprefix(f"{ROBOT_PREFIX}/") if name.startswith(f"{ROBOT_PREFIX}/") else ""
+        """The name of a part of the robot, empty for what is none; a geom without one is called as its link."""
+        model = self.world.model
+        link = str(model.body(model.geom_bodyid[geom]).name)
+        name = str(model.geom(geom).name) or link
+        return name.removeprefix(f"{ROBOT_PREFIX}/") if link.startswith(f"{ROBOT_PREFIX}/") else ""
 
     def _stands(self) -> dict[str, Sole]:
-        load = dict.fromkeys("LR", 0.0)
-        for links, force in self._touches():
-            for side in load:
-                if f"{side}Sole" in links and "" in links:
-                    load[side] += force
-        places = {side: self.world.data.site(f"{ROBOT_PREFIX}/{side}Sole").xpos for side in load}
-        return {side: Sole(float(at[0]), float(at[1]), load[side]) for side, at in places.items()}
+        model, data, force = self.world.model, self.world.data, np.zeros(6)
+        roles = self.body.roles.soles
+        sites = {side: data.site(f"{ROBOT_PREFIX}/{roles[name]}") for side, name in SIDE_ROLES.items() if name in roles}
+        load = dict.fromkeys(sites, 0.0)
+        feet = {int(model.site_bodyid[site.id]): side for side, site in sites.items()}
+        for i, pair in enumerate(data.contact.geom):
+            links = [int(model.geom_bodyid[geom]) for geom in pair]
+            own = [model.body(link).name.startswith(f"{ROBOT_PREFIX}/") for link in links]
+            side = next((feet[link] for link in links if link in feet), None)
+            if side and not all(own):
+                mujoco.mj_contactForce(model, data, i, force)
+                load[side] += float(force[0])
+        return {side: Sole(float(at.xpos[0]), float(at.xpos[1]), load[side]) for side, at in sites.items()}
 
 
 def subject(body: Body, models: Path, hall: str, brother: int) -> ExaminedRobot:

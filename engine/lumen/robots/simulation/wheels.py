@@ -10,6 +10,7 @@ from lumen.language.commands import Move, Walk
 from lumen.language.projects import Stage
 from lumen.ports import Whereabouts
 from lumen.robots.executor import Activity
+from lumen.robots.simulation.contact_shadows import NO_SOLES, Soles
 from lumen.robots.simulation.drive_geometry import read_drive
 from lumen.robots.simulation.driving import Drive, DriveOn, DriveTo
 from lumen.robots.simulation.hazards import Hazards
@@ -50,6 +51,10 @@ class Wheels:
     @property
     def catching(self) -> bool:
         return False
+
+    @property
+    def soles(self) -> Soles:
+        return NO_SOLES
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
         way = way_of(command)

@@ -1,0 +1,147 @@
+"""Searches for the numbers with which a biped walks best, and prints them as `gait` of its `models/NAME.yaml`.
+
+    python scripts/search_gait.py NAME [--pace usual|brisk] [--tries 40] [--robots 3] [--seconds 8] [--seed 0] [--write]
+
+Begins with what `models/NAME.yaml` has, or with what follows from the legs by rule, and draws each try near the best
+one so far, nearer and nearer: a random search, as NAO's brisk pace was found (docs/decisions/074). Robots differ in
+their masses, floors and noise. A try counts how far they come in the given time, less what they end aside of their way;
+where one falls, the whole try counts nothing. Two tries run at once. Each is kept in `.cache/search_gait/`: started
+again, the search goes on. `--write` puts the best into the file.
+"""
+
+import argparse
+import json
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.simulation.bodies import shipped  # noqa: E402
+from tests.simulation.walks import any_robot, truth  # noqa: E402
+
+from lumen.interpreters.gait import GaitParameters, paces_of  # noqa: E402
+from lumen.language.commands import Move  # noqa: E402
+from lumen.loading.bodies import GAIT_ANGLES, GAIT_LENGTHS  # noqa: E402
+from lumen.loading.units import ANGLES, LENGTHS  # noqa: E402
+from lumen.robots.simulation.leg_geometry import read_legs  # noqa: E402
+from lumen.robots.simulation.mass_model import MassModel  # noqa: E402
+
+MODELS, CACHE = ROOT / "models", ROOT / ".cache" / "search_gait"
+
+SEARCHED = ("double", "single", "forward", "lift", "torso", "lean", "ahead", "inside")
+"""The parameters that are drawn; what the legs and soles forbid stays by rule."""
+
+SPREAD, NARROWS = 0.12, 0.97
+"""How far a try is drawn from the best one, as a part of each number, and how that shrinks with each."""
+
+AT_ONCE = 2
+FASTER = {"usual": 0.98, "brisk": 10.0}
+"""What is asked for, as a factor of the pace's own speed: `brisk` is taken where the usual one is too slow."""
+
+BEGINS = 1.5
+"""A robot shifts its weight and begins before its way counts [s]."""
+
+
+class Try(NamedTuple):
+    """What was tried, and how good it was: the way that all robots came [m], aside counted against it."""
+
+    numbers: dict[str, float]
+    score: float
+    upright: int
+
+
+def tried(name: str, pace: str, numbers: dict[str, float], robots: int, seconds: float) -> Try:
+    """Let robots walk with these numbers."""
+    body = shipped(name)
+    body = replace(body, gait={**body.gait, pace: {**body.gait.get(pace, {}), **numbers}})
+    paces = paces_of(read_legs(MassModel(body, MODELS).model, body), body.gait)
+    asked = getattr(paces, pace)
+    speed = FASTER[pace] * asked.forward / (asked.double + asked.single)
+    ways, upright = 0.0, 0
+    for seed in range(robots):
+        robot = any_robot(body, seed)
+        robot.start("walk", Move(speed, 0.0, 0.0))
+        robot.advance(BEGINS)
+        before = truth(robot)
+        robot.advance(seconds)
+        way = truth(robot).seen_from(before)
+        upright += not robot.fallen
+        ways += 0.0 if robot.fallen else way.x - abs(way.y)
+    return Try(numbers, ways / robots if upright == robots else 0.0, upright)
+
+
+def drawn(best: dict[str, float], count: int, random: np.random.Generator) -> dict[str, float]:
+    """Numbers near the best ones."""
+    spread = SPREAD * NARROWS**count
+    return {name: round(value * (1 + spread * random.standard_normal()), 4) for name, value in best.items()}
+
+
+def search(options: argparse.Namespace) -> Try:
+    """Try after try, from where the last search ended; each is printed."""
+    body = shipped(options.model)
+    start: GaitParameters = getattr(paces_of(read_legs(MassModel(body, MODELS).model, body), body.gait), options.pace)
+    kept = CACHE / f"{options.model}-{options.pace}-{options.robots}-{options.seconds:g}-{options.seed}.jsonl"
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    tries = [Try(**json.loads(line)) for line in kept.read_text().splitlines()] if kept.exists() else []
+    numbers = {name: value for name, value in asdict(start).items() if name in SEARCHED}
+    with ProcessPoolExecutor(AT_ONCE) as pool, kept.open("a", encoding="utf-8") as record:
+        while len(tries) < options.tries:
+            random = np.random.default_rng((options.seed, len(tries)))
+            best = max(tries, key=lambda one: one.score, default=Try(numbers, 0.0, 0))
+            wanted = [drawn(best.numbers, len(tries), random) for _ in range(AT_ONCE)]
+            if not tries:
+                wanted[0] = numbers
+            given = (options.model, options.pace)
+            more = [pool.submit(tried, *given, one, options.robots, options.seconds) for one in wanted]
+            for one in (future.result() for future in more):
+                tries.append(one)
+                record.write(json.dumps(one._asdict()) + "\n")
+                record.flush()
+                print(f"{len(tries):3d}  {one.upright} of {options.robots} upright  {one.score:6.3f} m", flush=True)
+    first, best = tries[0], max(tries, key=lambda one: one.score)
+    print(f"{options.pace}: {first.score:.3f} m at first, {best.score:.3f} m at best, in {options.seconds:g} s")
+    return best
+
+
+def written(text: str, pace: str, numbers: dict[str, float]) -> str:
+    """The text of a body's file with these numbers [m], [rad], [s] in its `gait`, which has to end it."""
+    head, _, tail = text.partition("\ngait:\n")
+    kept: dict[str, Any] = yaml.safe_load(f"gait:\n{tail}")
+    if kept.keys() != {"gait"}:
+        raise SystemExit("`gait` does not stand at the end of the file: move it there")
+    units = yaml.safe_load(head).get("units") or {}
+    angle, length = ANGLES[units.get("angle", "rad")], LENGTHS[units.get("length", "m")]
+    sizes = {**dict.fromkeys(GAIT_ANGLES, angle), **dict.fromkeys(GAIT_LENGTHS, length)}
+    gait: dict[str, dict[str, float]] = kept["gait"] or {}
+    gait[pace] = {**gait.get(pace, {}), **{name: value / sizes.get(name, 1.0) for name, value in numbers.items()}}
+    lines = [f"  {name}: {{{', '.join(f'{k}: {v:g}' for k, v in found.items())}}}" for name, found in gait.items()]
+    return head.rstrip("\n") + "\n\ngait:\n" + "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("model", help="the body in models/")
+    parser.add_argument("--pace", choices=FASTER, default="usual")
+    parser.add_argument("--tries", type=int, default=40, help="in all, those of before counted")
+    parser.add_argument("--robots", type=int, default=3, help="for each try")
+    parser.add_argument("--seconds", type=float, default=8.0, help="that they walk")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--write", action="store_true", help="put the best into models/NAME.yaml")
+    options = parser.parse_args()
+    best = search(options)
+    file = MODELS / f"{options.model}.yaml"
+    text = written(file.read_text("utf-8"), options.pace, best.numbers)
+    if options.write:
+        file.write_text(text, "utf-8")
+    print(text[text.index("\ngait:\n") + 1 :], end="")
+
+
+if __name__ == "__main__":
+    main()
