@@ -23,6 +23,7 @@ def test_a_project_arrives_as_it_was(copy: Path) -> None:
     assert list(came.documents) == list(sent.documents)
     where = came.machine.states["guide"].where
     assert came.place(TOUR, where) == sent.place(TOUR, where)
+    assert came.documents[TOUR] is came.documents[TOUR]
 
 
 @pytest.mark.slow

@@ -59,13 +59,16 @@ class DeltaDecoder:
 
 
 class _Documents(Mapping[str, Places]):
-    """What stands where in the files, by file."""
+    """What stands where in the files, by file; a file's is kept once it was asked for, as it is at each step."""
 
     def __init__(self, packed: Mapping[str, bytes]) -> None:
         self._packed = packed
+        self._asked: dict[str, Places] = {}
 
     def __getitem__(self, file: str) -> Places:
-        found: Places = pickle.loads(self._packed[file])
+        found = self._asked.get(file)
+        if found is None:
+            found = self._asked[file] = pickle.loads(self._packed[file])
         return found
 
     def __iter__(self) -> Iterator[str]:
