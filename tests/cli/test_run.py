@@ -13,7 +13,7 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robots.recording import RecordingRobot
-from tests.guarded import PIPE, Guarded
+from tests.guarded import PIPE, Guarded, run_guarded
 from tests.nodes import whole
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
@@ -158,3 +158,9 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
         process.send_signal(signal.SIGINT)
         assert process.wait(30) == 0
     assert "Ended before the story did" in log.read_text()
+
+
+@pytest.mark.slow
+def test_a_robot_without_physics_is_run_without_numpy() -> None:
+    code = "import sys, lumen.cli.run, lumen.robots.recording; sys.exit('numpy' in sys.modules)"
+    assert run_guarded([sys.executable, "-c", code]).returncode == 0
