@@ -35,8 +35,11 @@ from lumen.robots.simulation.mass_model import MassModel  # noqa: E402
 
 MODELS, CACHE = ROOT / "models", ROOT / ".cache" / "search_gait"
 
-SEARCHED = ("double", "single", "forward", "lift", "torso", "lean", "ahead", "inside")
-"""The parameters that are drawn; what the legs and soles forbid stays by rule."""
+SEARCHED = {
+    "usual": ("double", "single", "forward", "lift", "torso", "lean", "ahead", "inside"),
+    "brisk": ("double", "single", "forward", "lift", "ahead", "inside"),
+}
+"""The parameters that are drawn. A brisk walk carries the torso as the usual one: a walk goes from one to the other."""
 
 SPREAD, NARROWS = 0.12, 0.97
 """How far a try is drawn from the best one, as a part of each number, and how that shrinks with each."""
@@ -90,7 +93,7 @@ def search(options: argparse.Namespace) -> Try:
     kept = CACHE / f"{options.model}-{options.pace}-{options.robots}-{options.seconds:g}-{options.seed}.jsonl"
     kept.parent.mkdir(parents=True, exist_ok=True)
     tries = [Try(**json.loads(line)) for line in kept.read_text().splitlines()] if kept.exists() else []
-    numbers = {name: value for name, value in asdict(start).items() if name in SEARCHED}
+    numbers = {name: value for name, value in asdict(start).items() if name in SEARCHED[options.pace]}
     with ProcessPoolExecutor(AT_ONCE) as pool, kept.open("a", encoding="utf-8") as record:
         while len(tries) < options.tries:
             random = np.random.default_rng((options.seed, len(tries)))

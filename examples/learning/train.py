@@ -16,7 +16,7 @@ from linear_policy import SIZE, LinearPolicy, save
 from mujoco import rollout
 from push_task import CONTROL_PERIOD, EPISODE, FALLEN, PHYSICS_PERIOD, PUSH_TIME, environment
 
-from lumen.robots.simulation.observables import SOLE_SENSORS
+from lumen.robots.simulation.observables import sole_sensors
 
 BEGIN = 0.3
 STEPS, EACH = round(EPISODE / CONTROL_PERIOD), round(CONTROL_PERIOD / PHYSICS_PERIOD)
@@ -38,7 +38,7 @@ class Crowd:
         self._order = physics.bind(nao.actuators).element_id
         self._torso = physics.bind(nao.root_body).element_id
         self._gyro = _addresses(self._model, ["nao/gyro"])
-        self._soles = _addresses(self._model, [f"nao/{name}" for name in SOLE_SENSORS])
+        self._soles = _addresses(self._model, [f"nao/{name}" for name in sole_sensors(nao.body)])
         self._state = np.empty(mujoco.mj_stateSize(self._model, WHOLE))
         mujoco.mj_getState(self._model, physics.data.ptr, self._state, WHOLE)
         self._data = [mujoco.MjData(self._model) for _ in range(os.cpu_count() or 1)]

@@ -1,6 +1,7 @@
 """Walking on and on, with legs that do exactly what they are told: the plan alone."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -9,11 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, middle
+from lumen.interpreters.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, fastest_of, middle
 from lumen.interpreters.gait.legs import other, sign
 from lumen.interpreters.gait.velocity import strides
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import JOINTS, LIMIT, START
+from tests.simulation.bodies import shipped
 
 PACE = GaitParameters()
 STEP = PACE.double + PACE.single
@@ -112,3 +114,12 @@ def test_what_is_too_fast_keeps_its_way() -> None:
     assert slow.x / slow.theta == pytest.approx(-0.5)
     assert hypot(slow.x / most.x, slow.theta / most.theta) == pytest.approx(1.0)
     assert Velocity(0.01, 0.0, 0.0).within(PACE) == (0.01, 0.0, 0.0)
+
+
+def test_how_fast_a_body_goes_is_told_by_its_base() -> None:
+    nao = shipped("nao")
+    assert fastest_of(nao, "brisk") == fastest(FOUND.brisk)
+    assert fastest_of(nao, "usual") == fastest(PACE)
+    slower = replace(nao, gait={"usual": {"forward": 0.04}})
+    assert fastest_of(slower, "usual").x == pytest.approx(0.04 / STEP)
+    assert fastest_of(shipped("greeter"), "brisk") == (0.5, 0.0, 1.2)

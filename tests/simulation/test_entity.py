@@ -10,6 +10,7 @@ from dm_control.locomotion.arenas import floors
 from lumen.errors import RobotError
 from lumen.language.robots import Body
 from lumen.robots.simulation.entity import Nao
+from tests.simulation.bodies import shipped
 from tests.simulation.conftest import MODELS
 
 EXAMPLE = MODELS.parent / "examples" / "dm_control" / "nao_in_your_world.py"
@@ -48,3 +49,16 @@ def test_a_world_of_plain_mjcf_holds_it_too(body: Body) -> None:
 def test_a_model_that_is_not_there_is_one_clear_error(body: Body, tmp_path: Path) -> None:
     with pytest.raises(RobotError, match=r"there is no model nao\.xml"):
         Nao(body, tmp_path)
+
+
+def test_another_biped_feels_and_sees_what_it_has_sensors_for() -> None:
+    sprout = Nao(shipped("sprout"), MODELS, name="sprout")
+    assert [body.name for body in sprout.end_effectors] == ["left_forearm", "right_forearm", "left_foot", "right_foot"]
+    assert [geom.name for geom in sprout.ground_contact_geoms] == ["left_sole", "right_sole"]
+    seen = sprout.observables.as_dict(fully_qualified=False)
+    assert "camera_top" in seen
+    assert "camera_bottom" not in seen
+    physics = mjcf.Physics.from_mjcf_model(sprout.mjcf_model)
+    assert sprout.observables.soles(physics).shape == (8,)
+    assert len(sprout.actuators) == 20
+    assert sprout.pose("Stand").xpos[2] == pytest.approx(0.21, abs=0.02)

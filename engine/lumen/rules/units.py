@@ -80,7 +80,7 @@ def _actions(machine: MachineDefinition, report: DocumentReport, body: Body | No
                 for key, joint, value in (("yaw", "HeadYaw", yaw), ("pitch", "HeadPitch", pitch)):
                     _look(report, (*where, "look", key), joint, value, angle, body)
             case Move():
-                _move(report, (*where, "walk"), site.step.action, angle, length)
+                _move(report, (*where, "walk"), site.step.action, angle, length, body)
             case Walk(x, y, theta):
                 if abs(theta) > 2 * pi + 0.01:
                     _turned(report, (*where, "walk", "theta"), theta, angle)
@@ -106,10 +106,12 @@ def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> 
     report(WRONG_UNIT, path, message, hint)
 
 
-def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length: str) -> None:
-    from lumen.interpreters.gait import FOUND, fastest  # takes 0.1 s, with numpy: only where somebody walks on
+def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length: str, body: Body | None) -> None:
+    from lumen.interpreters.gait import fastest_of  # takes 0.1 s, with numpy: only where somebody walks on
 
-    most = fastest(FOUND.brisk)
+    if body is None:
+        return
+    most = fastest_of(body, "brisk")
     for key, value, limit, unit, size in (
         ("vx", move.vx, most.x, length, LENGTHS[length]),
         ("vy", move.vy, most.y, length, LENGTHS[length]),

@@ -8,7 +8,7 @@ from lumen.interpreters.gait.gait import CentreOfMass, Gait, GaitTick
 from lumen.interpreters.gait.legs import SIDES, LegGeometry, Side, SoleSize
 from lumen.interpreters.gait.parameters import FOUND, GaitParameters, Paces, paces_of
 from lumen.interpreters.gait.poses import Pose
-from lumen.interpreters.gait.velocity import Velocity, fastest
+from lumen.interpreters.gait.velocity import Velocity, fastest, fastest_of
 
 __all__ = [
     "FOUND",
@@ -27,6 +27,7 @@ __all__ = [
     "Velocity",
     "corners",
     "fastest",
+    "fastest_of",
     "middle",
     "paces_of",
 ]

@@ -84,13 +84,21 @@ def paces_of(legs: LegGeometry, kept: Mapping[str, Mapping[str, float]] | None =
     What was found for this body in particular is `kept`: parameters by the name of a pace; what the other paces have in
     common with the usual one they keep in common.
     """
-    kept = kept or {}
-    usual = replace(_by_rule(FOUND.usual, legs), **kept.get("usual", {}))
-    paces = {"usual": usual}
+    return _kept(Paces(*(_by_rule(pace, legs) for pace in FOUND)), kept or {})
+
+
+def paces_without_legs(kept: Mapping[str, Mapping[str, float]]) -> Paces:
+    """How a body walks whose legs nobody has measured: as those that paces were found with, but for what is kept."""
+    return _kept(FOUND, kept)
+
+
+def _kept(ruled: Paces, kept: Mapping[str, Mapping[str, float]]) -> Paces:
+    """These paces with what is kept of them."""
+    usual = replace(ruled.usual, **kept.get("usual", {}))
+    paces = {}
     for name, found in FOUND._asdict().items():
-        ruled = _by_rule(found, legs)
         differs = [f.name for f in fields(found) if getattr(found, f.name) != getattr(FOUND.usual, f.name)]
-        own = {field: getattr(ruled, field) for field in differs}
+        own = {field: getattr(getattr(ruled, name), field) for field in differs}
         paces[name] = replace(usual, **{**own, **kept.get(name, {})})
     return Paces(**paces)
 

@@ -1,12 +1,14 @@
 """Where the feet go while the robot walks on: NAOqi's `move`."""
 
 from math import hypot
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from lumen.interpreters.gait.footsteps import Feet, Footstep, beside, clear
 from lumen.interpreters.gait.legs import Side, other, sign
-from lumen.interpreters.gait.parameters import GaitParameters
+from lumen.interpreters.gait.parameters import GaitParameters, paces_without_legs
 from lumen.interpreters.gait.poses import Pose
+from lumen.language.robots import Body
+from lumen.language.roles import BaseKind
 
 
 class Velocity(NamedTuple):
@@ -28,6 +30,15 @@ def fastest(pace: GaitParameters) -> Velocity:
     step = pace.double + pace.single
     aside = min(pace.sideways, (pace.widest - pace.apart) / 2)
     return Velocity(pace.forward / step, aside / step, pace.turn / step)
+
+
+def fastest_of(body: Body, pace: Literal["usual", "brisk"]) -> Velocity:
+    """How fast a body goes at most, as far as its description tells: on wheels as its base does, else at that pace."""
+    base = body.roles.base
+    if base.kind is BaseKind.WHEELS:
+        return Velocity(base.speed, 0.0, base.turn)
+    paces = paces_without_legs(body.gait)
+    return fastest(paces.brisk if pace == "brisk" else paces.usual)
 
 
 def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, count: int) -> list[Footstep]:

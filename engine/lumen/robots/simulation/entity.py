@@ -36,7 +36,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         self._mjcf_root = alone(body, Path(models))
         self._mjcf_root.model = name
         # No sensor of NAO's: dm_control's tasks reward by it.
-        self._mjcf_root.sensor.add("velocimeter", name="velocimeter", site="imu")
+        self._mjcf_root.sensor.add("velocimeter", name="velocimeter", site=self._where_it_feels())
         self._prev_action = np.zeros(self.action_spec.shape)
 
     def _build_observables(self) -> NaoObservables:
@@ -129,6 +129,10 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
             lowest = min(float(physics.bind(site).xpos[2]) for site in soles)
             self._taken[posture] = base.WalkerPose(qpos=qpos, xpos=(0.0, 0.0, -lowest))
         return self._taken[posture]
+
+    def _where_it_feels(self) -> mjcf.Element:
+        """The site of the gyrometer."""
+        return self._mjcf_root.find("sensor", self.body.roles.sensors.gyro).site
 
     def _named(self, kind: str, names: Sequence[str]) -> list[mjcf.Element]:
         return [self._mjcf_root.find(kind, name) for name in names]

@@ -5,24 +5,34 @@ from dm_control import composer, mjcf
 from dm_control.composer.observation import observable
 from dm_control.locomotion.walkers import legacy_base
 
-SOLE_SENSORS = tuple(
-    f"{side}Foot{corner}" for side in "LR" for corner in ("FrontLeft", "FrontRight", "RearLeft", "RearRight")
-)
-"""The force sensors under the soles, four of a foot, as NAOqi has them."""
+from lumen.language.robots import Body
+from lumen.language.roles import SIDES
+
+
+def sole_sensors(body: Body) -> tuple[str, ...]:
+    """The sites of the force sensors under the soles, those of the left one first."""
+    force = body.roles.sensors.force
+    return tuple(name for side in SIDES for name in force.get(side, ()))
 
 
 class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
-    """What a NAO feels and sees, besides what any Walker has: `joints_pos` and `joints_vel` are in NAOqi's order.
+    """What a NAO, or another biped, feels and sees, besides what any Walker has: `joints_pos` and `joints_vel` are in
+    the body's order. What it has no sensor for is left out.
 
     Without noise: `lumen.robots.simulation.imperfections` has what encoders and gyrometer of a real one add, as the
     `corruptor` of an observable.
     """
 
+    def __init__(self, entity: composer.Entity) -> None:
+        super().__init__(entity)
+        has = {"soles": self._soles(), "camera_top": self._cameras()[:1], "camera_bottom": self._cameras()[1:]}
+        for name in [name for name, there in has.items() if not there]:
+            del self._observables[name]
+
     @composer.observable
     def soles(self) -> observable.MJCFFeature:
-        """The force on each of the eight sensors under the soles [N], in the order of `SOLE_SENSORS`."""
-        sensors = [self._entity.mjcf_model.find("sensor", name) for name in SOLE_SENSORS]
-        return observable.MJCFFeature("sensordata", sensors)
+        """The force on each of the sensors under the soles [N], in the order of `sole_sensors`."""
+        return observable.MJCFFeature("sensordata", self._soles())
 
     @composer.observable
     def tilt(self) -> observable.Generic:
@@ -35,19 +45,32 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
         return observable.Generic(angles)
 
     @composer.observable
-    def camera_top(self) -> observable.MJCFCamera:
-        return self._camera("CameraTop")
+    def camera_top(self) -> observable.Observable:
+        """What the robot sees with: uint8 of (height, width, 3)."""
+        return self._camera(0)
 
     @composer.observable
-    def camera_bottom(self) -> observable.MJCFCamera:
-        return self._camera("CameraBottom")
+    def camera_bottom(self) -> observable.Observable:
+        """The other camera, where the model has one."""
+        return self._camera(1)
 
     @property
     def dynamic_sensors(self) -> list[observable.Observable]:
-        """Forces: NAO has those under its soles only."""
-        return [self.soles, *self._collect_from_attachments("dynamic_sensors")]
+        """Forces: those under its soles."""
+        own = [self.soles] if "soles" in self._observables else []
+        return [*own, *self._collect_from_attachments("dynamic_sensors")]
 
-    def _camera(self, name: str) -> observable.MJCFCamera:
-        """An image as the robot's own, uint8 of (height, width, 3)."""
-        seen, camera = self._entity.body.camera, self._entity.mjcf_model.find("camera", name)
-        return observable.MJCFCamera(camera, height=seen.height, width=seen.width)
+    def _soles(self) -> list[mjcf.Element]:
+        touch = {s.site.name: s for s in self._entity.mjcf_model.find_all("sensor") if s.tag == "touch"}
+        return [touch[name] for name in sole_sensors(self._entity.body) if name in touch]
+
+    def _cameras(self) -> list[mjcf.Element]:
+        """Those of the model, the one that the robot sees with first."""
+        eye = self._entity.body.roles.eyes.camera
+        return sorted(self._entity.mjcf_model.find_all("camera"), key=lambda camera: camera.name != eye)
+
+    def _camera(self, which: int) -> observable.Observable:
+        seen, cameras = self._entity.body.camera, self._cameras()
+        if seen is None or len(cameras) <= which:
+            return observable.Generic(lambda physics: np.zeros((0, 0, 3), np.uint8))
+        return observable.MJCFCamera(cameras[which], height=seen.height, width=seen.width)
