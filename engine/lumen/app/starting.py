@@ -17,6 +17,8 @@ EXAMPLES = "examples"
 CHECKOUT = "actions/checkout@11bd71901bbe5b1630ceea73d27597364c9af683  # v4.2.2"
 _SCHEMA = re.compile(r"(?m)^(# yaml-language-server: \$schema=)\S*?([\w.]+\.schema\.json)$")
 
+_ROBOT = re.compile(r"(?m)^(robot: \{name: )\S+(, model: )\w+(\}).*$")
+
 IGNORED = """\
 # Where a run keeps what it needs after a crash, and names of visitors: nobody else's.
 .lumen/
@@ -69,10 +71,11 @@ jobs:
 """
 
 
-def start_project(folder: Path, like: str, action: str) -> None:
+def start_project(folder: Path, like: str, action: str, robot: str = "") -> None:
     """Put a copy of a starter there, with a README, what git ignores, and a workflow that uses `action`.
 
-    Raises OSError where that can't be written.
+    `robot` is the body that performs it, one of `shipped_models`; the starter's own where it is empty. Raises OSError
+    where that can't be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     shipped = shipped_root()
@@ -86,6 +89,8 @@ def start_project(folder: Path, like: str, action: str) -> None:
         (folder / "schemas").mkdir(exist_ok=True)
         for schema in (shipped / "schemas").glob("*.schema.json"):
             shutil.copy(schema, folder / "schemas")
+    if robot:
+        _perform_with(folder, robot)
     for file in folder.rglob("*.yaml"):
         _lead_to_schemas(file, folder)
     (folder / ".gitignore").write_text(IGNORED, "utf-8")
@@ -93,6 +98,15 @@ def start_project(folder: Path, like: str, action: str) -> None:
     workflows = folder / ".github" / "workflows"
     workflows.mkdir(parents=True)
     (workflows / "exhibition.yml").write_text(WORKFLOW.format(action=action, checkout=CHECKOUT), "utf-8")
+
+
+def _perform_with(folder: Path, robot: str) -> None:
+    """Let that body perform, with the motions of its own that come with Lumen."""
+    main = folder / MAIN_FILE
+    main.write_text(_ROBOT.sub(rf"\g<1>{robot.capitalize()}\g<2>{robot}\g<3>", main.read_text("utf-8")), "utf-8")
+    own = shipped_root() / "motions" / robot
+    if own.is_dir():
+        shutil.copytree(own, folder / "motions" / robot, dirs_exist_ok=True)
 
 
 def _lead_to_schemas(file: Path, folder: Path) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
+from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
@@ -33,6 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
     add("--watch", action="store_true", help="lint again whenever a file is saved, until Ctrl-C")
     add("--whole", action="store_true", help="of files that are named, judge their whole projects")
+    configure_model(parser)
     add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")
 
 
@@ -41,6 +43,7 @@ def run(options: argparse.Namespace) -> int:
     wanted = _wanted(options)
     _consistent(options)
     projects = lint_targets(options.paths, options.stdin_filename, whole=options.whole)
+    use_model(options.model, (each.root for each in projects))
     judge = _judge(options.against, wanted)
     if options.watch:
         from lumen.cli.watching import watch

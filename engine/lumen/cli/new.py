@@ -6,6 +6,8 @@ from pathlib import Path
 from lumen.app.starting import STARTERS, start_project
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.loading.lending import shipped_models
 from lumen.loading.project import main_settings
 
 ACTION = "OWNER/lumen@COMMIT"
@@ -23,6 +25,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--minimal", dest="like", action="store_const", const="minimal", help="the same as --like minimal"
     )
     parser.add_argument(
+        "--robot", metavar="NAME", default="", help=f"whose body performs it: {', '.join(shipped_models())}"
+    )
+    parser.add_argument(
         "--action",
         metavar=ACTION,
         default=ACTION,
@@ -36,7 +41,10 @@ def run(options: argparse.Namespace) -> int:
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise UsageError(f"{folder} is there already and not empty: name a new folder")
-        start_project(folder, options.like, options.action)
+        if options.robot and options.robot not in shipped_models():
+            hint = did_you_mean(options.robot, shipped_models(), "there are")
+            raise UsageError(f"no robot `{options.robot}` comes with Lumen: {hint}")
+        start_project(folder, options.like, options.action, options.robot)
     except OSError as error:
         raise UsageError(f"can't write {error.filename or folder}: {error.strerror}") from None
     settings = main_settings(folder)

@@ -9,6 +9,7 @@ from lumen.app.setup import SPEEDS, set_up
 from lumen.cli.film_options import configure_size, film_path, film_size
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
+from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import ProgressListener, progress
 from lumen.cli.projects import shown_project
 from lumen.errors import ProjectError, UsageError
@@ -39,6 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--retime", action="store_true", help="give a .motion, .xar or .py the time that its joints need"
     )
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    configure_model(parser)
     parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
     configure_size(parser)
@@ -46,7 +48,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    found = motion_parts(read_files(root := shown_project(options.project)))
+    root = shown_project(options.project)
+    use_model(options.model, [root])
+    found = motion_parts(read_files(root))
     motion = _motion(found, options.motion, options)
     if found.settings is None or found.body is None:
         raise ProjectError(found.diagnostics)

@@ -29,6 +29,7 @@ from lumen.buses.validated import validated
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.main import ready
+from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, WELL, RunVerdict
@@ -60,6 +61,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
     add("--story", metavar="STORY", help="a scripted visitor of behaviors/stories/; without one, you type what you say")
+    configure_model(parser)
     add("--robot", choices=ROBOTS, default="simulation", help="who performs it (default: simulation)")
     add(
         "--only",
@@ -86,6 +88,7 @@ def run(options: argparse.Namespace) -> int:
     give_back()
     named = () if options.story is None else (options.story,)
     root = find_project(options.project or home_of(named))
+    use_model(options.model, [root])
     parts = parts_of(options.only, options.robot)
     run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
     told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, complain)

@@ -10,6 +10,7 @@ import lumen
 from lumen.app.exploring import Explored, explored
 from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.app.stories import home_of, stories_of
+from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
 from lumen.cli.verdict import Verdict
@@ -33,6 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="its folder, then stories: names, files or 'safety_*'; default: all",
     )
     add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
+    configure_model(parser)
     add("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
     add("-x", "--exitfirst", action="store_true", help="stop at the first story that fails")
     add("-v", "--verbose", action="store_true", help="tell what happened in every story, from its beginning")
@@ -54,7 +56,9 @@ def run(options: argparse.Namespace) -> int:
     """0 where all is well, 1 where a story failed or something was found."""
     folder, names = _words(options.words)
     _check(options)
-    project = lumen.load(own_project(folder))
+    root = own_project(folder)
+    use_model(options.model, [root])
+    project = lumen.load(root)
     began = time.perf_counter()
     live = options.format == "text" and options.output is None
     rehearsals: list[Rehearsal] = []

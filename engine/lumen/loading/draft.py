@@ -27,8 +27,9 @@ class ProjectDraft:
     `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
     of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
-    and stand where the project has none. `settings` is None where lumen.yaml
-    could not be read at all. `root` is the project's folder, for what is needed of files that are not read.
+    and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
+    `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
+    files that are not read.
     """
 
     files: Mapping[str, bytes]
@@ -49,6 +50,7 @@ class ProjectDraft:
     missing: set[str] = field(default_factory=set)
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
     root: Path | None = None
+    own_motions: frozenset[str] = frozenset()
 
     @property
     def main(self) -> DocumentReport | None:
@@ -67,7 +69,9 @@ class ProjectDraft:
         return gathered([*found, *self.loose])
 
     def report(self, folder: str, name: str) -> DocumentReport:
-        """The report of `FOLDER/NAME.yaml`."""
+        """The report of `FOLDER/NAME.yaml`; of a motion, of the file that holds it for this robot."""
+        if folder == "motions" and name in self.own_motions and self.settings:
+            folder = f"motions/{self.settings.model}"
         return self.reports[f"{folder}/{name}.yaml"]
 
     def say(self, code: Code, file: str, message: str, hint: str) -> None:

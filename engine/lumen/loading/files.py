@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
+from lumen.loading.chosen_model import choice
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.regular_files import MEGABYTE, read_regular
 
@@ -52,6 +53,17 @@ FOLDERS = frozenset((*PROJECT_FOLDERS, *_READ))
 """The folders in which files that count may lie, or that hold such a folder."""
 
 
+_MOTIONS = "motions"
+
+
+def endings_in(folder: str) -> tuple[str, ...]:
+    """How the names of files end that count in a folder of the project; a folder in motions/ may be any robot's own."""
+    above, _, name = folder.partition("/")
+    if folder not in _READ and above == _MOTIONS and name and not {"/", "."} & set(name):
+        return _READ[_MOTIONS]
+    return _READ.get(folder, ())
+
+
 class Unreadable(bytes):
     """Stands in place of the content of a file that can't be read; its text is the reason, in words."""
 
@@ -64,7 +76,8 @@ def read_files(root: Path) -> dict[str, bytes]:
     """
     read = _Reader(root)
     found = {MAIN_FILE: content} if (content := read.file(MAIN_FILE)) is not None else {}
-    for folder, endings in _READ.items():
+    for folder in dict.fromkeys((*_READ, *_robots_own(root))):
+        endings = endings_in(folder)
         if outside := next((each for each in _within(folder) if read.leads_out(each)), None):
             if folder not in MISTAKEN_FOLDERS:
                 found[outside] = Unreadable(LEADS_OUT)
@@ -73,7 +86,7 @@ def read_files(root: Path) -> dict[str, bytes]:
             content = read.file(f"{folder}/{name}")
             if content is not None:
                 found[f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"] = content
-    return dict(sorted(found.items()))
+    return dict(sorted({**found, **choice()}.items()))
 
 
 def read_main_file(root: Path) -> bytes:
@@ -84,13 +97,13 @@ def read_main_file(root: Path) -> bytes:
 def belongs(path: str) -> bool:
     """Whether a file of that path from the project's root counts."""
     folder, _, name = path.rpartition("/")
-    return path == MAIN_FILE or (not name.startswith(".") and name.endswith(_READ.get(folder, ())))
+    return path == MAIN_FILE or (not name.startswith(".") and name.endswith(endings_in(folder)))
 
 
 def counts(file: str) -> bool:
     """Whether a file of that path, from the project's root, is one that is read."""
     folder, _, name = file.rpartition("/")
-    return file == MAIN_FILE or (name.endswith(_READ.get(folder, ())) and not name.startswith("."))
+    return file == MAIN_FILE or (name.endswith(endings_in(folder)) and not name.startswith("."))
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:
@@ -99,6 +112,16 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
     for path, content in sorted(files.items()):
         digest.update(f"{len(path)} {path} {len(content)} ".encode("utf-8", "surrogatepass") + content)
     return digest.hexdigest()
+
+
+def _robots_own(root: Path) -> list[str]:
+    """The folders in motions/: each holds the motions of one robot, but `life` and `gestures`."""
+    try:
+        listed = sorted(os.listdir(root / _MOTIONS))
+    except OSError:
+        return []
+    names = [name for name in listed if "." not in name and os.path.isdir(root / _MOTIONS / name)]
+    return [f"{_MOTIONS}/{os.fsencode(name).decode('utf-8', 'replace')}" for name in names][:MAX_FOLDER_FILES]
 
 
 def _within(folder: str) -> Iterator[str]:

@@ -46,6 +46,15 @@ def model_files(project: Project) -> tuple[Path, str]:
     return robot, project.hall if hall == robot else str(hall.absolute() / project.hall)
 
 
+def shipped_models() -> tuple[str, ...]:
+    """The names of the bodies that come with Lumen."""
+    return tuple(
+        Path(file).stem
+        for file in shipped()
+        if file.startswith(f"{MODELS}/") and file.endswith(".yaml") and not file.startswith(f"{PASSAGES}/")
+    )
+
+
 @cache
 def shipped() -> Mapping[str, Path]:
     """All files that may be lent: what a project writes leads to no other."""

@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from lumen.interpreters.controllers_by_role import by_role
-from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -15,16 +15,18 @@ from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
+from lumen.loading.chosen_model import chosen
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
+from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, Unreadable, endings_in, fingerprint, read_main_file
 from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
-from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend
+from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend, shipped_models
 from lumen.loading.life import LIFE_FOLDER, build_life
 from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.passages import belongs_to
 from lumen.loading.settings import Settings, build_settings, other_vocabulary
 from lumen.loading.stories import build_story
 from lumen.loading.words import WORDS_FOLDER, build_words
@@ -35,6 +37,8 @@ UNREADABLE_FILE = Code("unreadable-file", "text", ERROR, "a file can't be opened
 
 
 T = TypeVar("T")
+
+MOTIONS = "motions"
 
 _KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
@@ -58,7 +62,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
         if main.built and (other := other_vocabulary(main.built, main.report)):
             return ProjectDraft(files, loose=[other])
-        found.settings = main.built
+        found.settings = main.built and replace(main.built, model=chosen(files, main.built.model))
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     if found.settings:
         found.lent = lend(files, found.settings, [*_wanted(found.settings, models)])
@@ -72,7 +76,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     if body := found.body:
         found.controllers = {name: by_role(each, body) for name, each in found.controllers.items()}
     passages = _motions(found, PASSAGES)
-    found.motions = _motions(found, "motions")
+    found.motions = _motions(found, MOTIONS)
     _accompany(found)
     found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
     _messages(found)
@@ -173,7 +177,7 @@ def _each(
             found.say(NOT_READ, file, "files that end in .yml are not read", hint)
             continue
         names.add(path.stem)
-        if (each := _read(found, file, content, _KINDS[folder], build, around)) is not None:
+        if (each := _read(found, file, content, _KINDS.get(folder, "motion"), build, around)) is not None:
             read[path.stem] = each
     found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
@@ -187,7 +191,7 @@ def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
 def _folders(found: ProjectDraft) -> None:
     """Report folders of which nothing may be read; what is missing for that is not told."""
     for name, content in found.files.items():
-        if isinstance(content, Unreadable) and name in FOLDERS:
+        if isinstance(content, Unreadable) and (name in FOLDERS or endings_in(name)):
             hint = "put a folder of the project in its place: what lies elsewhere is not read"
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
             found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
@@ -216,16 +220,36 @@ def _read(
 
 def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
     """The motions of a folder, which can be read only where the robot's body is known."""
-    files: Mapping[str, BuiltFile[None]] = _each(
-        found, folder, lambda data, report, name: None, {**found.files, **found.lent}
-    )
+    read = partial(_each, found, build=lambda data, report, name: None, files={**found.files, **found.lent})
+    files: dict[str, BuiltFile[None]] = read(folder)
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
     model = found.settings.model if found.settings else only
+    if folder == MOTIONS:
+        _strangers(found)
+        own: dict[str, BuiltFile[None]] = read(f"{MOTIONS}/{model}") if model else {}
+        files |= own
+        found.own_motions = frozenset(own)
+        found.names[MOTIONS] = found.names[MOTIONS] | own.keys()
     if model not in found.bodies:
         return {}
+    body = found.bodies[model]
+    if folder == PASSAGES:
+        files = {name: file for name, file in files.items() if belongs_to(file.data, body)}
     for file in files.values():
-        file.report.lost |= found.report("models", model).lost
-    return build_motions({name: (file.data, file.report) for name, file in files.items()}, found.bodies[model])
+        file.report.lost |= found.report(MODELS, model).lost
+    return build_motions({name: (file.data, file.report) for name, file in files.items()}, body)
+
+
+def _strangers(found: ProjectDraft) -> None:
+    """Report folders in motions/ that are called like no robot's body: nobody plays what is in them."""
+    known = {*found.names[MODELS], *shipped_models()}
+    inside = {PurePosixPath(file).parent for file in found.files}
+    folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
+    for folder, name in folders.items():
+        if folder not in _KINDS and name not in known:
+            hint = f"{did_you_mean(name, known, 'there are')} as a folder for the motions of one robot"
+            first = min(file for file in found.files if file.startswith(f"{folder}/"))
+            found.say(NOT_READ, first, f"files in {folder}/ are not read: there is no model `{name}`", hint)
 
 
 def _accompany(found: ProjectDraft) -> None:

@@ -174,7 +174,8 @@ def kind_of(file: str) -> str:
     if file == MAIN_FILE:
         return "lumen"
     path = PurePosixPath(file)
-    return FOLDER_KINDS.get(str(path.parent), "") if path.suffix in (".yaml", ".json") else ""
+    robots_own = "motion" if str(path.parent.parent) == "motions" else ""
+    return FOLDER_KINDS.get(str(path.parent), robots_own) if path.suffix in (".yaml", ".json") else ""
 
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)

@@ -220,7 +220,8 @@ def _folders(root: Path) -> dict[Path, tuple[int, int]]:
 
     Where the project's folder is a link, the one that the link is in counts too.
     """
-    wanted = [root, *(root / name for name in (*PROJECT_FOLDERS, *NESTED_FOLDERS))]
+    robots = sorted((root / "motions").glob("*/"))
+    wanted = [root, *(root / name for name in (*PROJECT_FOLDERS, *NESTED_FOLDERS)), *robots]
     if root.is_symlink():
         wanted.append(root.absolute().parent)
     found = {}
