@@ -7,8 +7,6 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from math import inf
 
 from lumen.interpreters.life import (
-    HEAD_PITCH,
-    HEAD_YAW,
     SPEED_SHARE,
     Attention,
     aside,
@@ -24,6 +22,7 @@ from lumen.language.commands import Say
 from lumen.language.gestures import WordTime
 from lumen.language.life import STILL_STYLE, LifeStyle
 from lumen.language.robots import Body
+from lumen.language.roles import HEAD_ROLES
 from lumen.ports import Live
 from lumen.robots.body_parts import ARMS, HEAD, LEGS, part_of
 from lumen.robots.gesture_player import GesturePlayer
@@ -55,7 +54,7 @@ class LifeLayer:
 
     def __init__(self, body: Body, seed: int = 0) -> None:
         self.style: LifeStyle = STILL_STYLE
-        self._seed, self._part = seed, part_of(body)
+        self._seed, self._part, self._turns = seed, part_of(body), body.roles.head
         self._speeds = {joint.name: SPEED_SHARE * joint.speed for joint in body.joints.values()}
         self._attention: Attention | None = None
         self._led_at = -LED_FOR
@@ -99,7 +98,7 @@ class LifeLayer:
 
     def led(self, joints: Collection[str], now: float) -> None:
         """Somebody aims these joints: of the head they have it for a while."""
-        if HEAD_YAW in joints or HEAD_PITCH in joints:
+        if any(turn.joint in joints for turn in self._turns.values()):
             self._led_at = now
 
     def leading(self, now: float) -> bool:
@@ -139,9 +138,9 @@ class LifeLayer:
         for joint, angle in self._settled(now):
             found[joint] = found.get(joint, 0.0) + angle
         if HEAD in alive:
-            for joint, angle in zip((HEAD_YAW, HEAD_PITCH), self._head(now), strict=True):
-                if joint in self._part:
-                    found[joint] = found.get(joint, 0.0) + angle
+            for role, angle in zip(HEAD_ROLES, self._head(now), strict=True):
+                if turn := self._turns.get(role):
+                    found[turn.joint] = found.get(turn.joint, 0.0) + turn.sign * angle
         levels = {part: vigour(part) for part in (HEAD, ARMS, LEGS) if part in alive}
         return {joint: angle * levels[self._part[joint]] for joint, angle in found.items()}
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW, PEAK_SLOPE, SETTLE_SLOPE, SPEED_SHARE
+from lumen.interpreters.life import PEAK_SLOPE, SETTLE_SLOPE, SPEED_SHARE
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.life import STILL, LifeStyle, Settles, Sway
 from lumen.language.robots import Body
@@ -53,13 +53,13 @@ class _Judge:
         if settles := self._style.settles:
             yield from self._settles(settles)
         if asides := self._style.asides:
-            yield from self._head(HEAD_YAW, asides.yaw, ("asides", "yaw"))
-            yield from self._head(HEAD_PITCH, asides.pitch, ("asides", "pitch"))
+            yield from self._head("yaw", asides.yaw, ("asides", "yaw"))
+            yield from self._head("pitch", asides.pitch, ("asides", "pitch"))
         if glances := self._style.glances:
-            yield from self._head(HEAD_YAW, glances.yaw, ("glances", "yaw"))
-            yield from self._head(HEAD_PITCH, glances.pitch, ("glances", "pitch"))
+            yield from self._head("yaw", glances.yaw, ("glances", "yaw"))
+            yield from self._head("pitch", glances.pitch, ("glances", "pitch"))
         if nods := self._style.nods:
-            yield from self._head(HEAD_PITCH, nods.pitch, ("nods", "pitch"))
+            yield from self._head("pitch", nods.pitch, ("nods", "pitch"))
 
     def _sway(self, sway: Sway, joint: str) -> Iterator[_Fault]:
         path = (*sway.where, "joints", joint)
@@ -89,9 +89,9 @@ class _Judge:
             else:
                 yield from self._reach(joint, self._style.amplitudes[joint], path)
 
-    def _head(self, joint: str, angle: float, path: NodePath) -> Iterator[_Fault]:
-        if joint in self._body.joints:
-            yield from self._reach(joint, angle + self._style.amplitudes.get(joint, 0.0), path)
+    def _head(self, role: str, angle: float, path: NodePath) -> Iterator[_Fault]:
+        if turn := self._body.roles.head.get(role):
+            yield from self._reach(turn.joint, angle + self._style.amplitudes.get(turn.joint, 0.0), path)
 
     def _reach(self, joint: str, angle: float, path: NodePath) -> Iterator[_Fault]:
         """Whether it can go so far to either side of where it stands."""

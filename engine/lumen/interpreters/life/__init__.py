@@ -1,13 +1,13 @@
 """What a robot does of its own accord: pure functions of a style, a seed and the time."""
 
 from lumen.interpreters.life.blinking import eyes_closed
-from lumen.interpreters.life.looking import HEAD_PITCH, HEAD_YAW, Attention, aside, glance, look_towards, nod
+from lumen.interpreters.life.looking import Attention, aside, glance, look_towards, nod
 from lumen.interpreters.life.mood import gestures_wanted, style_name
 from lumen.interpreters.life.settling import SETTLE_SLOPE, settle
 from lumen.interpreters.life.swaying import PEAK_SLOPE, SPEED_SHARE, sway
 from lumen.interpreters.life.vigour import vigour
 
 __all__ = [
-    "HEAD_PITCH", "HEAD_YAW", "PEAK_SLOPE", "SETTLE_SLOPE", "SPEED_SHARE", "Attention", "aside",
+    "PEAK_SLOPE", "SETTLE_SLOPE", "SPEED_SHARE", "Attention", "aside",
     "eyes_closed", "gestures_wanted", "glance", "look_towards", "nod", "settle", "style_name", "sway", "vigour",
 ]  # fmt: skip

@@ -5,8 +5,6 @@ from typing import NamedTuple
 from lumen.interpreters.life.chance import chance, moments
 from lumen.language.life import Asides, Glances, Nods
 
-HEAD_YAW, HEAD_PITCH = "HeadYaw", "HeadPitch"
-
 TURN_TIME = 0.5
 """How long the head takes to where it glances, and back [s]."""
 

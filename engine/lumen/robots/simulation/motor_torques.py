@@ -6,6 +6,9 @@ from numpy.typing import NDArray
 from lumen.robots.simulation.imperfections import NOMINAL_VOLTAGE
 from lumen.robots.simulation.world import World
 
+_WITHOUT_BOUND = 1e9
+"""The stall torque [N m] of a motor that names none; infinity times a speed of 0 would be no number."""
+
 
 class MotorTorques:
     """The lines from stall torque to no-load speed of all motors.
@@ -18,7 +21,7 @@ class MotorTorques:
         self._world, self._fastest = world, fastest
         given = world.model.actuator_user[world.actuators]
         stall = given[:, 0] if given.shape[1] else np.zeros(len(fastest))
-        self._stall = np.where(stall > 0.0, stall, np.inf)
+        self._stall = np.where(stall > 0.0, stall, _WITHOUT_BOUND)
 
     def limit(self, allowed: NDArray[np.float64], volts: float) -> NDArray[np.float64]:
         """Least and greatest torque [N m], Shape (motors, 2): those `allowed`, or what `volts` give at this speed."""

@@ -9,7 +9,7 @@ from typing import assert_never
 import numpy as np
 
 from lumen.errors import RobotError, RobotRefusedError, UsageError
-from lumen.interpreters.life import HEAD_PITCH, HEAD_YAW, vigour
+from lumen.interpreters.life import vigour
 from lumen.interpreters.projection import centring
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
@@ -17,7 +17,7 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.language.roles import BaseKind
+from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
@@ -237,9 +237,10 @@ class SimulatedRobot:
         if face is not None and self.body.camera:
             torso = self.world.data.body(f"{ROBOT_PREFIX}/{self.body.roles.torso}")
             x, y, z = (torso.xmat.reshape(3, 3).T @ (np.array(face) - torso.xpos)).tolist()
-            yaw, pitch = centring((x, y, z), self.body.camera)
-            head = self.motors.wanted((HEAD_YAW, HEAD_PITCH))
-            self._life.heard(yaw - head[HEAD_YAW], pitch - head[HEAD_PITCH], self.time)
+            away = dict(zip(HEAD_ROLES, centring((x, y, z), self.body.camera), strict=True))
+            for role, turn in self.body.roles.head.items():
+                away[role] -= turn.sign * self.motors.wanted((turn.joint,))[turn.joint]
+            self._life.heard(away["yaw"], away["pitch"], self.time)
 
     def plug(self, plugged: bool) -> None:
         self.condition.plugged = plugged
