@@ -1,0 +1,97 @@
+"""Makes bodies.png: the bodies beside NAO that come with Lumen, each a moment into a motion, at honest physics.
+
+    python docs/pictures/bodies.py [--sheets FOLDER]
+
+`--sheets` draws six moments of each motion of each body there, to look at while one works on them.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from PIL import Image
+
+import lumen
+from lumen.language.projects import Project
+from lumen.loading.chosen_model import choose
+from lumen.loading.lending import model_files
+from lumen.ports import Perform
+from lumen.robots.simulation import SimulatedRobot, available
+from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+SHOWN = {
+    "greeter": ("goodbye", 2.0, 0.62, 2.7),
+    "sprout": ("dance", 8.0, 0.2, 0.95),
+    "lantern": ("goodbye", 0.9, 0.18, 0.85),
+}
+"""Of each body: a motion, how far into it [s], how high its middle is, and from how far one looks [m]."""
+FLOOR, AROUND, DOWN = 0.5, 24.0, -8.0
+SIZE = 420, 520
+MOMENTS = 6
+
+
+def robot_of(name: str) -> tuple[Project, SimulatedRobot]:
+    choose(name)
+    project = lumen.load(ROOT)
+    models, hall = model_files(project)
+    return project, SimulatedRobot(project.body, models, hall, stage=project.stage)
+
+
+def shot(robot: SimulatedRobot, middle: float, away: float, size: tuple[int, int] = SIZE) -> Image.Image:
+    """The robot as it stands now, in its hall."""
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    camera.lookat[:] = 0.0, 0.0, FLOOR + middle
+    camera.distance, camera.azimuth, camera.elevation = away, 180.0 + AROUND, DOWN
+    studio = SceneRenderer(robot.world.model, RenderQuality(shadows=4096, samples=4))
+    pixels = studio.draw(RenderState.of(robot.world.model, robot.world.data), camera, *size)
+    studio.close()
+    return Image.fromarray(pixels)
+
+
+def moments(name: str, motion: str, at: list[float]) -> list[Image.Image]:
+    """The body at these times [s] of a motion."""
+    project, robot = robot_of(name)
+    robot.advance(0.5)
+    robot.start("c", Perform(project.motions[motion]))
+    shots, before = [], 0.0
+    for time in at:
+        robot.advance(time - before)
+        shots.append(shot(robot, *SHOWN[name][2:]))
+        before = time
+    robot.close()
+    return shots
+
+
+def row(shots: list[Image.Image]) -> Image.Image:
+    width, height = shots[0].size
+    whole = Image.new("RGB", (width * len(shots), height))
+    for i, one in enumerate(shots):
+        whole.paste(one, (width * i, 0))
+    return whole
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sheets", metavar="FOLDER", type=Path)
+    sheets = parser.parse_args().sheets
+    if reason := available():
+        sys.exit(reason)
+    if sheets is None:
+        shots = [moments(name, motion, [at])[0] for name, (motion, at, *_) in SHOWN.items()]
+        row(shots).save(HERE / "bodies.png", optimize=True)
+        return
+    for name in SHOWN:
+        choose(name)
+        for motion, course in lumen.load(ROOT).motions.items():
+            at = np.linspace(0.6, course.duration - 0.2, MOMENTS).tolist()
+            row(moments(name, motion, at)).resize((1260, 260)).save(sheets / f"{name}_{motion}.png")
+            print(f"{name} {motion}: done")
+
+
+if __name__ == "__main__":
+    main()
