@@ -1,5 +1,6 @@
 """Another biped than NAO walks: Sprout, 0.40 m tall, with classic hips and soles of other proportions."""
 
+from dataclasses import replace
 from math import pi
 
 import pytest
@@ -77,3 +78,15 @@ def test_its_soles_weigh_it() -> None:
     mass = robot.world.model.body_subtreemass[robot.world.torso]
     assert joints.fsr["LFoot/FSR/TotalWeight"] + joints.fsr["RFoot/FSR/TotalWeight"] == pytest.approx(mass, rel=0.1)
     assert joints.fsr["LFoot/FSR/FrontLeft"] > 0.0
+
+
+@pytest.mark.slow
+def test_what_a_search_found_makes_it_faster_than_the_rule() -> None:
+    ways = []
+    for body in (shipped("sprout"), replace(shipped("sprout"), gait={})):
+        robot = any_robot(body, 5)
+        robot.start("go", Move(1.0, 0.0, 0.0))
+        robot.advance(5.0)
+        assert not robot.fallen
+        ways.append(truth(robot).x)
+    assert ways[0] > 1.2 * ways[1]
