@@ -7,7 +7,7 @@ from lumen.language.lights import LIGHT_GROUPS
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
-from lumen.language.robots import Body, Camera, Joint
+from lumen.language.robots import Body, Camera, Joint, Ultrasound
 from lumen.language.roles import Base, BaseKind, JointRole, Roles
 from lumen.language.routes import Direction, Route
 
@@ -38,6 +38,7 @@ BODY = Body(
     camera=Camera(320, 240, 1.06, 0.83, (0.0, 0.0, 0.0), 0.0),
     tactile=TACTILE,
     hands=("RHand",),
+    sonar=Ultrasound(0.01, 3.0, 1.05),
     roles=Roles(
         head={"yaw": JointRole("HeadYaw"), "pitch": JointRole("HeadPitch")},
         base=Base(BaseKind.BIPED),

@@ -71,7 +71,7 @@ CASES = [
     ("resolution: 1000", "resolution: 1", "wrong-value", "1", "points"),
     ("FaceXLoc: face.x", "FaceXLok: face.x", "unknown-variable", "FaceXLok", "did you mean `FaceXLoc`?"),
     ("    FaceXLoc: face.x\n", "", "unbound-input", "FaceXLoc", "route.field"),
-    ("    AngleX: {joint: head.yaw, gain: 1.5, limits: [-60, 60]}\n", "", "unbound-output", "AngleX", "HeadYaw"),
+    ("    AngleX: {joint: head.yaw, gain: 1.5, limits: [-60, 60]}\n", "", "unbound-output", "AngleX", "head.yaw"),
     ("limits: [-60, 60]", "limits: [60, -60]", "empty-range", "[60, -60]", "greater"),
     ("search: 8s", "search: 8", "wrong-type", "8", ""),
     ("      Zero: {gaussian: [160, 50]}", "      very: {gaussian: [160, 50]}", "reserved-name", "very", "another name"),

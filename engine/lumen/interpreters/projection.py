@@ -12,7 +12,7 @@ Vector3 = tuple[float, float, float]
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 
 NECK: Vector3 = (0.0, 0.0, 0.1265)
-"""NAO's neck, where HeadYaw and HeadPitch meet, in the torso frame [m]."""
+"""Where the head's two axes meet, in the torso frame [m]: NAO's, and about that of a robot of its size."""
 
 
 def project(point: Vector3, camera: Camera) -> tuple[float, float] | None:

@@ -110,6 +110,23 @@ class Roles:
         """The joint of a role such as `head.yaw`, None where this body lacks it."""
         return self.paths.get(path)
 
+    def path(self, joint: str) -> str:
+        """The role of the joint of that name, empty where it has none."""
+        return next((path for path, role in self.paths.items() if role.joint == joint), "")
+
+    def head_joints(self, yaw: float, pitch: float) -> dict[str, float]:
+        """Angles of the joints that turn the head [rad], as many as this body has."""
+        wanted = ((self.joint(HEAD_YAW), yaw), (self.joint(HEAD_PITCH), pitch))
+        return {role.joint: role.sign * angle for role, angle in wanted if role}
+
+    def head_angles(self, angles: Mapping[str, float]) -> tuple[float, float]:
+        """Yaw and pitch of the head [rad] where joints stand at these angles; 0 where it does not turn that way."""
+        yaw, pitch = (self.joint(path) for path in (HEAD_YAW, HEAD_PITCH))
+        return (
+            yaw.sign * angles.get(yaw.joint, 0.0) if yaw else 0.0,
+            pitch.sign * angles.get(pitch.joint, 0.0) if pitch else 0.0,
+        )
+
     def name(self, path: str) -> str:
         """The name of that joint, empty where this body lacks it."""
         role = self.paths.get(path)

@@ -50,7 +50,7 @@ class Bindings:
 
     def outputs(self) -> Iterator[OutputBinding]:
         """Each output that moves a joint."""
-        message, hint = "does nothing", "{joint: HeadYaw, gain: 1.5}"
+        message, hint = "does nothing", "{joint: head.yaw, gain: 1.5}"
         self.all_bound("outputs", self.targets, UNBOUND_OUTPUT, message, hint)
         for name, spec in self.targets.items():
             if self.known("outputs", name) and name in self.usable and isinstance(spec, Mapping) and "joint" in spec:

@@ -65,7 +65,7 @@ class CommandParameters:
         return {n: number(v, f"the angle of `{n}`") for n, v in zip(joints, values, strict=True)}
 
     def joint(self, name: object) -> str:
-        """The joint that is meant: `"LHipPitch "` and `LAngklePitch` were how they were spelt."""
+        """The joint that is meant: with a blank behind it, and with `Angkle`, is how they were spelt."""
         meant = str(name).strip().replace("Angkle", "Ankle")
         if meant not in self.project.body.joints:
             hint = did_you_mean(shown(meant), self.project.body.joints)

@@ -22,7 +22,7 @@ from lumen.robots.life_layer import LifeLayer
 from lumen.robots.silent_recording import SilentRecording
 
 TORSO_HEIGHT = 0.333
-"""Where a standing NAO's torso is above its soles [m]."""
+"""Where the torso of a standing robot is above the floor [m]: NAO's; this robot has no model to ask."""
 
 PODIUM_HEIGHT = 0.5
 """What the robot stands on [m]."""
@@ -137,9 +137,13 @@ class RecordingRobot:
                 angles = tuple(self._angles.get(name, 0.0) + offsets.get(name, 0.0) for name in names)
                 where = self._reckoning.whereabouts
                 return Joints(self.time, names, angles, (1.0,) * len(names), position=where, life=offsets)
+            case Sense.SONAR if self.body.sonar is None:
+                return None
             case Sense.SONAR:
                 distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
                 return Sonar(self.time, distance, distance)
+            case Sense.TACTILE if not self.body.tactile:
+                return None
             case Sense.TACTILE:
                 names = self.body.tactile
                 return Tactile(self.time, names, tuple(int(name in self._pressed) for name in names))
@@ -158,7 +162,9 @@ class RecordingRobot:
         if self._visitor is None or self.body.camera is None:
             return None
         offsets, place = self._offsets(), _face_of(self._visitor)
-        yaw, pitch = (self._angles.get(joint, 0.0) + offsets.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch"))
+        roles = self.body.roles
+        now, more = roles.head_angles(self._angles), roles.head_angles(offsets)
+        yaw, pitch = now[0] + more[0], now[1] + more[1]
         return seen(place, self.body.camera, yaw, pitch)
 
     def touch(self, sensor: str, pressed: bool) -> None:
@@ -173,7 +179,7 @@ class RecordingRobot:
     def sound(self) -> None:
         if self._visitor and self.body.camera:
             yaw, pitch = centring(_face_of(self._visitor), self.body.camera)
-            head = [self._angles.get(joint, 0.0) for joint in ("HeadYaw", "HeadPitch")]
+            head = self.body.roles.head_angles(self._angles)
             self._life.heard(yaw - head[0], pitch - head[1], self.time)
 
     def plug(self, plugged: bool) -> None:
@@ -192,7 +198,7 @@ class RecordingRobot:
         if isinstance(command, Posture):
             self._angles.update(self.body.postures[command.name])
         elif isinstance(command, Look):
-            self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
+            self._turn(self.body.roles.head_joints(command.yaw, command.pitch))
         usual = row.duration(command)
         until = now + (inf if behaves == "hangs" else usual if behaves is None else float(behaves))
         if isinstance(command, Say):

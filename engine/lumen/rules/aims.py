@@ -19,8 +19,8 @@ MAX_GAIN = 2.0
 """With images and commands 100 to 200 ms on their way a loop of gain 1.5 does not overshoot, and one of 3 by 46 %."""
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
-GROWING_ANGLE_TURNS = {"Yaw": "left", "Pitch": "down"}
-"""Where a joint of that kind turns as its angle grows: NAO's, as everywhere with x ahead, y left and z up."""
+GROWING_ANGLE_TURNS = {"yaw": "left", "pitch": "down"}
+"""Where a joint with such a role turns as its angle grows."""
 
 
 def check(controller: ControllerDefinition, report: DocumentReport, draft: ProjectDraft) -> None:
@@ -29,7 +29,7 @@ def check(controller: ControllerDefinition, report: DocumentReport, draft: Proje
         variable = controller.outputs[binding.variable]
         path: NodePath = first(report, (*binding.where, "gain"), binding.where)
         _sense(controller, variable, report)
-        _sign(variable, binding, path, report)
+        _sign(variable, binding, path, report, draft.body)
         _gain(controller, binding, path, report, draft)
         if draft.body and binding.joint in draft.body.joints:
             _limits(controller, variable, binding, report, draft.body)
@@ -71,8 +71,13 @@ def _trend(controller: ControllerDefinition, variable: Variable, output: Variabl
     return int(slope > 0) - int(slope < 0)
 
 
-def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: DocumentReport) -> None:
-    counts = next((way for kind, way in GROWING_ANGLE_TURNS.items() if binding.joint.endswith(kind)), "")
+def _sign(
+    variable: Variable, binding: OutputBinding, path: NodePath, report: DocumentReport, body: Body | None
+) -> None:
+    named = body.roles.path(binding.joint) if body else ""
+    role = body.roles.joint(named) if body else None
+    counts = next((way for kind, way in GROWING_ANGLE_TURNS.items() if named.endswith(kind)), "")
+    counts = OPPOSITE.get(counts, "") if role and role.reversed else counts
     wanted = {counts: 1, OPPOSITE.get(counts, ""): -1}.get(variable.direction, 0) if variable.direction else 0
     if wanted * binding.gain < 0:
         message = f"`{variable.name}` counts {variable.direction}, and `{binding.joint}` {counts}"

@@ -9,7 +9,7 @@ from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.life import LIFE_FOLDER
 from lumen.loading.units import ANGLES
-from lumen.rules.lookups import References, value_at
+from lumen.rules.lookups import References, first, value_at
 
 LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than the robot can bear")
 LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint faster than it should")
@@ -37,7 +37,8 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report(LIFE_FOLDER, name)
         unit = value_at(report, ("units", "angle")) or "rad"
         for code, path, message, hint in _Judge(style, draft.body, unit).faults():
-            report(code, path, message, hint)
+            by_role = (*path[:-2], "roles", draft.body.roles.path(str(path[-1])))
+            report(code, first(report, path, by_role, path), message, hint)
 
 
 class _Judge:

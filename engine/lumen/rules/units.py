@@ -31,17 +31,17 @@ HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for d
 def check(draft: ProjectDraft) -> None:
     """Report angles in radians among degrees, turns of many rounds, walks that leave the stage by far or run."""
     for name in draft.motions:
-        _radians(draft.report("motions", name))
+        _radians(draft.report("motions", name), draft.body)
     stage = draft.settings.stage if draft.settings else None
     for name, machine in draft.behaviors.items():
         _actions(machine, draft.report("behaviors", name), draft.body, stage)
 
 
-def _radians(report: DocumentReport) -> None:
+def _radians(report: DocumentReport, body: Body | None) -> None:
     """In a file that counts in degrees: 1.57 is hardly one and a half of them."""
     if value_at(report, ("units", "angle")) != "deg":
         return
-    angles = [(path, angle) for path, angle in _angles(report.document.data, ()) if angle]
+    angles = [(path, angle) for path, angle in _angles(report.document.data, (), body) if angle]
     small = [(path, angle) for path, angle in angles if round(abs(angle), 4) in HALF_TURN_PARTS]
     if not small:
         return
@@ -54,16 +54,21 @@ def _radians(report: DocumentReport) -> None:
         report(WRONG_UNIT, path, f"{angle:g} deg is very little: it looks like radians", hint)
 
 
-def _angles(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
-    """Every angle of a motion's `joints`."""
+def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[NodePath, float]]:
+    """Every angle of a motion's `joints` and `roles`; a hand's opening is none."""
+    hands = body.hands if body else ()
     waiting: list[tuple[Any, NodePath]] = [(data, path)]
     while waiting:
         item, here = waiting.pop(0)
         if isinstance(item, dict):
             for key, value in item.items():
-                if key == "joints" and isinstance(value, dict):
+                if key in ("joints", "roles") and isinstance(value, dict):
                     numbers = ((name, v) for name, v in value.items() if isinstance(v, int | float))
-                    yield from (((*here, key, name), v) for name, v in numbers if not name.endswith("Hand"))
+                    yield from (
+                        ((*here, key, name), v)
+                        for name, v in numbers
+                        if name not in hands and not name.startswith("hands.")
+                    )
                 else:
                     waiting.append((value, (*here, key)))
         elif isinstance(item, list):
@@ -77,8 +82,8 @@ def _actions(machine: MachineDefinition, report: DocumentReport, body: Body | No
         where = site.step.where
         match site.step.action:
             case Look(yaw, pitch):
-                for key, joint, value in (("yaw", "HeadYaw", yaw), ("pitch", "HeadPitch", pitch)):
-                    _look(report, (*where, "look", key), joint, value, angle, body)
+                for key, value in (("yaw", yaw), ("pitch", pitch)):
+                    _look(report, (*where, "look", key), f"head.{key}", value, angle, body)
             case Move():
                 _move(report, (*where, "walk"), site.step.action, angle, length, body)
             case Walk(x, y, theta):
@@ -88,14 +93,18 @@ def _actions(machine: MachineDefinition, report: DocumentReport, body: Body | No
                     _walk(report, (*where, "walk", key), value, length, room)
 
 
-def _look(report: DocumentReport, path: NodePath, joint: str, value: float, unit: str, body: Body | None) -> None:
-    limits = body.joints.get(joint) if body else None
-    if limits is None or limits.minimum - 0.02 <= value <= limits.maximum + 0.02:
+def _look(report: DocumentReport, path: NodePath, wanted: str, value: float, unit: str, body: Body | None) -> None:
+    role = body.roles.joint(wanted) if body else None
+    limits = body.joints.get(role.joint) if body and role else None
+    if role is None or limits is None:
         return
-    low, high = (round(limit / ANGLES[unit], 2) for limit in (limits.minimum, limits.maximum))
+    least, most = sorted(role.sign * limit for limit in (limits.minimum, limits.maximum))
+    if least - 0.02 <= value <= most + 0.02:
+        return
+    low, high = (round(limit / ANGLES[unit], 2) for limit in (least, most))
     shown = round(value / ANGLES[unit], 3)
     hint = f"it goes from {low:g} to {high:g} {unit}"
-    if unit == "rad" and limits.minimum <= value * ANGLES["deg"] <= limits.maximum:
+    if unit == "rad" and least <= value * ANGLES["deg"] <= most:
         hint = "write `units: {angle: deg}` at the top: this file counts in radians"
     report(WRONG_UNIT, path, f"the head can't turn to {shown:g} {unit}", hint)
 

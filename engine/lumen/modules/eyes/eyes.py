@@ -146,7 +146,7 @@ class Eyes(Module):
         match message.body:
             case {"name": list(names), "angle": list(angles)}:
                 found = {n: a for n, a in zip(map(str, names), angles, strict=False) if isinstance(a, int | float)}
-                yaw, pitch = (degrees(found.get(joint, 0.0)) for joint in ("HeadYaw", "HeadPitch"))
+                yaw, pitch = map(degrees, self.project.body.roles.head_angles(found))
                 self._head = f"head {yaw:+.1f} {pitch:+.1f} deg"
 
     def _show(self, frame: Frame, faces: list[Box]) -> None:

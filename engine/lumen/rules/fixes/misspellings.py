@@ -43,7 +43,7 @@ def _count(word: str, files: Mapping[str, bytes]) -> int:
 def near(word: str, meant: str) -> bool:
     """Whether one is a slip of the other: another case, a letter too many, too few, wrong, or two exchanged.
 
-    Not where it could be another name: in a short word, in its first letter (`LHand`, `RHand`), in a digit.
+    Not where it could be another name: in a short word, in its first letter (`left`, `reft`), in a digit.
     """
     a, b = word.lower(), meant.lower()
     if a == b:
