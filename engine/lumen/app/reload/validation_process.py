@@ -15,8 +15,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from lumen.app.garbage import gc_paused
 from lumen.app.reload.delta import DeltaEncoder
-from lumen.app.reload.visits_check import check_visits
 from lumen.language.projects import Project
 from lumen.rules import check_files
 from lumen.upkeep.heap import give_back
@@ -74,11 +74,14 @@ def _serve(question: Sequence[Any], project: Project | None, sender: DeltaEncode
     """The answer, and the project that is active after it."""
     match question:
         case ["load", str(root), dict(files)]:
-            project, diagnostics = check_files(Path(root), files)
+            with gc_paused():
+                project, diagnostics = check_files(Path(root), files)
             return (None if project is None else sender.pack(project), diagnostics), project
         case ["play", str(story), float(seconds)] if project:
             return failure(project, story, seconds), project
         case ["visits", str(root), str(running), float(budget)] if project:
+            from lumen.app.reload.visits_check import check_visits  # ninety modules that no start needs
+
             return check_visits(Path(root), project, running, budget), project
     return None, project
 
