@@ -23,6 +23,7 @@ from lumen.buses.memory import MemoryBus
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.gestures import merged
+from lumen.language.imperfections import PERFECT
 from lumen.language.projects import Project
 from lumen.loading.lending import model_files
 from lumen.ports import Message
@@ -30,7 +31,6 @@ from lumen.robots.command_table import speech_duration
 from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.imperfections import PERFECT
 from lumen.runtime.loop import Observer
 
 ROOT = Path(__file__).parents[1]

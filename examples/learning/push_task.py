@@ -15,7 +15,7 @@ from dm_control.locomotion.arenas import floors
 
 import lumen
 from lumen.robots.simulation.entity import Nao
-from lumen.robots.simulation.imperfections import Imperfections
+from lumen.robots.simulation.imperfections import ENCODER_NOISE, GYRO_NOISE
 
 PROJECT = Path(__file__).parents[2]
 CONTROL_PERIOD, PHYSICS_PERIOD = 0.02, 0.002
@@ -39,11 +39,11 @@ class KeepStanding(composer.Task):
         self._arena.mjcf_model.worldbody.add(
             "camera", name="view", pos=(1.2, -0.8, 0.6), xyaxes=(0.55, 0.83, 0, -0.2, 0.13, 0.97)
         )
-        lacking, seen = Imperfections(), self.nao.observables
+        seen = self.nao.observables
         for one in (seen.joints_pos, seen.joints_vel, seen.tilt, seen.sensors_gyro, seen.soles):
             one.enabled = True
-        seen.joints_pos.corruptor = noises.Additive(_Normal(lacking.encoder_noise))
-        seen.sensors_gyro.corruptor = noises.Additive(_Normal(lacking.gyro_noise))
+        seen.joints_pos.corruptor = noises.Additive(_Normal(ENCODER_NOISE))
+        seen.sensors_gyro.corruptor = noises.Additive(_Normal(GYRO_NOISE))
         self.set_timesteps(CONTROL_PERIOD, PHYSICS_PERIOD)
         self._begin, self._force = 0.0, (0.0, 0.0)
 

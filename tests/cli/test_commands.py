@@ -83,7 +83,11 @@ def test_mistakes_are_one_line(arguments: list[str], words: str, capsys: pytest.
 
 def test_a_motion_on_the_simulated_robot(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["play", "goodbye"]) == 0
-    assert "finished, on its feet" in capsys.readouterr().out
+    usual = capsys.readouterr().out
+    assert "finished, on its feet" in usual
+    assert main(["play", "goodbye", "--imperfections", "none"]) == 0
+    assert "finished, on its feet" in (perfect := capsys.readouterr().out)
+    assert perfect != usual
 
 
 @pytest.mark.slow

@@ -59,6 +59,11 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
         (["--video", "film.avi"], "name an .mp4 file"),
         (["--robot", "recording", "--video", "film.mp4"], "--video films the simulation"),
         (["--video", "film.mp4", "--size", "641x480"], "`641x480` is no size of a film"),
+        (
+            ["--robot", "simulation", "--imperfections", "noise,backlsh"],
+            "there is no `backlsh`: did you mean `backlash`?",
+        ),
+        (["--robot", "recording", "--imperfections", "none"], "those of a simulated robot"),
         (["--robot", "none", "--speed", "4"], "leave out --speed"),
         (["--robot", "none", "--story", "visitor"], "a story needs a robot in a hall"),
     ],

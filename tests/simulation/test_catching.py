@@ -8,6 +8,7 @@ import pytest
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot, catching, skills
+from lumen.robots.simulation.balance import LEAN
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.pushes import PushTrial, standing, upright
 from tests.simulation.walks import Push, any_robot, truth
@@ -34,7 +35,7 @@ def test_a_step_catches_it_and_the_robot_stands_again_as_before(body: Body) -> N
     assert not robot.base.catching
     legs = [robot.motors.index[n] for n in body.parts["legs"]]
     wanted = np.array([body.postures["Stand"][n] for n in body.parts["legs"]])
-    assert np.abs(robot.motors.command[legs] - wanted).max() < 0.12
+    assert np.abs(robot.motors.command[legs] - wanted).max() < LEAN + 0.04
     assert robot.world.tilt < 0.1
     here, believed = truth(robot), robot.base.whereabouts
     assert here.x > 0.05
@@ -96,6 +97,9 @@ def head_meets_the_floor(body: Body, seed: int, to: float) -> float:
 
 @pytest.mark.parametrize("to", [0.0, pi / 4, pi / 2])
 def test_arms_and_head_are_held_up_against_a_fall(body: Body, to: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    held = head_meets_the_floor(body, 1, to)
+    def falls() -> float:
+        return sum(head_meets_the_floor(body, seed, to) for seed in (2, 3, 4))
+
+    held = falls()
     monkeypatch.setattr(skills, "BACKWARDS", -inf)
-    assert held < 0.85 * head_meets_the_floor(body, 1, to)
+    assert held < 0.85 * falls()

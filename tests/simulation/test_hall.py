@@ -21,7 +21,7 @@ def test_who_looks_at_the_visitor_has_their_face_in_the_middle(
 ) -> None:
     robot.place(visitor)
     look_at_face(robot, do, body)
-    assert robot.face() == pytest.approx((160, 120), abs=6)
+    assert robot.face() == pytest.approx((160, 120), abs=8)  # its neck has play
 
 
 def test_a_face_moves_as_the_camera_turns(robot: SimulatedRobot, do: Do, body: Body) -> None:

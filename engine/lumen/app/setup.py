@@ -7,6 +7,7 @@ from typing import Any
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import UsageError
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.lending import model_files
@@ -39,15 +40,26 @@ class Setup:
         getattr(self.clock, "hurry", lambda: None)()
 
 
-def set_up(kind: str, project: Project, speed: str, story: Story | None = None, url: str | None = None) -> Setup:
-    """The robot of that name, on its feet; `url` is where a real one is."""
+def set_up(
+    kind: str,
+    project: Project,
+    speed: str,
+    story: Story | None = None,
+    url: str | None = None,
+    imperfections: Imperfections | None = None,
+) -> Setup:
+    """The robot of that name, on its feet.
+
+    `url` is where a real one is, `imperfections` are other than the project's.
+    """
     if url and kind != "naoqi":
         raise UsageError("--robot-url is where a real robot is: say --robot naoqi with it")
     pace = None if speed == "max" else float(speed)
     if kind == "simulation":
         from lumen.robots.simulation import SimulatedRobot, available
 
-        simulated = SimulatedRobot(project.body, *model_files(project), stage=project.stage)
+        lacking = imperfections or project.imperfections
+        simulated = SimulatedRobot(project.body, *model_files(project), imperfections=lacking, stage=project.stage)
         return Setup(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
     if kind == "recording":
         from lumen.robots.recording import RecordingRobot

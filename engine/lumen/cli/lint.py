@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
+from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import FORMATS, render
@@ -29,6 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--physics", action="store_true", help="also play every motion in simulation (minutes; what is known is kept)")
     add("--robots", metavar="N", help="with --physics: how many robots that differ a little play it too (default: 20)")
+    configure_imperfections(parser)
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="repair what can be repaired without asking")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
@@ -66,8 +68,9 @@ def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namesp
     from lumen.cli.progress import progress
 
     robots = ROBOTS if options.robots is None else number_of_robots(options.robots)
+    lacking = imperfections_of(options.imperfections)
     with progress() as tell:
-        both = [played(each, wanted, robots, tell) for each in found]
+        both = [played(each, wanted, robots, tell, imperfections=lacking) for each in found]
     for _, rehearsals in both if options.format == "text" else ():
         print(summary(rehearsals) or "no motion was played: there are none, or the files have errors", file=sys.stderr)
     return [each for each, _ in both]
@@ -106,6 +109,8 @@ def _consistent(options: argparse.Namespace) -> None:
         raise UsageError("--diff shows what --fix would change, and no reload is repaired: leave out --against")
     if options.robots is not None and not options.physics:
         raise UsageError("--robots goes with --physics")
+    if options.imperfections is not None and not options.physics:
+        raise UsageError("--imperfections goes with --physics")
     if options.physics and (options.watch or options.fix or options.diff or "-" in options.paths):
         raise UsageError("--physics takes minutes: it can't stand beside --watch, --fix, --diff or `-`")
     if options.watch and (options.fix or options.diff or "-" in options.paths):

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ from lumen.app.setup import SPEEDS, set_up
 from lumen.cli.film_options import configure_size, film_path, film_size
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
+from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import ProgressListener, progress
 from lumen.cli.projects import shown_project
@@ -44,6 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
     configure_size(parser)
+    configure_imperfections(parser)
     configure_format(parser)
 
 
@@ -55,6 +58,8 @@ def run(options: argparse.Namespace) -> int:
     if found.settings is None or found.body is None:
         raise ProjectError(found.diagnostics)
     project = assemble(found, str(root.absolute()))
+    lacking = imperfections_of(options.imperfections) or project.imperfections
+    project = replace(project, imperfections=lacking)
     video = film_path(options.video, "simulation")
     with one_object(options.format) as say:
         say(_played(project, motion, options.speed, video, film_size(options.size)))

@@ -22,12 +22,13 @@ from lumen.app.recovery.failing import failures_told
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.reload.reloader import MODES
-from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup, set_up
+from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
 from lumen.app.stories import home_of, stories_of
 from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
+from lumen.cli.imperfection_options import configure_imperfections, set_up_robot
 from lumen.cli.main import ready
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import Performance
@@ -75,6 +76,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--language", metavar="LANG", help="which language it speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
     configure_size(parser)
+    configure_imperfections(parser)
     add("--record", metavar="FILE.mcap", type=Path, help="record what is said on the bus, for Foxglove and Lichtblick")
     add("--voice", choices=VOICES, default="none", help="let espeak-ng say the simulated robot's texts (default: none)")
     add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write what is said instead of playing it")
@@ -129,7 +131,7 @@ def _whole(
 ) -> RunVerdict:
     """Run a whole exhibition in this process."""
     video, size = film_path(options.video, options.robot), film_size(options.size)
-    setup = set_up(options.robot, project, options.speed, story, options.robot_url)
+    setup = set_up_robot(options, project, story)
     track = AudioTrack() if video else None
     silence = _voice(options, setup, language or project.languages[0], track)
     quiet = _sounding(options, project, setup, track)
@@ -176,7 +178,7 @@ def _processes(
 ) -> RunVerdict:
     """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
     _check_processes(options, story, parts, url)
-    setup = set_up(options.robot, project, options.speed, story, options.robot_url) if ROBOT_PART in parts else None
+    setup = set_up_robot(options, project, story) if ROBOT_PART in parts else None
     speed = float(options.speed)
     clock: Clock = setup.clock if setup else FollowingClock(speed)
     transcript = Transcript(clock.now, lambda: node.project.machine)

@@ -9,6 +9,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.gestures import GestureLibrary
 from lumen.language.hall_places import HallPlace
+from lumen.language.imperfections import Imperfections
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EYES, ModuleSettings
@@ -44,7 +45,7 @@ class Project:
     name; `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened,
     `record` what is recorded of the bus, `console` where its pages are. `replay_check` is how saved files are tried
     on recorded visits. `aliases` is whether routes have their aliases: None for as long as no other robot is seen on
-    the bus.
+    the bus. `imperfections` are those of a simulated robot.
     """
 
     root: str
@@ -65,6 +66,7 @@ class Project:
     timezone: str = ""
     story: str = ""
     stage: Stage | None = None
+    imperfections: Imperfections = field(default_factory=Imperfections)
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)

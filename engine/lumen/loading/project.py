@@ -123,6 +123,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         timezone=settings.timezone,
         story=settings.story,
         stage=settings.stage,
+        imperfections=settings.imperfections,
         bus=settings.bus,
         patience=settings.patience,
         modules=settings.modules,

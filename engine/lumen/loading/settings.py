@@ -12,6 +12,7 @@ from lumen.language.alerts import Alerts
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
+from lumen.language.imperfections import Imperfections
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
@@ -49,6 +50,7 @@ class Settings:
     timezone: str = ""
     routes: Mapping[str, Route] = field(default_factory=dict)
     stage: Stage | None = None
+    imperfections: Imperfections = field(default_factory=Imperfections)
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
@@ -80,6 +82,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         timezone=_timezone(data, report),
         routes=build_routes(data.get("routes", {}), report, stand=robot.get("stand", "")),
         stage=_stage(data, report),
+        imperfections=Imperfections(**data.get("imperfections", {})),
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
         modules={name: _module(name, row) for name, row in modules.items()},

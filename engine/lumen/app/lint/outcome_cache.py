@@ -34,7 +34,9 @@ class OutcomeCache:
         models = {path: path.read_bytes() for each in folders for path in sorted(each.rglob("*")) if path.is_file()}
         passages = {file: content for file, content in files.items() if file.startswith("models/passages/")}
         shapes = [content for path, content in models.items() if path.parent.name != "passages"]
-        self._models = _digest([*shapes, project.hall.encode(), engine().encode()])
+        self._models = _digest(
+            [*shapes, project.hall.encode(), repr(project.imperfections).encode(), engine().encode()]
+        )
         self._passages = _digest(passages.values())
 
     def recall(self, case: Case) -> dict[int, Outcome]:

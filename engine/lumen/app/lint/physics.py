@@ -9,6 +9,7 @@ from lumen.app.lint.findings import Findings
 from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.loading.lending import model_files
 from lumen.rules import check_files
@@ -30,16 +31,18 @@ def played(
     tell: ProgressHook = lambda *_: None,
     *,
     keep: bool = True,
+    imperfections: Imperfections | None = None,
 ) -> tuple[Findings, list[CaseResult]]:
     """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
 
-    Only motions in files that somebody asked about are played, and with `keep` only where they were not before. Raises
-    MissingExtraError where there is no simulation.
+    `imperfections` are other than the project's. Only motions in files that somebody asked about are played, and with
+    `keep` only where they were not before. Raises MissingExtraError where there is no simulation.
     """
     root = Path(found.root)
     project = check_files(root, found.files)[0]
     if project is None:
         return found, []
+    project = replace(project, imperfections=imperfections or project.imperfections)
     make = _maker(project)
     chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
     memory = OutcomeCache(project, found.files) if keep else None
@@ -101,4 +104,4 @@ def _maker(project: Project) -> SubjectFactory:
     from lumen.robots.simulation.subject import subject
 
     models, hall = model_files(project)
-    return lambda number: subject(project.body, models, hall, number)
+    return lambda number: subject(project.body, models, hall, number, project.imperfections)

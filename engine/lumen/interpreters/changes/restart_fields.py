@@ -10,6 +10,7 @@ RESTART_FIELDS: Mapping[str, str] = {
     "body": "the robot's model",
     "hall": "the hall",
     "stage": "the stage",
+    "imperfections": "the robot's imperfections",
     "bus": "the broker's address",
     "console": "the console",
     "modules": "what is said of the modules",

@@ -4,6 +4,7 @@ import numpy as np
 
 from lumen.interpreters.gait import SIDES, LegGeometry, Side
 from lumen.interpreters.gait.legs import SIDE_ROLES
+from lumen.interpreters.gait.legs import sign as outward
 from lumen.interpreters.gait.parameters import scale_of
 from lumen.language.roles import Roles
 from lumen.robots.simulation.falling_sense import FallingSense
@@ -17,9 +18,15 @@ BALANCE_GAIN = 0.05
 MAX_TRIM = 0.15
 _SMOOTHING = 0.5
 
-LEAN, LEAN_RATE, LEAN_GAIN = 0.08, 0.1, 5.0
+HIP_SAG, _SAG_SMOOTHING = 0.02, 0.8
+"""How far the hip of a leg that bears alone gives way [rad]: its servo lags by 2 N m, and its gear has play."""
+
+LEAN, LEAN_RATE, LEAN_GAIN = 0.12, 0.1, 5.0
 """How far ankles and hips lean forward at most [rad], how fast [rad/s], and that for each metre [rad/s per m]; the last
 on legs as long as those that paces were found with."""
+
+STANDING_AHEAD = 0.005
+"""So much farther ahead than in a walk the weight is wanted while the robot stands [m], on such legs."""
 
 HEEL_MARGIN = 0.01
 """The DCM is falling backwards nearer than this to the heels' edge [m], on such legs."""
@@ -38,7 +45,7 @@ class BalanceController:
     """Trims the joints' goals by what gyrometer, encoders and inertial unit feel.
 
     `lifted` is the foot in the air, `walking` whether a walk shifts the weight itself; both for one trim. `catching` is
-    whether steps catch a fall; `falling` has to feel before each trim. The weight is wanted `ahead` of the ankles [m].
+    whether steps catch a fall; `falling` has to feel before each trim. A walk has the weight `ahead` of the ankles [m].
     """
 
     def __init__(self, motors: Motors, falling: FallingSense, legs: LegGeometry, roles: Roles, ahead: float) -> None:
@@ -47,12 +54,15 @@ class BalanceController:
 
         self._ankles = [[(side, *joint(side, role)) for side in SIDES] for role in (5, 4)]
         self._hips = [joint(side, 2) for side in SIDES]
+        self._rolls = [(side, *joint(side, 1)) for side in SIDES]
+        self._borne = dict.fromkeys(SIDES, 0.0)
         arms = [roles.joint(f"arms.{SIDE_ROLES[side]}.shoulder-pitch") for side in SIDES]
         self._shoulders = [(motors.index[arm.joint], arm.sign) for arm in arms if arm]
         speed = motors.envelope.speed
         self._arm_speed = min([ARM_SPEED, *(float(speed[i]) for i, _ in self._shoulders)])
         self._hip_speed = min([HIP_SPEED, *(float(speed[i]) for i, _ in self._hips)])
-        self._ahead, scale = ahead, scale_of(legs)
+        scale = scale_of(legs)
+        self._ahead = ahead + STANDING_AHEAD * scale
         self._heel_margin, self._lean_gain = HEEL_MARGIN * scale, LEAN_GAIN / scale
         self._falling = falling
         self._trim = np.zeros(len(motors.names))
@@ -71,9 +81,17 @@ class BalanceController:
             angle = min(max(BALANCE_GAIN * felt, -MAX_TRIM), MAX_TRIM)
             for side, i, sign in self._ankles[axis]:
                 self._trim[i] = 0.0 if side == self.lifted else sign * angle
+        self._bear()
         self._catch(standing and not (self.walking or self.catching))
         self.lifted, self.walking = None, False
         return self._trim
+
+    def _bear(self) -> None:
+        """Raise the hip that the leg in the air hangs from, as far as the bearing one gives way: it lands level."""
+        for side, i, sign in self._rolls:
+            bears = float(self.lifted is not None and self.lifted != side)
+            borne = self._borne[side] = _SAG_SMOOTHING * self._borne[side] + (1 - _SAG_SMOOTHING) * bears
+            self._trim[i] = outward(side) * sign * HIP_SAG * borne
 
     def _catch(self, standing: bool) -> None:
         """Carry the weight over the middle of the soles; swing arms and hips backwards where the robot falls there.

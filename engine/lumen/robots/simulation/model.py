@@ -16,6 +16,7 @@ from lumen.language.roles import BaseKind
 from lumen.loading.memoization import memoize
 from lumen.loading.packaged_models import mjcf_path
 from lumen.robots.simulation.added_servos import add_servos
+from lumen.robots.simulation.backlash import loosen
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
 ROBOT_PREFIX = "nao"
@@ -33,7 +34,9 @@ class Variation:
     friction: float = 1.0
 
 
-def load(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.RootElement:
+def load(
+    body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
+) -> mjcf.RootElement:
     """The hall with the robot on its stage; `hall` is in `models`, or an absolute path.
 
     The robot is free to fall, unless its base is fixed: then it is part of what it stands on.
@@ -41,6 +44,8 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
     Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
     """
     robot, world = alone(body, models), _read(models / hall)
+    if backlash:
+        loosen(robot, body)
     _complain(hall, lacks_of_hall(world))
     stage = world.find("site", STAGE_SITE)
     try:
@@ -66,7 +71,9 @@ def alone(body: Body, models: Path) -> mjcf.RootElement:
     return robot
 
 
-def physics(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.Physics:
+def physics(
+    body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
+) -> mjcf.Physics:
     """The hall with the robot on its stage, to be lived in.
 
     A second robot of the same body and the same files in `models` is a copy of what was compiled for the first: a few
@@ -75,7 +82,9 @@ def physics(body: Body, models: Path, hall: str, variation: Variation | None = N
     folders = {models, (models / hall).parent}
     files = {path: _version(path) for folder in folders for path in folder.rglob("*") if path.is_file()}
     compiled = memoize(
-        ("simulation", hall), (body, files, variation), lambda: _compiled(load(body, models, hall, variation))
+        ("simulation", hall, backlash),
+        (body, files, variation),
+        lambda: _compiled(load(body, models, hall, variation, backlash=backlash)),
     )
     return mjcf.Physics.from_model(wrapper.MjModel(copy.copy(compiled)))
 

@@ -13,12 +13,12 @@ _WITHOUT_BOUND = 1e9
 class MotorTorques:
     """The lines from stall torque to no-load speed of all motors.
 
-    A motor whose actuator names no stall torque keeps its torque at every speed. `fastest`: no-load speeds [rad/s] at
-    the battery's nominal voltage, Shape (motors,).
+    A motor whose actuator names no stall torque keeps its torque at every speed; so do all where they are not
+    `falling`. `fastest`: no-load speeds [rad/s] at the battery's nominal voltage, Shape (motors,).
     """
 
-    def __init__(self, world: World, fastest: NDArray[np.float64]) -> None:
-        self._world, self._fastest = world, fastest
+    def __init__(self, world: World, fastest: NDArray[np.float64], *, falling: bool = True) -> None:
+        self._world, self._fastest = world, fastest if falling else np.full(len(fastest), np.inf)
         given = world.model.actuator_user[world.actuators]
         stall = given[:, 0] if given.shape[1] else np.zeros(len(fastest))
         self._stall = np.where(stall > 0.0, stall, _WITHOUT_BOUND)

@@ -7,7 +7,8 @@ from math import isfinite
 import numpy as np
 
 from lumen.errors import BadCommandError
-from lumen.robots.simulation.imperfections import FULL_VOLTAGE, Imperfections
+from lumen.language.imperfections import Imperfections
+from lumen.robots.simulation.imperfections import FULL_VOLTAGE, LATENCY, NOMINAL_VOLTAGE
 from lumen.robots.simulation.joint_envelope import JointEnvelope, JointVector
 from lumen.robots.simulation.motor_torques import MotorTorques
 from lumen.robots.simulation.world import World
@@ -32,8 +33,8 @@ class Motors:
         self._leader = dict(body.shared)
         self._limits = {joint.name: (joint.minimum, joint.maximum) for joint in body.joints.values()}
         self._effort = world.model.actuator_forcerange[world.actuators].copy()
-        self._torques = MotorTorques(world, self.envelope.speed[world.driven]) if lacking.torque_falls else None
-        self.voltage = FULL_VOLTAGE
+        self._torques = MotorTorques(world, self.envelope.speed[world.driven], falling=lacking.torque_speed)
+        self._supplied, self.voltage = lacking.supply, FULL_VOLTAGE
         self.effort = np.zeros(len(self.names))
         self.effort[world.driven] = self._effort[:, 1]
         self.stiffness = np.ones(len(self.names))
@@ -41,7 +42,7 @@ class Motors:
         self.command: JointVector = self.goal.copy()
         self._sway = np.zeros(len(self.names))
         self._held: dict[int, float] = {}
-        self._sent = deque([self.command], maxlen=lacking.latency + 1)
+        self._sent = deque([self.command], maxlen=LATENCY + 1 if lacking.latency else 1)
 
     def aim(self, targets: Mapping[str, float]) -> None:
         """Want these joints there, or at their limit where it lies before.
@@ -106,12 +107,10 @@ class Motors:
         self._held = {}
         self._sent.append(self.command)
         self._world.data.ctrl[self._world.actuators] = self._sent[0][self._world.driven]
-        if self._torques:
-            self._limits_of_torque()
+        self._limits_of_torque()
 
     def _limits_of_torque(self) -> None:
         """Let each motor give what its stiffness allows, and what it can at the speed it turns at."""
         allowed = self.stiffness[self._world.driven, None] * self._effort
-        if self._torques:
-            allowed = self._torques.limit(allowed, self.voltage)
-        self._world.model.actuator_forcerange[self._world.actuators] = allowed
+        volts = self.voltage if self._supplied else NOMINAL_VOLTAGE
+        self._world.model.actuator_forcerange[self._world.actuators] = self._torques.limit(allowed, volts)

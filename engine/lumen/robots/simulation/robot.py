@@ -15,6 +15,7 @@ from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, BaseKind
@@ -31,7 +32,6 @@ from lumen.robots.simulation.camera import RobotCamera
 from lumen.robots.simulation.fixed import Fixed
 from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.imperfections import Imperfections
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
@@ -80,9 +80,9 @@ class SimulatedRobot:
         stage: Stage | None = None,
     ) -> None:
         self.body = body
-        self.world = World(body, Path(models), hall, variation)
-        self.world.set_up(body.postures[posture])
         lacking = imperfections or Imperfections()
+        self.world = World(body, Path(models), hall, variation, backlash=lacking.backlash)
+        self.world.set_up(body.postures[posture])
         self.motors = Motors(self.world, lacking)
         self.lights = Lights(self.world.model, body.roles.lights)
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
@@ -260,7 +260,7 @@ class SimulatedRobot:
         now = self.time
         self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
         self._aiming.advance(CONTROL_PERIOD, self._free)
-        self._sensors.feel()
+        self._sensors.feel(at_rest=not (self._executor.owner(LEGS) or self.base.catching))
         if not self.awake:
             self._life.still()
             self.base.relax()

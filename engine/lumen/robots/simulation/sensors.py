@@ -1,4 +1,4 @@
-"""What the robot feels of itself: encoders and gyrometer, with their noise."""
+"""What the robot feels of itself: encoders and gyrometer, in what they fall short."""
 
 from math import atan2, hypot
 
@@ -6,21 +6,26 @@ import mujoco
 import numpy as np
 
 from lumen.interpreters.gait.poses import wrap
-from lumen.robots.simulation.imperfections import Imperfections
+from lumen.language.imperfections import Imperfections
+from lumen.robots.simulation.gyrometer import Gyrometer
+from lumen.robots.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
 from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 
 class BodySensors:
     """Reads joint angles and turning speeds as the robot's own computer would; the same seed gives the same noise.
 
-    `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `turning` how fast it turns left,
-    `heading` how far it has turned there since the start [rad], all as felt last. It is right again to 3 degrees when
-    the robot stands after it was down: the attitude follows the gyrometer, and where up is keeps it level.
+    `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `turning` how fast it turns left, less
+    the bias that it has learned; `heading` is how far it has turned there since the start [rad]; all as felt last. The
+    heading is right again to 3 degrees when the robot stands after it was down: the attitude follows the gyrometer, and
+    where up is keeps it level.
     """
 
     def __init__(self, world: World, lacking: Imperfections, seed: int = 0) -> None:
-        self._world, self._lacking = world, lacking
-        self._random = np.random.default_rng(seed)
+        self._world, self._random = world, np.random.default_rng(seed)
+        self._step = ENCODER_STEP if lacking.quantisation else 0.0
+        self._noise = ENCODER_NOISE if lacking.noise else 0.0
+        self._gyrometer = Gyrometer(lacking, seed)
         self.angles = world.angles
         """Where the encoders say the joints are."""
         self.gyro, self.turning = (0.0, 0.0), 0.0
@@ -45,14 +50,16 @@ class BodySensors:
         values = zip(("Angle", "Gyroscope", "Accelerometer"), (angles, turning, pushed), strict=True)
         return {f"{kind}{axis}": round(v, 4) for kind, three in values for axis, v in zip("XYZ", three, strict=True)}
 
-    def feel(self) -> None:
-        """Read encoders and gyrometer, once in each control period."""
-        lacking, angles = self._lacking, self._world.angles
+    def feel(self, *, at_rest: bool) -> None:
+        """Read encoders and gyrometer, once in each control period.
+
+        `at_rest` is whether nothing moves the legs on purpose: then what turns is the gyrometer's bias.
+        """
+        angles, step = self._world.angles, self._step
         errors = self._random.standard_normal(len(angles) + 3)
-        angles += lacking.encoder_noise * errors[3:]
-        self.angles = np.round(angles / lacking.encoder_step) * lacking.encoder_step if lacking.encoder_step else angles
-        wrong = (lacking.gyro_noise * errors[:3]).tolist()
-        roll, pitch, yaw = (rate + error for rate, error in zip(self._world.gyro, wrong, strict=True))
+        angles += self._noise * errors[3:]
+        self.angles = np.round(angles / step) * step if step else angles
+        roll, pitch, yaw = self._gyrometer.feel(self._world.gyro, errors[:3], at_rest=at_rest)
         self.gyro, self.turning = (roll, pitch), yaw
         self._turn(roll, pitch, yaw)
 

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from lumen.interpreters.gait.legs import SIDE_ROLES
+from lumen.language.imperfections import Imperfections
 from lumen.language.robots import Body
 from lumen.ports import Sole, Strain
 from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
@@ -76,13 +77,15 @@ class ExaminedRobot(SimulatedRobot):
         return {side: Sole(float(at.xpos[0]), float(at.xpos[1]), load[side]) for side, at in sites.items()}
 
 
-def subject(body: Body, models: Path, hall: str, brother: int) -> ExaminedRobot:
+def subject(
+    body: Body, models: Path, hall: str, brother: int, imperfections: Imperfections | None = None
+) -> ExaminedRobot:
     """The robot as its model has it for `brother` 0; else one whose links, ground and sensors differ, by that seed."""
     if not brother:
-        return ExaminedRobot(body, models, hall)
+        return ExaminedRobot(body, models, hall, imperfections=imperfections)
     draw = np.random.default_rng(brother)
     variation = Variation(friction=draw.uniform(*FRICTION_RANGE) / USUAL_FRICTION)
-    robot = ExaminedRobot(body, models, hall, seed=brother, variation=variation)
+    robot = ExaminedRobot(body, models, hall, seed=brother, variation=variation, imperfections=imperfections)
     model = robot.world.model
     for i in range(model.nbody):
         if model.body(i).name.startswith(f"{ROBOT_PREFIX}/"):

@@ -7,10 +7,11 @@ from lumen.errors import RobotRefusedError
 from lumen.interpreters.dead_reckoning import DeadReckoning
 from lumen.interpreters.gait import Pose
 from lumen.interpreters.gait.poses import wrap
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.ports import Whereabouts
 from lumen.robots.simulation.drive_geometry import DriveGeometry
-from lumen.robots.simulation.imperfections import Imperfections
+from lumen.robots.simulation.imperfections import ENCODER_STEP
 from lumen.robots.simulation.odometry import DRIFT_AFTER_FALL
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.world import World
@@ -26,7 +27,7 @@ class WheelOdometry:
         self, world: World, sensors: BodySensors, drive: DriveGeometry, lacking: Imperfections, stage: Stage | None
     ) -> None:
         self._world, self._sensors, self._drive, self._stage = world, sensors, drive, stage
-        self._step = lacking.encoder_step
+        self._step = ENCODER_STEP if lacking.quantisation else 0.0
         self._rolled, self._heading = self._encoders(), sensors.heading
         self._reckoning = DeadReckoning()
         self._lost = False

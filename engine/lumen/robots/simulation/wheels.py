@@ -7,6 +7,7 @@ import numpy as np
 from lumen.errors import RobotRefusedError
 from lumen.interpreters.gait import Velocity
 from lumen.language.commands import Move, Walk
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.ports import Whereabouts
 from lumen.robots.executor import Activity
@@ -14,7 +15,6 @@ from lumen.robots.simulation.contact_shadows import NO_SOLES, Soles
 from lumen.robots.simulation.drive_geometry import read_drive
 from lumen.robots.simulation.driving import Drive, DriveOn, DriveTo
 from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.imperfections import Imperfections
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.walking import way_of

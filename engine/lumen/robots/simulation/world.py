@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES, BaseKind
+from lumen.robots.simulation.backlash import PLAY_SUFFIX
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.model import ROBOT_PREFIX, Variation, physics
 
@@ -29,14 +30,19 @@ class World:
     `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory.
     """
 
-    def __init__(self, body: Body, models: Path, hall: str, variation: Variation | None = None) -> None:
+    def __init__(
+        self, body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
+    ) -> None:
         self.body = body
-        self.physics = physics(body, models, hall, variation)
+        self.physics = physics(body, models, hall, variation, backlash=backlash)
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
         joints = [self.model.joint(f"{ROBOT_PREFIX}/{name}") for name in body.joints]
         self._angles = np.array([j.qposadr[0] for j in joints])
         self._speeds = np.array([j.dofadr[0] for j in joints])
+        loose = {i: name for i, name in enumerate(body.joints) if backlash and name not in body.hands}
+        plays = [self.model.joint(f"{ROBOT_PREFIX}/{name}{PLAY_SUFFIX}") for name in loose.values()]
+        self._loose, self._plays = list(loose), [p.qposadr[0] for p in plays]
         driven = [i for i, name in enumerate(body.joints) if name not in body.shared]
         names = list(body.joints)
         self.driven = np.array(driven)
@@ -66,13 +72,14 @@ class World:
 
     @property
     def angles(self) -> JointVector:
-        """Where the joints are."""
+        """Where the joints are, behind the play of their gears."""
         measured: JointVector = self.data.qpos[self._angles]
+        measured[self._loose] += self.data.qpos[self._plays]
         return measured
 
     @property
     def speeds(self) -> JointVector:
-        """How fast they turn, per second."""
+        """How fast their motors turn them, per second."""
         measured: JointVector = self.data.qvel[self._speeds]
         return measured
 

@@ -1,0 +1,38 @@
+"""`--imperfections`: a simulated robot that falls short in other ways than lumen.yaml says."""
+
+import argparse
+
+from lumen.app.setup import Setup, set_up
+from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.imperfections import IMPERFECTIONS, PERFECT, Imperfections, only
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+
+
+def configure_imperfections(parser: argparse.ArgumentParser) -> None:
+    """`--imperfections`, for a verb that has a simulated robot."""
+    what = f"of the simulated robot: `none`, or a list of {', '.join(IMPERFECTIONS)} (default: lumen.yaml's, or all)"
+    parser.add_argument("--imperfections", metavar="LIST", help=what)
+
+
+def imperfections_of(text: str | None) -> Imperfections | None:
+    """Those that were named, None where nothing was; raises UsageError for what is none."""
+    if text is None:
+        return None
+    if text == "none":
+        return PERFECT
+    names = tuple(text.split(","))
+    for name in names:
+        if name not in IMPERFECTIONS:
+            hint = did_you_mean(name, IMPERFECTIONS, "there are")
+            raise UsageError(f"--imperfections: there is no `{name}`: {hint}")
+    return only(names)
+
+
+def set_up_robot(options: argparse.Namespace, project: Project, story: Story | None) -> Setup:
+    """The robot that the options of `lumen run` ask for; raises UsageError where they do not go together."""
+    lacking = imperfections_of(options.imperfections)
+    if lacking and options.robot != "simulation":
+        raise UsageError("--imperfections are those of a simulated robot: leave out --robot")
+    return set_up(options.robot, project, options.speed, story, options.robot_url, lacking)
