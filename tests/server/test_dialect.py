@@ -31,7 +31,7 @@ def order(method: str, /, **parameter: Any) -> dict[str, Any]:
         (order("moveTo", x=0.2, y=0, tetha=0), Walk(0.2, 0.0, 0.0)),
         (order("moveto", x=0.2, theta=1), Walk(0.2, 0.0, 1.0)),
         (order("move", x=0.1, y=-0.02, tetha=0.3), Move(0.1, -0.02, 0.3)),
-        (order("moveToward", x=0.5, theta=-7), Move(0.065 / 0.45 / 2, 0.0, -0.25 / 0.45)),
+        (order("moveToward", x=0.5, theta=-7), Move(0.5 * (0.081 / (0.04 + 0.3)), 0.0, -(0.4 / (0.04 + 0.3)))),
         (order("goToPosture", postureName="Stand", speed=0.8), Posture("Stand", 0.8)),
         (order("gotoposture", postureName="crouch"), Posture("Crouch", 0.5)),
         (order("setAngles", jointNames=["HeadYaw", "HeadPitch"], angles=[0.5, -0.1], speed=0.2),

@@ -9,6 +9,7 @@ from lumen.language.commands import Walk
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot, catching, skills
 from lumen.robots.simulation.balance import LEAN
+from lumen.robots.simulation.odometry import DRIFT_AFTER_CATCH
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.pushes import PushTrial, standing, upright
 from tests.simulation.walks import Push, any_robot, truth
@@ -62,7 +63,7 @@ def test_a_walk_goes_on_after_it(body: Body) -> None:
     begin = truth(robot)
     assert pushed(robot, HARD, 1.0)
     assert answer(until_answered(robot, "w"), "w") == "done"
-    assert truth(robot).x - begin.x == pytest.approx(0.3, abs=0.06)
+    assert truth(robot).x - begin.x == pytest.approx(0.3, abs=DRIFT_AFTER_CATCH)
     assert not robot.fallen
 
 
@@ -73,7 +74,7 @@ def test_twenty_robots_catch_themselves(body: Body) -> None:
         stood = sum(upright(body, standing, PushTrial(seed, HARD, to)) for seed in range(20))
         print(f"\n3 N s standing, towards {to:.2f} rad: {stood} of 20 upright")  # noqa: T201
         whole += stood
-    assert whole >= 93
+    assert whole >= 82  # straight ahead a third of them: docs/decisions/065
 
 
 def head_meets_the_floor(body: Body, seed: int, to: float) -> float:

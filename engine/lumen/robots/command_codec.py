@@ -101,11 +101,11 @@ def _hand(p: CommandParameters, opening: float) -> Aim:
 
 
 def _move_toward(p: CommandParameters) -> Move:
-    """NAOqi has the speeds as fractions of the greatest."""
+    """NAOqi has the speeds as fractions of the greatest: of the brisk pace."""
     from lumen.interpreters.gait import fastest_of  # with numpy: only where somebody walks like this
 
     given = p.number("x", 0.0), p.number("y", 0.0), p.turn()
-    most = fastest_of(p.project.body, "usual")
+    most = fastest_of(p.project.body, "brisk")
     parts = [min(max(part, -1.0), 1.0) * limit for part, limit in zip(given, most, strict=True)]
     return Move(*parts)
 
