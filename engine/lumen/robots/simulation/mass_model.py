@@ -29,6 +29,9 @@ class MassModel:
         self._data = mujoco.MjData(self.model)
         self._places = {name: self.model.joint(name).qposadr[0] for name in body.joints}
         self._torso = self.model.body(body.roles.torso).id
+        at, turned = self.model.body_pos[self._torso], self.model.body_quat[self._torso]
+        root = self.model.body_parentid[self._torso] == 0 and not self.model.body_jntnum[self._torso]
+        self._torso_is_world = bool(root and not at.any() and turned[0] == 1.0)
         self._whole = self.model.body_rootid[self._torso]
         self._order = np.array(list(self._places.values()))
         self._soles = [self.model.site(body.roles.soles[side]).id for side in SIDES if side in body.roles.soles]
@@ -53,5 +56,7 @@ class MassModel:
 
     def _seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points of the world, Shape (..., 3), in the torso's frame [m]."""
+        if self._torso_is_world:
+            return points.copy()
         seen: NDArray[np.float64] = (points - self._data.xpos[self._torso]) @ self._data.xmat[self._torso].reshape(3, 3)
         return seen
