@@ -20,7 +20,7 @@ from lumen.robots.simulation.backlash import loosen
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
 ROBOT_PREFIX = "nao"
-"""What the names of the robot's elements begin with in the hall: `nao/HeadYaw`."""
+"""What the names of the robot's elements begin with in the hall: `nao/` and its own name."""
 
 STAGE_SITE = "stage"
 """The site of the hall where the robot stands."""
