@@ -204,9 +204,9 @@ def test_other_files_that_change_no_visit_are_taken(folder: Path) -> None:
 
 DIES = """
 import os
-from lumen.app.reload import validation_process as process
-process.check_visits = lambda *_: {ends}
-process.main()
+from lumen.app.reload import validation_process, visits_check
+visits_check.check_visits = lambda *_: {ends}
+validation_process.main()
 """
 
 
