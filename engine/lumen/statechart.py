@@ -23,6 +23,7 @@ from lumen.interpreters.statechart import (
     serialize,
     step,
 )
+from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.json_cursor import plain
 from lumen.interpreters.statechart.values import Timer
 from lumen.language import machines
@@ -42,6 +43,13 @@ else:
     C = TypeVar("C", bound=Clock)  # only type checkers need the default: Python has it from 3.13 on
 
 _new = tuple.__new__  # half of the price of Event(…)
+_SOON = 2 * HALF
+"""What ends within this time ends now [s]."""
+
+
+def _unobserved(_: Step) -> None:
+    """Nobody looks on."""
+
 
 __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
@@ -106,7 +114,7 @@ class Interpreter(Generic[C]):
         epoch: float = 0.0,
         timezone: str = "",
         seed: int = 0,
-        observe: Callable[[Step], None] = lambda _: None,
+        observe: Callable[[Step], None] = _unobserved,
     ) -> None: ...
 
     @overload
@@ -120,7 +128,7 @@ class Interpreter(Generic[C]):
         epoch: float = 0.0,
         timezone: str = "",
         seed: int = 0,
-        observe: Callable[[Step], None] = lambda _: None,
+        observe: Callable[[Step], None] = _unobserved,
     ) -> None: ...
 
     def __init__(
@@ -133,7 +141,7 @@ class Interpreter(Generic[C]):
         epoch: float = 0.0,
         timezone: str = "",
         seed: int = 0,
-        observe: Callable[[Step], None] = lambda _: None,
+        observe: Callable[[Step], None] = _unobserved,
     ) -> None:
         need(machine, machines.MachineDefinition, "what an interpreter runs", "a Machine")
         if clock is not None and not (callable(getattr(clock, "now", None)) and callable(getattr(clock, "wait", None))):
@@ -149,6 +157,7 @@ class Interpreter(Generic[C]):
         self._observe = observe
         self._snapshot: Snapshot | None = None
         self._timers, self._next = tuple[Timer, ...](), inf
+        self._quick = compiled(machine).fast_paths.step
         if isinstance(self.clock, VirtualClock):
             self.clock.attach(self)
 
@@ -161,7 +170,7 @@ class Interpreter(Generic[C]):
         clock: None = None,
         timers: TimerPolicy = "deadline",
         *,
-        observe: Callable[[Step], None] = lambda _: None,
+        observe: Callable[[Step], None] = _unobserved,
     ) -> "Interpreter[VirtualClock]": ...
 
     @overload
@@ -173,7 +182,7 @@ class Interpreter(Generic[C]):
         clock: C,
         timers: TimerPolicy = "deadline",
         *,
-        observe: Callable[[Step], None] = lambda _: None,
+        observe: Callable[[Step], None] = _unobserved,
     ) -> "Interpreter[C]": ...
 
     @classmethod
@@ -184,7 +193,7 @@ class Interpreter(Generic[C]):
         clock: Any = None,
         timers: TimerPolicy = "deadline",
         *,
-        observe: Callable[[Step], None] = lambda _: None,
+        observe: Callable[[Step], None] = _unobserved,
     ) -> "Interpreter[Any]":
         """An interpreter that continues from a `snapshot()`; raises SnapshotError if that is from another machine.
 
@@ -218,14 +227,29 @@ class Interpreter(Generic[C]):
         name, sendid, cause = event, "", None
         if isinstance(event, Event):
             name, data, _, sendid, cause = event
-        if type(name) is not str or not name:
+        elif type(event) is not str:
             need(event, (str, Event), "an event", "its name, or an Event")
+        if not name or type(name) is not str:
             need_text(name, "the name of an event")
         if data is not None:
             data = plain(data, "event.data")
-        self.wake()
-        taken = self._take(step(self.machine, self._now, _new(Event, (name, data, self.clock.now(), sendid, cause))))
-        self.wake()
+        now, at = self._snapshot, self.clock.now()
+        if now is None or now.timers is not self._timers or now.invoked or self._next < at + _SOON:
+            self.wake()
+            now, at = self._now, self.clock.now()
+        sent = _new(Event, (name, data, at, sendid, cause))
+        try:
+            taken = self._quick(now, sent)
+        except Exception:  # nothing has happened yet: `step` fails on the same, and says why
+            taken = None
+        if taken is None:
+            taken = step(self.machine, now, sent)
+        now = self._snapshot = taken.snapshot
+        if self._observe is not _unobserved:
+            self._observe(taken)
+            now = self._now  # what looks on may send
+        if now.timers is not self._timers or now.invoked:
+            self.wake()
         return taken
 
     def wake(self) -> None:
@@ -233,7 +257,7 @@ class Interpreter(Generic[C]):
         now, at = self._snapshot or self._now, self.clock.now()
         if now.timers is not self._timers:
             self._timers, self._next = now.timers, min((timer.due for timer in now.timers), default=inf)
-        if now.invoked or self._next < at + 2 * HALF:
+        if now.invoked or self._next < at + _SOON:
             for taken in elapse(self.machine, lambda: self._now, at):
                 self._take(taken)
 
