@@ -16,9 +16,10 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from statistics import median, quantiles
-from typing import Any
+from typing import Any, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -32,6 +33,8 @@ from lumen.language.routes import Carried, Direction, Route
 KEY, ANSWER = "lumen.bench.body", "lumen.bench.answer"
 SIZES = {"200 B": 200, "15 kB": 15_000}
 ROUNDS = 5
+PACE = 1_000
+FILLER = "x" * 160
 TELEMETRY = Route("bench", KEY, Direction.IN, keep=1_000_000)
 COMMAND = Route("bench", KEY, Direction.IN, carried=Carried.COMMAND, must_arrive=True)
 
@@ -46,20 +49,31 @@ def main() -> None:
     with broker(options.bus) as url:
         over_the_broker(url, options.seconds)
         round_trip(url)
+        for name, kind in (("ours", Ours), ("pika", Pikas)):
+            found = paced(url, kind)
+            late = f"p50 {found.p50:.2f} ms, p99 {found.p99:.2f} ms"
+            print(f"200 B at {PACE:,}/s, {name}  {late}, {found.spent:.0f} us of CPU")
 
 
 def in_process(seconds: float) -> None:
     """One publisher, one subscriber, a body of the face detector, on the embedded bus."""
+    off, on = checks(seconds)
+    print(f"in process, schema checks off    {off:>9,.0f} msg/s")
+    print(
+        f"in process, schema checks on     {on:>9,.0f} msg/s  (checked once, {1e6 / on - 1e6 / off:.2f} us a message)"
+    )
+
+
+def checks(seconds: float) -> tuple[float, float]:
+    """Messages a second within this process, unchecked and checked."""
     project, body = lumen.load(), {"x": 160, "y": 120, "time": 12.5}
     face = "lumen.visual.face.detection"
-    rates = {}
-    for name, bus in (("off", connect("memory://")), ("on", validated(connect("memory://"), project))):
+    rates = []
+    for bus in (connect("memory://"), validated(connect("memory://"), project)):
         bus.subscribe(face, lambda message: None)
-        rates[name] = best(lambda bus=bus: bus.publish(face, body), seconds)
+        rates.append(best(lambda bus=bus: bus.publish(face, body), seconds))
         bus.close()
-    cost = 1e6 / rates["on"] - 1e6 / rates["off"]
-    print(f"in process, schema checks off    {rates['off']:>9,.0f} msg/s")
-    print(f"in process, schema checks on     {rates['on']:>9,.0f} msg/s  (checked once, {cost:.2f} us a message)")
+    return rates[0], rates[1]
 
 
 def best(work: Callable[[], object], seconds: float) -> float:
@@ -152,6 +166,79 @@ def round_trip(url: str) -> None:
         cuts = quantiles(times[100:], n=100)
         print(f"round trip of a command, {name}  p50 {cuts[49]:.2f} ms, p99 {cuts[98]:.2f} ms")
         ask.close()
+
+
+class Pace(NamedTuple):
+    """How late messages of a steady stream are [ms], the middle one and the 99th of 100; processor time of one [us]."""
+
+    p50: float
+    p99: float
+    spent: float
+
+
+class Ours:
+    """One side publishes, the other subscribes, each with a bus of its own in this process."""
+
+    def __init__(self, url: str, came: Callable[[bytes], None]) -> None:
+        self._sender, receiver = connect(url), connect(url)
+        for bus in (self._sender, receiver):
+            bus.carry({KEY: replace(TELEMETRY, most=10 * PACE)})
+        self._undo = receiver.subscribe(KEY, lambda message: came(message.body["sent"]))
+        self.close = lambda: (self._sender.close(), self._undo(), receiver.close())
+
+    def send(self, sent: int) -> None:
+        self._sender.publish(KEY, {"sent": sent, "filler": FILLER})
+
+
+class Pikas:
+    """The same by two BlockingConnections, the consumer on a thread."""
+
+    def __init__(self, url: str, came: Callable[[int], None]) -> None:
+        self._sender = pika.BlockingConnection(pika.URLParameters(url))
+        self._channel = self._sender.channel()
+        ready, self._ending = threading.Event(), threading.Event()
+
+        def serve() -> None:
+            connection = pika.BlockingConnection(pika.URLParameters(url))
+            channel = connection.channel()
+            queue = channel.queue_declare("", exclusive=True).method.queue
+            channel.queue_bind(queue, "amq.topic", KEY)
+            channel.basic_consume(queue, lambda *delivery: came(json.loads(delivery[3])["sent"]), auto_ack=True)
+            ready.set()
+            while not self._ending.is_set():
+                connection.process_data_events(0.1)
+            connection.close()
+
+        self._server = threading.Thread(target=serve)
+        self._server.start()
+        ready.wait()
+
+    def send(self, sent: int) -> None:
+        self._channel.basic_publish("amq.topic", KEY, json.dumps({"sent": sent, "filler": FILLER}).encode())
+
+    def close(self) -> None:
+        self._ending.set()
+        self._server.join()
+        self._sender.close()
+
+
+def paced(url: str, kind: Callable[[str, Callable[[Any], None]], "Ours | Pikas"], seconds: float = 5.0) -> Pace:
+    """A thousand messages a second, each with when it was sent."""
+    late: list[float] = []
+    ends = kind(url, lambda sent: late.append((time.perf_counter_ns() - sent) / 1e6))
+    count, began, spent = round(PACE * seconds), time.perf_counter(), time.process_time()
+    for number in range(count):
+        time.sleep(max(0.0, began + number / PACE - time.perf_counter()))
+        ends.send(time.perf_counter_ns())
+    deadline = time.perf_counter() + 10.0
+    while len(late) < count and time.perf_counter() < deadline:
+        time.sleep(0.01)
+    spent = time.process_time() - spent
+    ends.close()
+    if len(late) < count:
+        raise RuntimeError(f"{count - len(late)} of {count} messages did not come")
+    cuts = quantiles(late[PACE // 2 :], n=100)
+    return Pace(cuts[49], cuts[98], 1e6 * spent / count)
 
 
 def asking(url: str) -> Iterator[None]:

@@ -1,0 +1,243 @@
+"""The table of docs/performance.md: what a user calls, how fast it is here, and what is to be reached.
+
+    python benchmarks/all.py [--rows WORD] [--markdown]
+
+Each figure comes from the script that measures it at length, in a shorter form. Ratios are against the named peer in
+this run. Processor time where a machine may be busy, and wall time where somebody waits. Needs Node and npm for
+XState, RabbitMQ for the broker; a row that lacks what it needs says so.
+"""
+
+import argparse
+import os
+import platform
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from statistics import median
+from typing import Any, NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import bus
+import lint
+import reload
+from fuzzy import processor
+from peers import xstate
+from statechart import regions, ring, sending
+from tests.guarded import DEVNULL, PIPE, Guarded
+from timing import rate
+from visit import tour
+
+import lumen
+from lumen.interpreters.inference.evaluator import Evaluator
+from lumen.statechart import Interpreter
+
+ROOT = Path(__file__).parents[1]
+EDITS = 45
+RUNS = 3
+SPOKEN = "robot    “"
+
+
+class Row(NamedTuple):
+    """A figure: what it is about, what is to be reached, and how to measure it."""
+
+    what: str
+    wanted: str
+    measure: Callable[[], str]
+
+
+@cache
+def actor() -> dict[str, float]:
+    """Events a second of XState's `actor.send`, by machine."""
+    (rates,) = (rates for name, rates in xstate((15,)) if "actor" in name)
+    if isinstance(rates, str):
+        raise RuntimeError(rates)
+    return rates
+
+
+def ring_of_15() -> str:
+    return f"{rate(sending(ring(15))) / actor()['15 states']:.2f} x"
+
+
+def three_levels() -> str:
+    return f"{rate(sending(regions())) / actor()['regions']:.2f} x"
+
+
+def many_states() -> str:
+    return f"{rate(sending(ring(1_500))) / rate(sending(ring(15))):.2f}"
+
+
+def first_visits() -> str:
+    """Each state of a ring that is new, once."""
+
+    def once() -> float:
+        interpreter = Interpreter(ring(1_500))
+        interpreter.start()
+        began = time.process_time()
+        for _ in range(1_499):
+            interpreter.send("go")
+        return (time.process_time() - began) / 1_499
+
+    return f"{1e3 * median(once() for _ in range(RUNS)):.3f} ms"
+
+
+def built() -> str:
+    def once() -> tuple[float, float]:
+        began = time.process_time()
+        machine = ring(1_500)
+        there = time.process_time()
+        Interpreter(machine).start()
+        return there - began, time.process_time() - there
+
+    made, started = zip(*(once() for _ in range(RUNS)), strict=True)
+    return f"{1e3 * median(made):.0f} and {1e3 * median(started):.0f} ms"
+
+
+def visits() -> str:
+    return f"{rate(tour()) / 1e3:.0f} k/s"
+
+
+@cache
+def edits() -> reload.Outcome:
+    return reload.soak(EDITS)
+
+
+def verdict() -> str:
+    return f"{1e3 * median(edits().single):.0f} ms"
+
+
+def missed() -> str:
+    found = edits()
+    return f"{found.missed} of {found.ticks:,}; idle {found.beside}"
+
+
+def first_word(robot: str) -> str:
+    return f"{median(_first_word(robot) for _ in range(RUNS)):.2f} s"
+
+
+def _first_word(robot: str) -> float:
+    """The processor time [s] of an exhibition and its processes until the robot says its first word."""
+    words = [sys.executable, "-m", "lumen", "run", ROOT, "--story", "visitor", "--robot", robot, "--fresh"]
+    with tempfile.TemporaryDirectory() as home:
+        environment = {**os.environ, "LUMEN_HOME": home}
+        with Guarded(words, stdout=PIPE, stdin=DEVNULL, text=True, env=environment) as process:
+            assert process.stdout
+            said = any(SPOKEN in line for line in process.stdout)
+            took = sum(_processor_time(pid) for pid in _tree(process.pid))
+            process.terminate()
+    if not said:
+        raise RuntimeError("it ended without a word")
+    return took
+
+
+def _tree(pid: int) -> Iterator[int]:
+    """A process and those that it began."""
+    yield pid
+    for children in Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in children.read_text().split():
+            yield from _tree(int(child))
+
+
+def _processor_time(pid: int) -> float:
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+
+
+def cold_lint() -> str:
+    imports, took = lint.cold()
+    return f"{took / imports:.2f} x"
+
+
+def toured() -> str:
+    import simulation
+
+    project = lumen.load(ROOT)
+    robot = simulation.SimulatedRobot(project.body, ROOT / "models", project.hall, stage=project.stage)
+    robot.advance(0.02)
+    began, before = time.process_time(), robot.world.data.time
+    simulation.touring(project, robot)
+    took, lived = time.process_time() - began, robot.world.data.time - before
+    robot.close()
+    return f"{lived / took:.1f} x real time"
+
+
+def evaluations() -> str:
+    """How often the controller is asked for each image, while a head under physics turns to a face."""
+    from tests.fuzzy import physical_loop
+
+    from lumen.language.stories import Visitor
+
+    asked, evaluate = 0, Evaluator.evaluate
+
+    def counting(*words: Any) -> dict[str, float]:
+        nonlocal asked
+        asked += 1
+        return evaluate(*words)
+
+    Evaluator.evaluate = counting  # type: ignore[method-assign]
+    try:
+        physical_loop.run(lumen.load(ROOT), lambda now: Visitor(), (15.0, 8.0), tick=0.1, duration=4.0)
+    finally:
+        Evaluator.evaluate = evaluate  # type: ignore[method-assign]
+    return f"{asked / 40:.1f}"
+
+
+def in_process() -> str:
+    off, on = bus.checks(1.0)
+    return f"{on / 1e3:.0f} k/s; unchecked {off / 1e3:.0f}"
+
+
+def paced() -> str:
+    with bus.broker(None) as url:
+        ours, theirs = bus.paced(url, bus.Ours), bus.paced(url, bus.Pikas)
+    return f"{ours.p99:.1f} ms, pika {theirs.p99:.1f}; {ours.spent:.0f} us CPU, pika {theirs.spent:.0f}"
+
+
+ROWS = (
+    Row("`Interpreter.send`, ring of 15, against XState's `actor.send`", "2.5 x", ring_of_15),
+    Row("the same, three levels and two regions", "4 x", three_levels),
+    Row("1,500 states against 15", "0.95", many_states),
+    Row("first visit to a state", "0.05 ms", first_visits),
+    Row("build and start of 1,500 states", "150 and 5 ms", built),
+    Row("steps of visits to the tour", "300 k/s", visits),
+    Row("saved file to verdict, one good file, median", "120 ms", verdict),
+    Row("ticks missed while files are edited", "0", missed),
+    Row("`lumen run` to the first word, CPU", "1.0 s", lambda: first_word("simulation")),
+    Row("the same, `--robot recording`", "0.4 s", lambda: first_word("recording")),
+    Row("`lumen lint` cold, against `import yaml, jsonschema`", "2.0 x", cold_lint),
+    Row("whole tour in simulation, no camera, by CPU", "30 x", toured),
+    Row("fuzzy evaluations for each image while tracking", "2", evaluations),
+    Row("one message in this process, checked", "400 k/s", in_process),
+    Row("RabbitMQ, 200 B at 1,000/s: 99th of 100, CPU a message", "pika's", paced),
+)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rows", default="", help="only those whose words contain this")
+    parser.add_argument("--markdown", action="store_true", help="as docs/performance.md has it")
+    options = parser.parse_args()
+    load = ", ".join(f"{load:.1f}" for load in os.getloadavg())
+    print(f"{processor()}, {os.cpu_count()} cores, Python {platform.python_version()}; load before {load}\n")
+    form = "| {} | {} | {} |" if options.markdown else "{:<62}{:<16}{}"
+    print(form.format("what", "to be reached", "here"), flush=True)
+    if options.markdown:
+        print(form.format("---", "---", "---"))
+    for row in ROWS:
+        if options.rows in row.what:
+            print(form.format(row.what, row.wanted, _figure(row)), flush=True)
+    return 0
+
+
+def _figure(row: Row) -> str:
+    try:
+        return row.measure()
+    except (RuntimeError, OSError) as error:
+        return f"not measured: {error}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
