@@ -23,6 +23,9 @@ START = (3.0, -3.0)
 """Where on the hall's floor these robots stand [m], with two metres around them."""
 
 TARGETS = (Walk(0.2), Walk(0.5), Walk(0.0, 0.2), Walk(0.0, 0.0, pi / 2), Walk(0.3, 0.2, pi / 4))
+LONGEST = 120.0
+"""No walk takes longer [s]."""
+
 NEAR, STRAIGHT = 2.0, 3.0
 """How true a walk has to end [cm], [degrees]."""
 
@@ -113,7 +116,7 @@ def walk(robot: SimulatedRobot, command: Walk, push: Push | None = None) -> Walk
     goal, begin = truth(robot).then(Pose(command.x, command.y, command.theta)), robot.time
     robot.start("walk", command)
     events: list[Event] = []
-    while not answer(events, "walk") and robot.time < begin + 60:
+    while not answer(events, "walk") and robot.time < begin + LONGEST:
         if push:
             push.act(robot, robot.time - begin)
         robot.advance(0.01)
