@@ -13,6 +13,7 @@ from lumen.language.roles import BaseKind
 from lumen.loading.bodies import build_body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.yaml_reader import parse
+from lumen.robots.simulation.model import Variation, physics
 
 MODELS = Path(__file__).parents[2] / "models"
 WEIGHTS = {"greeter": (30.0, 40.0), "lantern": (1.0, 2.0), "sprout": (2.0, 3.0)}
@@ -149,3 +150,18 @@ def test_it_stands_still_in_its_postures(name: str, posture: str) -> None:
     assert (hardest < 0.5 * model.actuator_forcerange[:, 1]).all(), model.actuator(int(hardest.argmax())).name
     for joint, angle in described(name)["postures"][posture].items():
         assert data.qpos[model.joint(joint).qposadr[0]] == pytest.approx(angle, abs=0.02), joint
+
+
+@own
+def test_a_heavier_brother_is_heavier_in_all_its_parts(name: str) -> None:
+    """Its masses stand at geoms and their classes rather than in `inertial`."""
+    document, _ = parse(f"models/{name}.yaml", (MODELS / f"{name}.yaml").read_bytes())
+    assert document is not None
+    body = build_body(document.data, DocumentReport(document), name=name)
+    assert body is not None
+    usual, heavy = (
+        {one.body(i).name: one.body_mass[i] for i in range(one.nbody) if one.body(i).name.startswith("nao/")}
+        for one in (physics(body, MODELS, "hall.xml", Variation(mass=factor)).model.ptr for factor in (1.0, 1.1))
+    )
+    assert heavy == pytest.approx({link: 1.1 * mass for link, mass in usual.items()})
+    assert WEIGHTS[name][0] <= sum(usual.values()) <= WEIGHTS[name][1]

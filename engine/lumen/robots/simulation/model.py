@@ -141,6 +141,10 @@ def _vary(world: mjcf.RootElement, variation: Variation) -> None:
             if inertial.fullinertia is not None:
                 inertial.fullinertia = inertial.fullinertia * variation.mass
     for geom in world.find_all("geom"):
+        of_class = geom.dclass.geom.mass if geom.dclass is not None and geom.dclass.geom is not None else None
+        mass = of_class if geom.mass is None else geom.mass
+        if mass is not None:
+            geom.mass = mass * variation.mass
         if geom.friction is not None:
             geom.friction = geom.friction * variation.friction
     for default in world.find_all("default"):
