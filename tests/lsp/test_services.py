@@ -74,7 +74,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         ("motions/goodbye.yaml", "pose: hand_out", "pose: |", ["hand_in", "lean"], ["Stand"]),
         ("motions/goodbye.yaml", "joints: {LShoulderPitch: 78", "joints: {L|", ["LElbowYaw: "], ["lean"]),
         ("fuzzy/head.yaml", "FaceXLoc: face.x", "FaceXLoc: face.|", ["x", "y"], ["face"]),
-        ("fuzzy/head.yaml", "joint: HeadYaw", "joint: |", ["HeadPitch"], ["face"]),
+        ("fuzzy/head.yaml", "joint: head.yaw", "joint: |", ["HeadPitch"], ["face"]),
         ("fuzzy/head.yaml", "implication: minimum", "implication: |", ["algebraic-product"], ["HeadYaw"]),
     ],
 )  # fmt: skip
@@ -101,7 +101,7 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
         ("motions/goodbye.yaml", "pose: hand_|out", "motions/goodbye.yaml: hand_out:"),
         ("lumen.yaml", "schema: ima|ge", "schemas/messages/image.schema.json"),
         ("fuzzy/head.yaml", "FaceXLoc: fa|ce.x", "lumen.yaml: face:"),
-        ("fuzzy/head.yaml", "joint: Head|Yaw", "models/nao.yaml: HeadYaw:"),
+        ("models/nao.yaml", "    on: Head|Yaw", "models/nao.yaml: HeadYaw:"),
     ],
 )
 def test_definition(file: str, text: str, where: str) -> None:

@@ -97,6 +97,8 @@ class NameIndex:
         """The behaviour that the names in a file are about: its own, or the one that a story plays."""
         if kind_of(file) == "words":
             return WORDS_SCOPE + stem(file)
+        if kind_of(file) == "motion" and file.count("/") > 1:
+            return file  # of one robot, beside the shared one of that name
         if kind_of(file) != "story":
             return stem(file)
         document = self.documents.get(file)
