@@ -6,6 +6,7 @@ import pytest
 
 import lumen
 from lumen.app.rehearsal import rehearse
+from lumen.cli.main import main
 from lumen.language.diagnostics import has_errors
 from lumen.loading.chosen_model import MODEL_VARIABLE
 
@@ -21,3 +22,24 @@ def test_the_visitor_is_guided_by_any_robot(model: str, monkeypatch: pytest.Monk
     project = lumen.load(ROOT)
     rehearsal = rehearse(project, project.stories["visitor"])
     assert not rehearsal.failed
+
+
+def test_pepper_is_guided_through_by_the_recording_robot(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is wrong that a model would have shown; its shoulders do not turn inwards, as two gestures would."""
+    monkeypatch.setenv(MODEL_VARIABLE, "pepper")
+    found = lumen.check(ROOT)
+    assert not has_errors(found)
+    assert {d.code for d in found} == {"left-out", "out-of-reach"}
+    assert {d.place.file for d in found if d.code == "out-of-reach"} == {"motions/gestures/guide.yaml"}
+    project = lumen.load(ROOT)
+    assert project.body.mjcf == ""
+    rehearsal = rehearse(project, project.stories["visitor"])
+    assert not rehearsal.failed
+
+
+def test_a_body_without_a_model_is_not_simulated(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv(MODEL_VARIABLE, "pepper")
+    assert main(["run", "--robot", "simulation", str(ROOT), "--for", "1s"]) == 2
+    assert "Pepper has no MJCF: it can be run with --robot naoqi or --robot recording" in capsys.readouterr().err

@@ -67,7 +67,8 @@ class Body:
     joints that open (0..1) rather than turn. `passages` are the motions from one posture (`start`) to another (`end`)
     where a straight way would fall. `links` are those that differ from the MJCF. `roles` say what its parts are; one
     whose eyes have a camera has a `camera`. `gait` maps the name of a pace to what of it does not follow
-    from the legs, in SI units. `mjcf` is a file beside it, or `PACKAGE:PATH`. `give` is how far off [rad] the servos
+    from the legs, in SI units. `mjcf` is a file beside it, or `PACKAGE:PATH`; empty for
+    a body that is never simulated. `give` is how far off [rad] the servos
     give all their torque that joints get which have none in the MJCF; 0 where none is added.
     """
 

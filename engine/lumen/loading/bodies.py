@@ -41,6 +41,9 @@ GAIT_LENGTHS = frozenset(
 )
 """The parameters of a pace that are counted in the file's units; all others are times [s]."""
 
+NO_MJCF = "none"
+"""What `mjcf` says of a body that is never simulated."""
+
 COMMON_POSTURE = "Stand"
 """The one that every robot knows: where it begins."""
 
@@ -93,12 +96,13 @@ class _Builder:
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
         self.joints = {n: joint for n, spec in data["joints"].items() if (joint := self.joint(n, spec))}
         self.hands = tuple(n for n in self.joints if data["joints"][n].get("opening"))
+        self.unmodelled = data.get("mjcf") == NO_MJCF
 
     def body(self, name: str) -> Body:
         data, roles = self.data, self.roles()
         return Body(
             name=data.get("name", name),
-            mjcf=data.get("mjcf", f"{name}.xml"),
+            mjcf="" if self.unmodelled else data.get("mjcf", f"{name}.xml"),
             joints=self.joints,
             parts=self.parts(),
             postures=self.postures(roles),
@@ -161,8 +165,8 @@ class _Builder:
         return False
 
     def roles(self) -> Roles:
-        given, hands = self.data.keys(), self.hands
-        reader = RoleReader(self.data.get("roles") or {}, self.report, self.known, given, hands)
+        given, hands, data = self.data.keys(), self.hands, self.data.get("roles") or {}
+        reader = RoleReader(data, self.report, self.known, given, hands, modelled=not self.unmodelled)
         return reader.read(self.length, self.angle)
 
     def parts(self) -> dict[str, tuple[str, ...]]:

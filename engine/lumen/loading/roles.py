@@ -18,6 +18,7 @@ class RoleReader:
     """Reads the roles of one file. `known` says of a joint's name, and where it stands, whether there is such a joint.
 
     `given` are the keys of the file, of which some roles need one; `hands` the joints that open rather than turn.
+    Only one that is `modelled`, in an MJCF, names the wheels there.
     """
 
     def __init__(
@@ -27,8 +28,11 @@ class RoleReader:
         known: Callable[[str, NodePath], bool],
         given: Collection[str],
         hands: Collection[str],
+        *,
+        modelled: bool = True,
     ) -> None:
         self.data, self.report, self.known, self.given, self.hands = data, report, known, given, hands
+        self.modelled = modelled
         self._owner: dict[str, NodePath] = {}
         self._sound = True
 
@@ -84,8 +88,9 @@ class RoleReader:
         """Report roles that need others which are not there."""
         if roles.base.kind is BaseKind.BIPED and (lacking := list(_lacking_for_feet(roles))):
             self._say(("base", "kind"), "a biped", lacking)
-        elif roles.base.kind is BaseKind.WHEELS and (lacking := [s for s in SIDES if not getattr(roles.base, s)]):
-            self._say(("base", "kind"), "a base on wheels", [f"base.{side}" for side in lacking])
+        wheels = roles.base.kind is BaseKind.WHEELS and self.modelled
+        if wheels and (lacking := [f"base.{side}" for side in SIDES if not getattr(roles.base, side)]):
+            self._say(("base", "kind"), "a base on wheels", lacking)
         if roles.eyes.camera and "camera" not in self.given:
             message = f"nothing is said of what `{roles.eyes.camera}` sees"
             hint = "say it under `camera`: width, height, angles of view and position"

@@ -34,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
         return
     if settings.hall:
         _ModelReader(draft).read(settings.hall)
-    robot = _ModelReader(draft).read(draft.body.mjcf) if draft.body else []
+    robot = _ModelReader(draft).read(draft.body.mjcf) if draft.body and draft.body.mjcf else []
     if len(robot) > 1 and draft.body:
         _elements(draft, draft.body, robot)
 

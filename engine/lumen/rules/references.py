@@ -49,9 +49,9 @@ def _main(draft: ProjectDraft, references: References) -> None:
         references.look_up(report, ("behavior",), "behavior", settings.behavior)
     if settings.story:
         references.look_up(report, ("story",), "story", settings.story)
-    if settings.model and references.look_up(report, ("robot", "model"), "model", settings.model) and draft.body:
-        body_report = draft.report("models", settings.model)
-        _model_file(draft, body_report, ("mjcf",), draft.body.mjcf)
+    model, body = settings.model, draft.body
+    if model and references.look_up(report, ("robot", "model"), "model", model) and body and body.mjcf:
+        _model_file(draft, draft.report("models", model), ("mjcf",), body.mjcf)
     if settings.hall and "models" not in draft.missing:
         _model_file(draft, report, ("hall",), settings.hall)
 

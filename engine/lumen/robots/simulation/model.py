@@ -62,6 +62,8 @@ def load(
 
 def alone(body: Body, models: Path) -> mjcf.RootElement:
     """The robot without a world and without a free joint, to be attached to one; raises RobotError as `load` does."""
+    if not body.mjcf:
+        raise RobotModelError(f"{body.name} has no MJCF: it can be run with --robot naoqi or --robot recording")
     _complain("the description of the robot's body", lacks_of_body(body))
     robot = _read(mjcf_path(body.mjcf, models))
     add_servos(robot, body)
