@@ -9,6 +9,7 @@ import lumen
 from lumen.bus import Bus, connect
 from lumen.buses import aliases
 from lumen.buses.validated import ValidatedBus, by_key, validated
+from lumen.language.causes import MessageOrigin
 from lumen.language.projects import Project
 from lumen.ports import Bus as AnyBus
 from tests.waiting import Collector
@@ -60,6 +61,18 @@ def test_who_listens_to_both_hears_once(project: Project, stranger: Bus) -> None
     assert both.messages[1].id == both.messages[0].id + aliases.COPY
     for bus in (robot, ears):
         bus.close()
+
+
+def test_a_message_that_says_its_cause_has_an_id_under_either(project: Project, stranger: Bus) -> None:
+    robot, seen = ours(project), Collector()
+    for key in ("lumen.NAO.state", "lumen.state"):
+        stranger.subscribe(key, seen)
+    for _ in range(2):
+        robot.publish("lumen.NAO.state", {"robot": "NAO", "time": 1.0}, origin=MessageOrigin(cause="step 42"))
+    ids = [message.id for message in seen.messages]
+    assert len(set(ids)) == 4
+    assert ids[1::2] == [f"{id}{aliases.COPY}" for id in ids[::2]]
+    robot.close()
 
 
 def test_a_body_that_does_not_fit_is_refused_under_either(project: Project, stranger: Bus) -> None:

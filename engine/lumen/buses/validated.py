@@ -127,9 +127,9 @@ class ValidatedBus:
         check = self._checks.get(key)
         if reason := self._wrong(key, body) if check is None else check(body):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
-        if origin is UNKNOWN_ORIGIN:
+        if not origin.id:
             self._passed = id = f"{PREFIX}-{next(NUMBERS)}"
-            origin = _new(MessageOrigin, (id, "", 0.0, ""))
+            origin = _new(MessageOrigin, (id, *origin[1:]))
         self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
         if (alias := self._aliases.names.get(key)) and self._aliases.used:
             copy = origin._replace(id=f"{origin.id}{COPY}")
