@@ -6,7 +6,7 @@ from typing import Any
 
 import qi
 
-from lumen.robots.naoqi.sensors import CHARGE, CHARGING, FORCE_SENSORS, INERTIAL, PLUGGED, TOUCH_DEVICES, device
+from lumen.robots.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device, hardware_of
 from tests.naoqi.joints import Joints, bezier
 from tests.naoqi.times import Blocked, Times
 
@@ -21,7 +21,8 @@ class World:
     def __init__(self, body: Any) -> None:
         self.times = Times()
         self.joints = Joints(body, self.times)
-        self.body = body
+        self.body, self.hardware = body, hardware_of(body)
+        self.asked: set[str] = set()
         self.calls: list[tuple[float, str, tuple[Any, ...]]] = []
         self.awake, self.family, self.stiffness = True, "Standing", 1.0
         self.position = [0.0, 0.0, 0.0]
@@ -57,7 +58,8 @@ class ALMotion:
         self._since = 0.0
 
     def getBodyNames(self, name: str) -> list[str]:
-        return list(self._world.body.joints)
+        wheels = ["WheelFL", "WheelFR", "WheelB"] if self._world.body.roles.base.kind == "wheels" else []
+        return [*self._world.body.joints, *wheels]
 
     def getAngles(self, names: Any, sensors: bool) -> list[float]:
         with self._times.lock:
@@ -66,7 +68,8 @@ class ALMotion:
             return [angles[name] for name in listed]
 
     def setBreathEnabled(self, chain: str, enabled: bool) -> None:
-        if chain not in ("Body", "Legs", "Arms", "LArm", "RArm", "Head"):
+        legs = ("Legs",) if self._world.body.roles.legs else ()
+        if chain not in ("Body", *legs, "Arms", "LArm", "RArm", "Head"):
             raise RuntimeError(f"ALMotion::setBreathEnabled\n\t{chain} is no chain")
         self._world.note("setBreathEnabled", chain, enabled)
 
@@ -241,6 +244,7 @@ class ALMemory:
     def getListData(self, keys: list[str]) -> list[Any]:
         if self._world.silent & set(keys):
             raise RuntimeError("ALMemory::getListData\n\tno such key")
+        self._world.asked |= set(keys)
         return [self._value(key) for key in keys]
 
     def raised(self, name: str, value: Any) -> bool:
@@ -250,17 +254,16 @@ class ALMemory:
         return name in self.events
 
     def _value(self, key: str) -> Any:
-        world = self._world
+        world, hardware = self._world, self._world.hardware
         known: dict[str, Any] = {
-            device("US/Left"): world.sonar[0],
-            device("US/Right"): world.sonar[1],
+            **{device(name): heard for name, heard in zip(hardware.sonars, world.sonar, strict=True)},
             CHARGE: world.charge,
             PLUGGED: world.plugged,
             CHARGING: world.charging,
             **{device(f"{joint}/Temperature"): world.temperatures.get(joint, 40.0) for joint in world.body.joints},
-            **{device(f"InertialSensor/{name}"): 9.81 if name == "AccelerometerZ" else 0.0 for name in INERTIAL},
-            **{device(name): 2.7 if name.endswith("TotalWeight") else 0.675 for name in FORCE_SENSORS},
-            **{device(d): float(name in world.pressed) for name, devices in TOUCH_DEVICES.items() for d in devices},
+            **{device(f"{hardware.inertial}/{name}"): 9.81 if name == "AccelerometerZ" else 0.0 for name in INERTIAL},
+            **{device(name): 2.7 if name.endswith("TotalWeight") else 0.675 for name in hardware.force},
+            **{device(d): float(name in world.pressed) for name, devices in hardware.touch.items() for d in devices},
         }
         return known.get(key) if key not in world.lacks else None
 
@@ -352,6 +355,8 @@ class ALLeds:
         self._world = world
 
     def fadeRGB(self, group: str, colour: int, seconds: float) -> None:
+        if group not in self._world.hardware.lights.values():
+            raise RuntimeError(f"ALLeds::fadeRGB\n\t{group} is no group")
         self._world.note("fadeRGB", group, colour, seconds)
 
 

@@ -8,7 +8,7 @@ import pytest
 from lumen.language.commands import Posture
 from lumen.language.routes import Size
 from lumen.ports import Battery, Image, Joints, Sense, Tactile
-from lumen.robots.naoqi.sensors import FORCE_SENSORS, INERTIAL, device
+from lumen.robots.naoqi.hardware import FORCE_SENSORS, INERTIAL, device
 from tests.naoqi.conftest import Live
 from tests.naoqi.lockstep import Lockstep
 from tests.waiting import until

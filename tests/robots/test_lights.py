@@ -6,9 +6,11 @@ from typing import Any
 import pytest
 from PIL import ImageColor
 
+import lumen
 from lumen.language.lights import COLOURS, LIGHT_GROUPS, LIGHTS, light_fault, rgb
 from lumen.loading.schema import load_schema
-from lumen.robots.naoqi.lights import NAOQI_COLOURS, NAOQI_LED_GROUPS, fades
+from lumen.robots.naoqi.hardware import NAO, PEPPER
+from lumen.robots.naoqi.lights import NAOQI_COLOURS, fades
 from lumen.robots.simulation.lights import RENDERED_COLOURS, rendered
 
 
@@ -37,7 +39,8 @@ def test_what_is_wrong_comes_with_what_would_be_right() -> None:
 
 
 def test_both_robots_and_motions_have_the_same_groups_and_colours() -> None:
-    assert NAOQI_LED_GROUPS.keys() == LIGHT_GROUPS.keys() == {*LIGHTS, "eyes", "ears", "feet"}
+    assert NAO.lights.keys() == LIGHT_GROUPS.keys() == {*LIGHTS, "eyes", "ears", "feet"}
+    assert PEPPER.lights.keys() < NAO.lights.keys()
     assert {*NAOQI_COLOURS, *RENDERED_COLOURS} <= COLOURS.keys()
     assert set(groups(load_schema("motion"))) == LIGHT_GROUPS.keys()
     behavior = load_schema("behavior")
@@ -48,7 +51,7 @@ def test_both_robots_and_motions_have_the_same_groups_and_colours() -> None:
 def test_a_colour_by_name_is_drawn_and_sent_as_it_looks_on_leds() -> None:
     assert rendered("blue") != rendered("#0000ff") == (0.0, 0.0, 1.0)
     assert rendered("bleu") is None
-    assert list(fades({"chest": "orange", "eyes": "coral", "nose": "red", "head": "bleu"})) == [
+    assert list(fades({"chest": "orange", "eyes": "coral", "nose": "red", "head": "bleu"}, lumen.load().body)) == [
         ("ChestLeds", 0xFF6000, 0.05),
         ("FaceLeds", 0xFF7F50, 0.05),
     ]

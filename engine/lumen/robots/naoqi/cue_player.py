@@ -1,6 +1,7 @@
 """What goes on beside the joints of a motion: lights, and the words and sounds that the exhibition performs."""
 
 from lumen.language.motions import MotionDefinition
+from lumen.language.robots import Body
 from lumen.robots.cues import CueNotifier, EventSink
 from lumen.robots.naoqi.lights import fades
 from lumen.robots.naoqi.walks import PostCall
@@ -9,8 +10,8 @@ from lumen.robots.naoqi.walks import PostCall
 class CuePlayer:
     """The cues of a motion, each when its time has come."""
 
-    def __init__(self, post: PostCall, motion: MotionDefinition, notice: EventSink) -> None:
-        self._post = post
+    def __init__(self, post: PostCall, motion: MotionDefinition, body: Body, notice: EventSink) -> None:
+        self._post, self._body = post, body
         self._cues = sorted((cue for cue in motion.cues if cue.kind == "leds"), key=lambda cue: -cue.time)
         self._prompter = CueNotifier(motion, notice)
         self._begin = 0.0
@@ -21,5 +22,5 @@ class CuePlayer:
     def __call__(self, now: float) -> None:
         self._prompter.advance(now - self._begin, now)
         while self._cues and self._cues[-1].time <= now - self._begin:
-            for fade in fades(self._cues.pop().value):
+            for fade in fades(self._cues.pop().value, self._body):
                 self._post("ALLeds", "fadeRGB", *fade)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 
 from lumen.language.commands import Leds
 from lumen.language.lights import LIGHT_GROUPS, lights_of
+from lumen.language.robots import Body
 from lumen.ports import Perform, RobotCommand
 from lumen.robots.naoqi.lights import fades
 from lumen.robots.naoqi.session import NaoqiCall
@@ -18,8 +19,8 @@ UNLIT = "white"
 class NaoqiEyes:
     """Sends the colour that the eyes are to have, where it changes. `post` calls NAOqi."""
 
-    def __init__(self, post: Callable[..., NaoqiCall]) -> None:
-        self._post = post
+    def __init__(self, post: Callable[..., NaoqiCall], body: Body) -> None:
+        self._post, self._body = post, body
         self._lit, self._lit_until = False, 0.0
         self._worn = UNLIT
         self._sent = NaoqiCall()
@@ -39,7 +40,7 @@ class NaoqiEyes:
         if self._lit or now < self._lit_until or colour == self._worn or not self._sent.done:
             return
         self._worn = colour
-        for fade in fades({"eyes": colour}):
+        for fade in fades({"eyes": colour}, self._body):
             self._sent = self._post("ALLeds", "fadeRGB", *fade)
 
     def _light(self, colours: object, until: float) -> None:

@@ -14,13 +14,11 @@ from lumen.robots.body_parts import ARMS, HEAD, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.command_table import speech_duration
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.naoqi.eyes import NaoqiEyes
+from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession
 
 SEND_PERIOD = 0.1
 """How often it is sent where the joints are wanted [s]; NAOqi goes on evenly in between."""
-
-BREATHING_CHAINS = ("Arms", "Legs")
-"""What NAOqi's breathing moves: the head is ours."""
 
 SPEED = 0.3
 """The part of their greatest speed with which joints go there."""
@@ -39,7 +37,7 @@ class NaoqiLife:
     def __init__(self, session: NaoqiSession, owner: Callable[[str], str], body: Body) -> None:
         self.layer = LifeLayer(body)
         self._session, self._post, self._owner, self._body = session, session.post, owner, body
-        self._eyes = NaoqiEyes(session.post)
+        self._eyes = NaoqiEyes(session.post, body)
         self._joints = [j for part in (HEAD, ARMS, LEGS) for j in body.parts.get(part, ()) if j not in body.shared]
         self._legs = frozenset(body.parts.get(LEGS, ()))
         self._breathes = self._blinks = False
@@ -130,7 +128,7 @@ class NaoqiLife:
         breathes = lives and NAOQI_BREATHING in self.layer.style.naoqi
         if breathes != self._breathes:
             self._breathes = breathes
-            for chain in BREATHING_CHAINS:
+            for chain in hardware_of(self._body).breathing:
                 self._post("ALMotion", "setBreathEnabled", chain, breathes)
         blinks = self._has(NAOQI_BLINKING, "ALAutonomousBlinking")
         if blinks != self._blinks:

@@ -94,7 +94,7 @@ class MotionPlayer:
             here = yield from self._stand(joints)
         start = self._inside(motion, here)
         motion = fitted(motion, self._body, start)
-        beside = CuePlayer(self._post, motion, self._notice)
+        beside = CuePlayer(self._post, motion, self._body, self._notice)
         way = curves(self._driven(Trajectory(motion, start).tracks))
         begin = self._clock()
         beside.begin(begin)

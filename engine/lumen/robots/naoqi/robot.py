@@ -1,4 +1,4 @@
-"""A real NAO behind the `Robot` seam."""
+"""A real NAO or Pepper behind the `Robot` seam."""
 
 import logging
 from collections.abc import Callable, Sequence
@@ -12,6 +12,7 @@ from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
 from lumen.robots.naoqi.call_sequence import CallSequence
+from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.life import NaoqiLife
 from lumen.robots.naoqi.naoqi_events import FALLEN, FALLING, FULL, HealthAlerts, NaoqiEvents
 from lumen.robots.naoqi.preparing import halt, prepare
@@ -26,7 +27,7 @@ _log = logging.getLogger(__name__)
 
 
 class NaoqiRobot:
-    """The NAO at `url`, in real time: `clock` [s] stamps what it answers, notices and senses.
+    """The NAO, or the Pepper, at `url`, in real time: `clock` [s] stamps what it answers, notices and senses.
 
     It is taken over at once: autonomous life ends, its reflexes stay on. Where the connection breaks, all commands have
     failed, `robot.lost` is noticed, and `robot.back` once it was made again. `stage` bounds where it may walk, from
@@ -46,7 +47,7 @@ class NaoqiRobot:
         self._clock = clock
         self._session = NaoqiSession(url, lambda reason: self._reconnector.lose(reason), patience)
         self._naoqi_events = NaoqiEvents(body.tactile)
-        self._area = WalkingArea(stage, self._naoqi_events.pressed, self._echo)
+        self._area = WalkingArea(stage, self._naoqi_events.pressed, self._echo, hardware_of(body))
         self._sensors = NaoqiSensors(
             self._session, body, clock, self._area.whereabouts, lambda: self._life.layer.offsets
         )

@@ -9,6 +9,7 @@ from lumen.errors import RobotError, SenseError
 from lumen.language.robots import Body
 from lumen.language.routes import SIZES, Size
 from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile, Whereabouts
+from lumen.robots.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device, hardware_of
 from lumen.robots.naoqi.session import NaoqiSession
 
 if TYPE_CHECKING:
@@ -25,42 +26,6 @@ CLOCK_OFFSET_FRAMES = 100
 """Of how many images the fastest decides the offset of the robot's clock to ours."""
 
 _log = logging.getLogger(__name__)
-
-_DEVICE = "Device/SubDeviceList/{}/Value"
-TOUCH_DEVICES = {
-    "RightBumper": ("RFoot/Bumper/Left", "RFoot/Bumper/Right"),
-    "LeftBumper": ("LFoot/Bumper/Left", "LFoot/Bumper/Right"),
-    "ChestButton": ("ChestBoard/Button",),
-    "FrontTactil": ("Head/Touch/Front",),
-    "MiddleTactil": ("Head/Touch/Middle",),
-    "RearTactil": ("Head/Touch/Rear",),
-    "HandRightBack": ("RHand/Touch/Back",),
-    "HandRightLeft": ("RHand/Touch/Left",),
-    "HandRightRight": ("RHand/Touch/Right",),
-    "HandLeftBack": ("LHand/Touch/Back",),
-    "HandLeftLeft": ("LHand/Touch/Left",),
-    "HandLeftRight": ("LHand/Touch/Right",),
-}
-"""The devices behind each tactile sensor: a bumper has two."""
-
-CHARGE, PLUGGED, CHARGING = (
-    _DEVICE.format("Battery/Charge/Sensor"),
-    "BatteryPowerPluggedChanged",
-    "BatteryChargingFlagChanged",
-)
-
-
-INERTIAL = tuple(f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer") for axis in "XYZ")
-FORCE_SENSORS = tuple(
-    f"{foot}/FSR/{where}"
-    for foot in ("LFoot", "RFoot")
-    for where in ("FrontLeft", "FrontRight", "RearLeft", "RearRight", "TotalWeight")
-)
-
-
-def device(name: str) -> str:
-    """ALMemory's key of what a sensor measures."""
-    return _DEVICE.format(f"{name}/Sensor")
 
 
 class NaoqiSensors:
@@ -83,9 +48,12 @@ class NaoqiSensors:
         self._numb = False
         self._names = list(body.joints)
         motors = [device(f"{body.shared.get(name, name)}/Temperature") for name in self._names]
-        self._felt = [*motors, *(device(f"InertialSensor/{name}") for name in INERTIAL), *map(device, FORCE_SENSORS)]
+        hardware = hardware_of(body)
+        self._force, self._sonars = hardware.force, [device(name) for name in hardware.sonars]
+        inertial = (device(f"{hardware.inertial}/{name}") for name in INERTIAL)
+        self._felt = [*motors, *inertial, *map(device, self._force)]
         self._touches = {
-            name: [device(d) for d in TOUCH_DEVICES[name]] for name in body.tactile if name in TOUCH_DEVICES
+            name: [device(d) for d in hardware.touch[name]] for name in body.tactile if name in hardware.touch
         }
         self._handle = ""
         self._own = Size(body.camera.width, body.camera.height) if body.camera else DEFAULT_IMAGE_SIZE
@@ -136,7 +104,7 @@ class NaoqiSensors:
         if not self._session.has("ALSonar"):
             raise SenseError("this robot has no ALSonar")
         now = self._clock()
-        left, right = self._memory([device("US/Left"), device("US/Right")])
+        left, right = self._memory(self._sonars)
         if not isinstance(left, int | float) or not isinstance(right, int | float):
             raise SenseError("ALMemory knows of no sonars")
         return Sonar(now, float(left), float(right))
@@ -192,7 +160,7 @@ class NaoqiSensors:
         self.heat = _known(n for n in zip(self._names, found, strict=False) if n[0] not in self._body.shared)
         temperature = tuple(float(t) for t in found[:motors] if isinstance(t, int | float))
         whole = temperature if len(temperature) == motors else ()
-        return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(FORCE_SENSORS, soles, strict=True))
+        return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(self._force, soles, strict=True))
 
     def _whereabouts(self) -> Whereabouts | None:
         """Where the robot is by its odometry; None where it does not say."""
@@ -210,7 +178,7 @@ class NaoqiSensors:
 
     def _subscribe(self) -> str:
         if self._size not in RESOLUTIONS:
-            raise SenseError(f"NAO's camera has no images of {self._size}")
+            raise SenseError(f"the robot's camera has no images of {self._size}")
         arguments = (SUBSCRIBER_NAME, TOP_CAMERA, RESOLUTIONS[self._size], RGB_COLOUR_SPACE, CAMERA_RATE)
         self._handle = str(self._session.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
         if not self._handle:

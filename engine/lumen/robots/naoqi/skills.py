@@ -1,4 +1,4 @@
-"""What a real NAO can do: how each command begins, and how it ends early."""
+"""What a real NAO or Pepper can do: how each command begins, and how it ends early."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -14,6 +14,7 @@ from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
+from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.lights import fades
 from lumen.robots.naoqi.microphones import Microphones
 from lumen.robots.naoqi.motion_player import MotionPlayer
@@ -80,7 +81,7 @@ class NaoqiSkills:
                 owned = parts_of(command, self._body)
                 return self._player.begin(motion, [j for j in self._body.joints if self._part.get(j) in owned])
             case Look(yaw, pitch):
-                return self._look(self.inside({"HeadYaw": yaw, "HeadPitch": pitch}))
+                return self._look(self.inside(self._body.roles.head_joints(yaw, pitch)))
             case Walk() | Move():
                 return self._walks.begin(command)
             case _:
@@ -126,12 +127,13 @@ class NaoqiSkills:
     def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
         """A fade can't be called back: where it is cancelled, another one of no time takes its place."""
         return CallSequence(
-            self._fade(colours, seconds), lambda: [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours)]
+            self._fade(colours, seconds),
+            lambda: [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, self._body)],
         )
 
     def _fade(self, colours: Mapping[str, str], seconds: float) -> CallSteps:
         begin = self._clock()
-        calls = [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, seconds)]
+        calls = [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, self._body, seconds)]
         while self._clock() < begin + seconds and not any(call.failed for call in calls):
             yield None
         for call in calls:  # noqa: UP028  `yield from` would send its answers into a list
@@ -141,6 +143,8 @@ class NaoqiSkills:
         return CallSequence(self._go(name, speed), lambda: [self._post("ALRobotPosture", "stopMove")])
 
     def _go(self, name: str, speed: float) -> CallSteps:
+        if self.fallen and not hardware_of(self._body).gets_up:
+            raise RobotRefusedError("the robot has fallen, and can't get up by itself: set it up and `wake` it")
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             if not self.fallen:
                 raise RobotRefusedError("the motors are off: `wake` first")

@@ -7,11 +7,10 @@ from lumen.errors import RobotRefusedError
 from lumen.interpreters.dead_reckoning import DeadReckoning, turned
 from lumen.language.projects import Stage
 from lumen.ports import Sonar, Whereabouts
+from lumen.robots.naoqi.hardware import Hardware
 
 OBSTACLE_DISTANCE = 0.4
 """Nearer than this to something the robot does not walk [m]."""
-SOLE_REACH = 0.1
-"""How far a sole reaches from the point between the feet [m]."""
 FALL_DRIFT = 0.6
 """How far the robot may have slid while it fell and got up again [m], as the simulated one does."""
 MOST_BETWEEN_LOOKS = 0.5
@@ -22,6 +21,7 @@ MAX_STAGE_DRIFT = 0.03
 STOP_BUTTONS = {
     "RightBumper": "the right bumper",
     "LeftBumper": "the left bumper",
+    "BackBumper": "the back bumper",
     "ChestButton": "the chest button",
 }
 
@@ -32,11 +32,18 @@ GroundPose = Sequence[float]
 class WalkingArea:
     """Knows where the robot was when it was met first, which is the origin of the stage.
 
-    `pressed` says which sensors are touched, `echo` what the sonars hear now, None where they are silent.
+    `pressed` says which sensors are touched, `echo` what the sonars hear now, None where they are silent;
+    `hardware` how far the robot reaches.
     """
 
-    def __init__(self, stage: Stage | None, pressed: Mapping[str, bool], echo: Callable[[], Sonar | None]) -> None:
-        self.stage = stage
+    def __init__(
+        self,
+        stage: Stage | None,
+        pressed: Mapping[str, bool],
+        echo: Callable[[], Sonar | None],
+        hardware: Hardware,
+    ) -> None:
+        self.stage, self._edge, self._reach = stage, hardware.edge, hardware.reach
         self._pressed, self._echo = pressed, echo
         self._origin: GroundPose | None = None
         self._reckoning = DeadReckoning()
@@ -93,10 +100,10 @@ class WalkingArea:
             ("y", self.stage.y, reached[1], stood[1]),
         ):
             if (
-                now - SOLE_REACH < min(low, then - SOLE_REACH) - drift
-                or now + SOLE_REACH > max(high, then + SOLE_REACH) + drift
+                now - self._reach < min(low, then - self._reach) - drift
+                or now + self._reach > max(high, then + self._reach) + drift
             ):
-                return f"a foot would leave the stage: the robot would be at {axis} = {now:.2f} m"
+                return f"{self._edge} would leave the stage: the robot would be at {axis} = {now:.2f} m"
         return ""
 
     def _on_stage(self, place: GroundPose) -> tuple[float, float]:

@@ -23,7 +23,7 @@ PostCall = Callable[..., NaoqiCall]
 
 
 def grounded(family: object) -> bool:
-    """Whether NAOqi says that the robot is not on its feet."""
+    """Whether NAOqi says that the robot is not on its feet, or its wheels."""
     return str(family) in SITTING_FAMILIES or str(family).startswith("Lying")
 
 
