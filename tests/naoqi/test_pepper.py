@@ -1,7 +1,6 @@
 """Pepper behind the same bridge: what NAOqi is asked and told of a robot on wheels. The fake is Pepper from memory."""
 
 import logging
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -21,11 +20,11 @@ from tests.tour.names import ROOT
 
 
 @pytest.fixture(scope="module")
-def project() -> Iterator[Project]:
+def project() -> Project:
     """The shipped exhibition, performed by Pepper."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(MODEL_VARIABLE, "pepper")
-        yield lumen.load(ROOT)
+        return lumen.load(ROOT)
 
 
 def test_nothing_is_missed_of_it_and_no_reflex_left_off(project: Project, caplog: pytest.LogCaptureFixture) -> None:
@@ -104,7 +103,7 @@ def test_of_lights_it_has_no_feet(robot: Lockstep, live: LiveFor) -> None:
 
 
 def test_it_breathes_with_its_arms_and_gestures(robot: Lockstep, live: LiveFor, project: Project) -> None:
-    style = replace(project.life["lively"], naoqi=frozenset({"breathing"}))
+    style = replace(project.life["lively"], naoqi=("breathing",))
     robot.start("", Live(style, merged(project.gestures)))
     robot.start("a", Posture("Stand"))
     live(5.0)
