@@ -86,9 +86,9 @@ def aimed(p: CommandParameters, angles: Mapping[str, float]) -> Aim:
 def _posture(p: CommandParameters) -> Posture:
     name = p.text("posturename")
     postures = {known.lower(): known for known in p.project.body.postures}
-    if name.lower() not in postures:
-        raise BadCommandError(f"there is no posture `{shown(name)}`: {did_you_mean(shown(name), postures.values())}")
-    return Posture(postures[name.lower()], p.fraction("speed", POSTURE_SPEED))
+    command = Posture(postures.get(name.lower(), shown(name)), p.fraction("speed", POSTURE_SPEED))
+    _check_posture(command, p.project.body)
+    return command
 
 
 def _check_posture(command: Posture, body: Body) -> None:

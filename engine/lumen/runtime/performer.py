@@ -22,7 +22,7 @@ from lumen.language.commands import (
 )
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.skills import lack_of
+from lumen.language.skills import lack_of, tracked, tracking_lack
 from lumen.loading.sounds import sound_duration
 from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.runtime.navigator import Navigator
@@ -64,7 +64,8 @@ class Performer:
                 _log.info(text)
 
     def _start(self, project: Project, id: str, wanted: BodyCommand, now: float) -> None:
-        if lack := lack_of(wanted, project.body):
+        controller, body = project.controllers.get(tracked(wanted)), project.body
+        if lack := tracking_lack(controller, body) if controller else lack_of(wanted, body):
             self.events.append(Event(f"done.command.{id}", {LEFT_OUT: lack.message}, now))
             return
         match wanted:
