@@ -8,6 +8,7 @@ import pytest
 import lumen
 from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.cli.main import main
+from lumen.loading.chosen_model import MODEL_VARIABLE
 from lumen.rules.physics import DONE, FELL, Case, CaseResult, Outcome
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings
@@ -22,6 +23,26 @@ def test_every_motion_and_every_passage_is_a_case() -> None:
     assert [case.motion for case in found if case.passage] == list(project.body.passages)
     assert all(case.way == "from Stand" for case in played)
     assert {case.file for case in found if case.living} == {f"motions/life/{name}.yaml" for name in project.life}
+
+
+@pytest.mark.parametrize("model", ["nao", "sprout", "greeter"])
+def test_a_fall_is_found_where_this_robots_own_file_moves_its_legs(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the file that this robot plays, at the keyframe that moves a leg; without legs at the one that comes next."""
+    monkeypatch.setenv(MODEL_VARIABLE, model)
+    project = lumen.load(ROOT)
+    case = next(case for case in cases(project) if case.motion.name == "dance")
+    assert case.file == ("motions/dance.yaml" if model == "nao" else f"motions/{model}/dance.yaml")
+    assert {case.file for case in cases(project)} <= project.documents.keys()
+    legs = {role.joint for leg in project.body.roles.legs.values() for role in leg.values()}
+    tracks = case.motion.tracks
+    assert bool(legs) == (model != "greeter")
+    moved = [keys for name, keys in tracks.items() if name in legs] or list(tracks.values())
+    at = sorted(key.time for keys in moved for key in keys)[len(moved)]
+    (found,) = findings(CaseResult(case, [Outcome(FELL, at, 60.0, at)]), project.documents[case.file], project.body)
+    assert found.place.file == case.file
+    coming = min((key for keys in moved for key in keys if key.time >= at - 1e-9), key=lambda key: key.time)
+    where = coming.where[: max(i for i, step in enumerate(coming.where) if step == "keyframes") + 2]
+    assert found.place.line == project.documents[case.file].place(where).line
 
 
 def project_in(folder: Path) -> None:
@@ -57,14 +78,37 @@ def test_a_style_that_could_tip_the_robot_is_found_at_its_sway(
     assert "when the robot lives like this" in found
 
 
+BOWING = """start: Stand
+units: {angle: deg}
+return: 1s
+keyframes:
+  - {at: 500ms, joints: {head_yaw: 5}}
+  - {at: 900ms, joints: {left_hip_pitch: -80, right_hip_pitch: -80}}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.physics
+def test_a_motion_of_one_robot_is_played_by_it_and_found_in_its_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    project_in(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(MODEL_VARIABLE, "sprout")
+    motion = Path("motions", "sprout", "goodbye.yaml")
+    motion.write_text(BOWING)
+    assert main(["lint", str(motion), "--physics", "--robots", "0", "--format", "concise"]) == 1
+    assert "motions/sprout/goodbye.yaml:6:5: error[falls] the robot falls here" in capsys.readouterr().out
+
+
 def test_a_robot_that_falls_as_it_lives_falls_at_its_sway() -> None:
     project = lumen.load(ROOT)
     case = next(case for case in cases(project) if case.file == "motions/life/lively.yaml")
-    (found,) = findings(CaseResult(case, [Outcome(FELL, 3.0, 60.0, 3.0)]), project.documents[case.file])
+    (found,) = findings(CaseResult(case, [Outcome(FELL, 3.0, 60.0, 3.0)]), project.documents[case.file], project.body)
     assert found.code == "falls"
     assert "at 3.0 s, when it lives like this" in found.message
     assert found.place.line == project.documents[case.file].place(("sways", "weight"), key=True).line
-    assert not findings(CaseResult(case, [Outcome(DONE, 20.0, 3.0, 3.0)]), project.documents[case.file])
+    assert not findings(CaseResult(case, [Outcome(DONE, 20.0, 3.0, 3.0)]), project.documents[case.file], project.body)
 
 
 @pytest.mark.slow

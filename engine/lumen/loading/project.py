@@ -40,7 +40,7 @@ T = TypeVar("T")
 
 MOTIONS = "motions"
 
-_KINDS: Mapping[str, str] = {
+FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
     WORDS_FOLDER: "words",
@@ -178,7 +178,7 @@ def _each(
             found.say(NOT_READ, file, "files that end in .yml are not read", hint)
             continue
         names.add(path.stem)
-        if (each := _read(found, file, content, _KINDS.get(folder, "motion"), build, around)) is not None:
+        if (each := _read(found, file, content, FOLDER_KINDS.get(folder, "motion"), build, around)) is not None:
             read[path.stem] = each
     found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
@@ -247,7 +247,7 @@ def _strangers(found: ProjectDraft) -> None:
     inside = {PurePosixPath(file).parent for file in found.files}
     folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
     for folder, name in folders.items():
-        if folder not in _KINDS and name not in known:
+        if folder not in FOLDER_KINDS and name not in known:
             hint = f"{did_you_mean(name, known, 'there are')} as a folder for the motions of one robot"
             first = min(file for file in found.files if file.startswith(f"{folder}/"))
             found.say(NOT_READ, first, f"files in {folder}/ are not read: there is no model `{name}`", hint)

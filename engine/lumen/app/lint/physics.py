@@ -47,7 +47,7 @@ def played(
     chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
     memory = OutcomeCache(project, found.files) if keep else None
     rehearsals = play_cases(chosen, make, robots, memory, tell)
-    more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file]) if wanted(d)]
+    more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file], project.body) if wanted(d)]
     everything = sorted([*found.diagnostics, *dict.fromkeys(more)], key=lambda d: (d.place.file, d.place.line))
     return replace(found, diagnostics=everything), rehearsals
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 
 from lumen.interpreters.postures import standing
 from lumen.language.actions import If, Parallel, PlacedAction
@@ -9,6 +10,7 @@ from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
+from lumen.loading.project import FOLDER_KINDS
 from lumen.ports import Live, Perform, RobotCommand
 
 MOTIONS, PASSAGES, LIFE = "motions", "models/passages", "motions/life"
@@ -73,13 +75,25 @@ def cases(project: Project) -> list[Case]:
             for name in ways.keys() & set(_played(step)):
                 last = next((end for s in block[:i][::-1] if (end := _end(motions, s.action)) is not None), None)
                 ways[name] += anywhere if last is None else [last]
-    found = [Case(MOTIONS, motions[name], before, Perform(motions[name])) for name in motions for before in ways[name]]
+    folders = _own(project)
+    found = [
+        Case(folders.get(name, MOTIONS), motion, before, Perform(motion))
+        for name, motion in motions.items()
+        for before in ways[name]
+    ]
     for passage in project.body.passages:
         before = Posture(passage.start, 1.0)
         found.append(Case(PASSAGES, passage, (before,), Posture(passage.end, 1.0)))
     for name, style in project.life.items():
         found.append(Case(LIFE, MotionDefinition(name, LIVED, {}), (), Live(style)))
     return list({(case.file, case.way): case for case in found}.values())
+
+
+def _own(project: Project) -> dict[str, str]:
+    """The folder of each motion that is this robot's own: only that one of all robots' folders was read."""
+    files = [PurePosixPath(file) for file in project.documents]
+    inside = [file for file in files if str(file.parent.parent) == MOTIONS]
+    return {file.stem: str(file.parent) for file in inside if str(file.parent) not in FOLDER_KINDS}
 
 
 def _to(posture: str) -> Before:

@@ -1,11 +1,12 @@
 """What is to be said about a motion that was played in simulation, at the keyframes where it showed."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
 
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Places
 from lumen.language.life import Sway
 from lumen.language.motions import Keyframe
+from lumen.language.robots import Body
 from lumen.ports import Live
 from lumen.rules.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVERLOADED, SELF_COLLISION, UNSTEADY
 from lumen.rules.physics import FELL, CaseResult, Outcome
@@ -28,19 +29,19 @@ MAX_FAILED_SHARE = 0.1
 
 _FEET = {"L": "the left foot", "R": "the right foot"}
 _JOINTS = (COMES_LATE, OVERLOADED)
-_LEGS = ("Hip", "Knee", "Ankle")
 
 
-def findings(rehearsal: CaseResult, document: Places) -> list[Diagnostic]:
-    """What is wrong with a motion; `document` is its file."""
-    return [*_Judge(rehearsal, document).judge()]
+def findings(rehearsal: CaseResult, document: Places, body: Body) -> list[Diagnostic]:
+    """What is wrong with a motion that this body played; `document` is its file."""
+    return [*_Judge(rehearsal, document, body).judge()]
 
 
 class _Judge:
     """Looks at the outcomes of one case."""
 
-    def __init__(self, rehearsal: CaseResult, document: Places) -> None:
+    def __init__(self, rehearsal: CaseResult, document: Places, body: Body) -> None:
         self._rehearsal, self._case, self._document = rehearsal, rehearsal.case, document
+        self._legs = frozenset(role.joint for leg in body.roles.legs.values() for role in leg.values())
 
     def judge(self) -> Iterator[Diagnostic]:
         tried = self._rehearsal.tried
@@ -55,11 +56,13 @@ class _Judge:
         if self._case.living:
             if not failed and most.tilt >= MAX_LIVING_TILT:
                 message = f"the torso leans {most.tilt:.0f} deg when the robot lives like this: a push tips it"
-                yield self._found(UNSTEADY, message, "smaller sways, or slower ones", self._keys(most.leaned, _LEGS))
+                yield self._found(
+                    UNSTEADY, message, "smaller sways, or slower ones", self._keys(most.leaned, self._legs)
+                )
             return
         if not failed and most.tilt >= FALLING_TILT:
             message = f"the torso leans {most.tilt:.0f} deg when the robot {self._when()}: at 45 it counts as fallen"
-            yield self._found(UNSTEADY, message, "bow less deep", self._keys(most.leaned, _LEGS))
+            yield self._found(UNSTEADY, message, "bow less deep", self._keys(most.leaned, self._legs))
             return  # the rest comes of it
         worst = [*self._worst(SELF_COLLISION, lambda o: o.collisions, MAX_CONTACT_TIME)]
         if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
@@ -67,7 +70,7 @@ class _Judge:
             return  # the rest comes of it
         slides = [*self._worst(FEET_SLIDE, lambda o: o.slid, MAX_FOOT_SLIDE)]
         yield from slides
-        spared = _LEGS if slides else ()
+        spared = self._legs if slides else ()
         late = [*self._worst(COMES_LATE, lambda o: o.behind, MAX_JOINT_LAG, spared)]
         yield from late or self._worst(OVERLOADED, lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
 
@@ -84,7 +87,7 @@ class _Judge:
         if itself and worst.answer == FELL:
             message = f"the robot falls here, at {worst.at:.1f} s, when it {self._when()}"
             hint = "slower, smaller, or with the weight over the foot that stands"
-            yield self._found(FALLS, message, hint, self._keys(worst.at, _LEGS))
+            yield self._found(FALLS, message, hint, self._keys(worst.at, self._legs))
             return
         tried = len(self._rehearsal.tried)
         if len(failed) <= (MAX_FAILED_SHARE * tried if self._case.passage else 0):
@@ -93,14 +96,14 @@ class _Judge:
         if not self._case.passage:
             message += f" when they {self._when(plural=True)}"
         hint = "it holds on the robot of the model alone: slower, or smaller, leaves a margin"
-        yield self._found(UNSTEADY, message, hint, self._keys(worst.at, _LEGS))
+        yield self._found(UNSTEADY, message, hint, self._keys(worst.at, self._legs))
 
     def _worst(
         self,
         code: Code,
         of: Callable[[Outcome], Mapping[str, TimedAmount]],
         limit: float,
-        spared: Iterable[str] = (),
+        spared: Collection[str] = (),
     ) -> Iterator[Diagnostic]:
         """One finding where some robot went too far with something, at the worst moment."""
         tried = self._rehearsal.tried
@@ -108,9 +111,7 @@ class _Judge:
             (moment, what)
             for outcome in tried
             for what, moment in of(outcome).items()
-            if moment[1] >= limit
-            and (code not in _JOINTS or what in self._case.motion.tracks)
-            and not any(part in what for part in spared)
+            if moment[1] >= limit and (code not in _JOINTS or what in self._case.motion.tracks) and what not in spared
         ]
         if not beyond:
             return
@@ -120,7 +121,7 @@ class _Judge:
         message, hint = _words(code, what, at, value)
         message += f", also {', '.join(map(_name, others))}" if others else ""
         message += f" (with {robots} of {len(tried)} robots)" if robots < len(tried) else ""
-        joints = (what,) if code in _JOINTS else _LEGS if code == FEET_SLIDE else ()
+        joints = (what,) if code in _JOINTS else self._legs if code == FEET_SLIDE else ()
         yield self._found(code, message, hint, self._keys(at, joints))
 
     def _when(self, *, plural: bool = False) -> str:
@@ -129,30 +130,27 @@ class _Judge:
             return "live like this" if plural else "lives like this"
         return f"{'play' if plural else 'plays'} this {self._case.way}"
 
-    def _keys(self, at: float, joints: Iterable[str]) -> NodePath:
+    def _keys(self, at: float, joints: Collection[str]) -> NodePath:
         """Where the keyframe stands that the robot was on its way to; of these joints, where some of them move.
 
         Of a style of life it is the sway that moves the legs most, else the one that moves anything most.
         """
         if isinstance(self._case.command, Live):
             sways = self._case.command.style.sways
-            return max(sways, key=_shaking).where if sways else ()
+            return max(sways, key=self._shaking).where if sways else ()
         tracks = self._case.motion.tracks
-        chosen = [keys for name, keys in tracks.items() if any(part in name for part in joints)] or list(
-            tracks.values()
-        )
+        chosen = [keys for name, keys in tracks.items() if name in joints] or list(tracks.values())
         coming = [key for keys in chosen for key in keys if key.time >= at - 1e-9]
         keys = sorted(coming or [keys[-1] for keys in chosen], key=lambda key: key.time)
         return _keyframe(keys[0]) if keys else ()
 
+    def _shaking(self, sway: Sway) -> tuple[float, float]:
+        """How fast a sway moves legs, and how fast anything, as far as that tells which one tips the robot."""
+        legs = sum(abs(angle) for joint, angle in sway.joints.items() if joint in self._legs)
+        return legs / sway.period, sum(map(abs, sway.joints.values())) / sway.period
+
     def _found(self, code: Code, message: str, hint: str, path: NodePath) -> Diagnostic:
         return code.at(self._document.place(path, key=self._case.living), message, hint)
-
-
-def _shaking(sway: Sway) -> tuple[float, float]:
-    """How fast a sway moves legs, and how fast anything, as far as that tells which one tips the robot."""
-    legs = sum(abs(angle) for joint, angle in sway.joints.items() if any(part in joint for part in _LEGS))
-    return legs / sway.period, sum(map(abs, sway.joints.values())) / sway.period
 
 
 def _words(code: Code, what: str, at: float, value: float) -> tuple[str, str]:
