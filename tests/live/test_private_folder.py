@@ -17,6 +17,7 @@ MAKERS = {
     "upkeep/private_folder.py": "the one function",
     "app/lint/outcome_cache.py": "a folder within a private one",
     "app/starting.py": "a project, which is to be committed",
+    "cli/importing_robot.py": "where the user says",
     "cli/story.py": "where the user says",
     "cli/writing.py": "where the user says",
     "robots/simulation/shells.py": "the robot's shape",

@@ -102,6 +102,7 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
         ("lumen.yaml", "schema: ima|ge", "schemas/messages/image.schema.json"),
         ("fuzzy/head.yaml", "FaceXLoc: fa|ce.x", "lumen.yaml: face:"),
         ("models/nao.yaml", "    on: Head|Yaw", "models/nao.yaml: HeadYaw:"),
+        ("models/pepper.yaml", "{Head|Yaw: ", "models/pepper.yaml: HeadYaw:"),
     ],
 )
 def test_definition(file: str, text: str, where: str) -> None:

@@ -59,7 +59,7 @@ def drawn(project: Project) -> Mapping[tuple[float, float], tuple[Pixels, tuple[
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
     seen = {}
     robot.advance(1.0)  # until it stands as it stands
-    for x, y in ((1.0, 0.3), (1.2, 0.5), (1.5, 0.0), (2.0, -0.5)):
+    for x, y in ((1.2, 0.3), (1.3, 0.5), (1.5, 0.0), (2.0, -0.5)):
         robot.place(Visitor(x=x, y=y))
         robot.advance(0.02)
         image, face = robot.read(Sense.IMAGE), robot.face()
@@ -116,7 +116,7 @@ def test_finds_nobody_where_nobody_is(eyes: Make) -> None:
 
 
 def test_sees_that_there_are_people(eyes: Make, drawn: Mapping[Any, Any]) -> None:
-    pixels, (x, _) = drawn[1.0, 0.3]
+    pixels, (x, _) = drawn[1.2, 0.3]
     here = eyes()
     people = here.listen("lumen.visual.human.detection")
     here.bus.publish(IMAGE, body(pixels, 1.0))

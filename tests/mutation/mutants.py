@@ -13,6 +13,11 @@ SHIPPED = read_files(Path(__file__).parents[2])
 WEIGHTS = {"behaviors/tour.yaml": 30, "lumen.yaml": 12, "fuzzy/head.yaml": 8, "models/nao.yaml": 6}
 """How often a file is changed; others once, a motion and a story three times."""
 
+OF_OTHER_BODIES = tuple(
+    f"{folder}{name}" for folder in ("motions/", "models/") for name in ("greeter", "lantern", "sprout")
+)
+"""How the names of files begin that are not read where NAO is the robot."""
+
 IN_TWO_PLACES = ("swap values", "swap lines", "move a key", "exchange files")
 """Kinds of change after which two places are wrong, and two findings right."""
 
@@ -47,7 +52,7 @@ class Nursery:
 
     def __init__(self) -> None:
         self.sheets = {file: Sheet(file, content) for file, content in SHIPPED.items() if not file.endswith(".xml")}
-        self.names = list(SHIPPED)
+        self.names = [file for file in SHIPPED if not file.startswith(OF_OTHER_BODIES)]
         self.weights = [WEIGHTS.get(f, 3 if f.startswith(("motions/", "behaviors/")) else 1) for f in self.names]
 
     def mutant(self, number: int) -> Mutant:

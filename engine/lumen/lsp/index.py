@@ -14,7 +14,7 @@ from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
-from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
+from lumen.lsp.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
 
 WORDS_SCOPE = "words/"
 """What stands before the name of a words file where it is the scope of names."""
@@ -54,7 +54,7 @@ class NameIndex:
             for w in (scope, *self.words.get(scope, ()))
             for kind in WORD_KINDS
         ]
-        given = document.text, scope, states, known
+        given = document.text, scope, states, known, self.other_body(document.file)
         return memoize(("uses", document.file), given, lambda: tuple(_Reader(self, document).uses()))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
@@ -92,6 +92,23 @@ class NameIndex:
     def words(self) -> Mapping[str, tuple[str, ...]]:
         """The scopes of the words files that each behaviour names."""
         return {stem(file): _words(d.data) for file, d in self.documents.items() if kind_of(file) == "behavior"}
+
+    @cached_property
+    def own_bodies(self) -> frozenset[str]:
+        """The model that lumen.yaml names, and the one that it is like."""
+        robot = self._data("lumen.yaml").get("robot")
+        model = str(robot.get("model", "")) if isinstance(robot, dict) else ""
+        return frozenset((model, str(self._data(f"models/{model}.yaml").get("like", model))))
+
+    def other_body(self, file: str) -> str:
+        """The model whose joints and postures a file names, empty where it is the one that the project's robot has."""
+        kind, folder = kind_of(file), PurePosixPath(file).parent.name
+        model = stem(file) if kind == "body" else folder if kind == "motion" and file.count("/") > 1 else ""
+        return "" if model in self.own_bodies else model
+
+    def _data(self, file: str) -> Mapping[str, Any]:
+        document = self.documents.get(file)
+        return document.data if document and isinstance(document.data, dict) else {}
 
     def behavior(self, file: str) -> str:
         """The behaviour that the names in a file are about: its own, or the one that a story plays."""
@@ -197,7 +214,10 @@ class _Reader:
             yield self.use(NameKind.STATE, _state_at(path), value, place)
 
     def use(self, kind: NameKind, name: str, text: str, place: Place, *, defining: bool = False) -> NameUse:
-        scope = self.index.home(kind, name, self.scope) if kind in SCOPED_KINDS else ""
+        if kind in BODY_KINDS:
+            scope = self.index.other_body(self.document.file)
+        else:
+            scope = self.index.home(kind, name, self.scope) if kind in SCOPED_KINDS else ""
         return NameUse(kind, scope, name, text, place, defining)
 
 

@@ -47,6 +47,9 @@ KIND_FOLDERS = {
 SCOPED_KINDS = frozenset((NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS, NameKind.POSE))
 """The kinds whose names mean something within one file only."""
 
+BODY_KINDS = frozenset((NameKind.JOINT, NameKind.POSTURE))
+"""The kinds whose names belong to one robot's body."""
+
 
 class NameUse(NamedTuple):
     """A use of a name: `name` says which thing of its kind, `scope` in which file's, `text` how it stands at `place`.

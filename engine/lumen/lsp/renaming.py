@@ -8,7 +8,7 @@ from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.routes import MEANINGS
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse
+from lumen.lsp.names import KIND_FOLDERS, NameKind, NameUse
 from lumen.rules.fixes import Edit, edited
 
 _NAMES = {
@@ -84,12 +84,11 @@ def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> No
 
 
 def _taken(analysis: Analysis, use: NameUse, name: str) -> bool:
-    scope = use.scope if use.kind in SCOPED_KINDS else ""
     if use.kind is NameKind.STATE:
-        tree = analysis.index.outlines.get(scope)
+        tree = analysis.index.outlines.get(use.scope)
         beside = f"{use.name.rpartition('.')[0]}.{name}".lstrip(".")
         return tree is not None and (beside in tree.entries or name in tree.aliases)
-    return name in analysis.index.names(use.kind, scope)
+    return name in analysis.index.names(use.kind, use.scope)
 
 
 def _moved(analysis: Analysis, use: NameUse, name: str) -> tuple[str, str] | None:

@@ -46,7 +46,7 @@ class Paces(NamedTuple):
     gentle: GaitParameters = GaitParameters(forward=0.03, sideways=0.02, turn=0.12, lift=0.02)
     """Shorter and lower steps, for a robot whose motors are hot."""
     brisk: GaitParameters = GaitParameters(
-        double=0.04, single=0.3, forward=0.081, sideways=0.061, turn=0.4, lift=0.027, widest=0.212
+        double=0.04, single=0.3, forward=0.081, sideways=0.061, turn=0.4, lift=0.032, widest=0.212
     )
     """Found by a search (docs/decisions/074): faster, and less true where it ends."""
     catching: GaitParameters = GaitParameters(torso=0.3)
