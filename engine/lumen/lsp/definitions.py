@@ -5,13 +5,9 @@ from lumen.lsp.analysis import Analysis
 
 
 def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
-    """Where what stands at a line and column, from 1, is made known; a state by its key rather than its id.
-
-    What the file makes known itself is meant there: two bodies may have joints and postures of the same names.
-    """
+    """Where what stands at a line and column, from 1, is made known; a state by its key rather than its id."""
     use = analysis.index.at(file, line, column)
-    found = [other.place for other in analysis.index.of(use) if other.defines] if use else []
-    return [place for place in found if place.file == file] or found
+    return [other.place for other in analysis.index.of(use) if other.defines] if use else []
 
 
 def uses(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
