@@ -1,5 +1,7 @@
 """What all tests may ask for, how they are marked and measured, and which examples hypothesis draws: the same ones."""
 
+import signal
+
 from hypothesis import settings
 
 from tests.cpu_time import (
@@ -21,6 +23,9 @@ __all__ = [
     "pytest_runtest_protocol",
     "pytest_terminal_summary",
 ]
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 settings.register_profile("seeded", derandomize=True, deadline=None)
 settings.register_profile("quick", settings.get_profile("seeded"), max_examples=10)
