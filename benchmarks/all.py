@@ -1,4 +1,4 @@
-"""The table of docs/performance.md: what a user calls, how fast it is here, and what is to be reached.
+"""The table of speeds: what a user calls, how fast it is here, and what is to be reached.
 
     python benchmarks/all.py [--rows WORD] [--markdown]
 
@@ -218,7 +218,7 @@ ROWS = (
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rows", default="", help="only those whose words contain this")
-    parser.add_argument("--markdown", action="store_true", help="as docs/performance.md has it")
+    parser.add_argument("--markdown", action="store_true", help="as a table of Markdown")
     options = parser.parse_args()
     load = ", ".join(f"{load:.1f}" for load in os.getloadavg())
     print(f"{processor()}, {os.cpu_count()} cores, Python {platform.python_version()}; load before {load}\n")
