@@ -10,7 +10,7 @@ from lumen.cli.formats import configure_format
 from lumen.cli.jsonc import added
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.loading.files import MAX_FILE_BYTES
+from lumen.loading.files import FLEET_FILE, MAX_FILE_BYTES
 from lumen.loading.packaged import MAIN_FILE, find_project, schema_folder
 from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import FILE_KINDS, load_schema
@@ -25,6 +25,7 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "life": ("motions/life/*.yaml",),
     "gestures": ("motions/gestures/*.yaml",),
     "body": ("models/*.yaml",),
+    "fleet": (FLEET_FILE,),
     "message": ("schemas/messages/*.schema.json",),
 }
 """Which files of a project are of which kind."""

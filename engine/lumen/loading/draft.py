@@ -8,6 +8,7 @@ from typing import Any
 from lumen.errors import ProjectError
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
+from lumen.language.fleet import Fleet
 from lumen.language.gestures import GestureLibrary
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
@@ -51,6 +52,7 @@ class ProjectDraft:
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
     root: Path | None = None
     own_motions: frozenset[str] = frozenset()
+    fleet: Fleet | None = None
 
     @property
     def main(self) -> DocumentReport | None:

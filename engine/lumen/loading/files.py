@@ -9,6 +9,9 @@ from lumen.loading.chosen_model import choice
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.regular_files import MEGABYTE, read_regular
 
+FLEET_FILE = "fleet.yaml"
+"""Says which houses there are, and whom a robot trusts: linted with a project, and of no bundle."""
+
 PROJECT_FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
 """What belongs to a project beside lumen.yaml."""
 
@@ -75,7 +78,7 @@ def read_files(root: Path) -> dict[str, bytes]:
     that folder itself is `Unreadable`.
     """
     read = _Reader(root)
-    found = {MAIN_FILE: content} if (content := read.file(MAIN_FILE)) is not None else {}
+    found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}
     for folder in dict.fromkeys((*_READ, *_robots_own(root))):
         endings = endings_in(folder)
         if outside := next((each for each in _within(folder) if read.leads_out(each)), None):
@@ -97,19 +100,21 @@ def read_main_file(root: Path) -> bytes:
 def belongs(path: str) -> bool:
     """Whether a file of that path from the project's root counts."""
     folder, _, name = path.rpartition("/")
-    return path == MAIN_FILE or (not name.startswith(".") and name.endswith(endings_in(folder)))
+    return path in (MAIN_FILE, FLEET_FILE) or (not name.startswith(".") and name.endswith(endings_in(folder)))
 
 
 def counts(file: str) -> bool:
     """Whether a file of that path, from the project's root, is one that is read."""
     folder, _, name = file.rpartition("/")
-    return file == MAIN_FILE or (name.endswith(endings_in(folder)) and not name.startswith("."))
+    return file in (MAIN_FILE, FLEET_FILE) or (name.endswith(endings_in(folder)) and not name.startswith("."))
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:
-    """The hash of all paths and contents."""
+    """The hash of all paths and contents; fleet.yaml is no part of what runs."""
     digest = hashlib.sha256()
     for path, content in sorted(files.items()):
+        if path == FLEET_FILE:
+            continue
         digest.update(f"{len(path)} {path} {len(content)} ".encode("utf-8", "surrogatepass") + content)
     return digest.hexdigest()
 

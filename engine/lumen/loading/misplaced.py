@@ -49,6 +49,7 @@ _KINDS: Mapping[str, _Kind] = {
     "life": _Kind("a style of life", "motions/life/", frozenset(("sways",)), "blinks"),
     "gestures": _Kind("a library of gestures", "motions/gestures/", frozenset(("gestures",))),
     "body": _Kind("a robot's body", "models/", frozenset(("joints", "camera")), "like"),
+    "fleet": _Kind("a fleet", "the folder of lumen.yaml, as fleet.yaml", frozenset(("houses",))),
     "message": _Kind("a message schema", "schemas/messages/", frozenset(("$schema", "properties"))),
 }
 

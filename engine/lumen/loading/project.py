@@ -18,7 +18,16 @@ from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.chosen_model import chosen
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, Unreadable, endings_in, fingerprint, read_main_file
+from lumen.loading.files import (
+    FLEET_FILE,
+    FOLDERS,
+    MISTAKEN_FOLDERS,
+    Unreadable,
+    endings_in,
+    fingerprint,
+    read_main_file,
+)
+from lumen.loading.fleet import build_fleet
 from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend, shipped_models
 from lumen.loading.life import LIFE_FOLDER, build_life
@@ -63,6 +72,10 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         if main.built and (other := other_vocabulary(main.built, main.report)):
             return ProjectDraft(files, loose=[other])
         found.settings = main.built and replace(main.built, model=chosen(files, main.built.model))
+    if (content := files.get(FLEET_FILE)) is not None and (
+        fleet := _read(found, FLEET_FILE, content, "fleet", build_fleet)
+    ):
+        found.fleet = fleet.built
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     if found.settings:
         found.lent = lend(files, found.settings, [*_wanted(found.settings, models)])

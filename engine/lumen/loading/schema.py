@@ -16,7 +16,19 @@ from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
 
-FILE_KINDS = ("lumen", "behavior", "words", "story", "controller", "motion", "life", "gestures", "body", "message")
+FILE_KINDS = (
+    "lumen",
+    "behavior",
+    "words",
+    "story",
+    "controller",
+    "motion",
+    "life",
+    "gestures",
+    "body",
+    "message",
+    "fleet",
+)
 """The kinds of file; each has a `schemas/KIND.schema.json`."""
 
 MAX_PRUNING_ROUNDS = 20

@@ -6,6 +6,7 @@ from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.verbs import VERBS
+from lumen.loading.files import FLEET_FILE
 from lumen.loading.packaged import MAIN_FILE
 from lumen.lsp.names import NameKind
 
@@ -173,6 +174,8 @@ def kind_of(file: str) -> str:
     """The kind of a project's file, as `schemas/KIND.schema.json` calls it; empty where it is none."""
     if file == MAIN_FILE:
         return "lumen"
+    if file == FLEET_FILE:
+        return "fleet"
     path = PurePosixPath(file)
     robots_own = "motion" if str(path.parent.parent) == "motions" else ""
     return FOLDER_KINDS.get(str(path.parent), robots_own) if path.suffix in (".yaml", ".json") else ""

@@ -74,7 +74,7 @@ def _reached(report: DocumentReport, recipient: Recipient) -> None:
                 report(ALERT_ADDRESS, (*recipient.where, "webhook"), f"`{url}` names no variable", hint)
         case Webhook(url):
             _web(report, url, (*recipient.where, "webhook"))
-        case Mail(host=host, security="none") if not _loopback(host):
+        case Mail(host=host, security="none") if not loopback(host):
             hint = "write `starttls` or `tls`; name and password are never sent without it"
             report(ALERT_IN_CLEAR, (*recipient.where, "mail", "security"), f"mails to {host} are not encrypted", hint)
 
@@ -91,11 +91,12 @@ def _web(report: DocumentReport, url: str, where: NodePath) -> None:
     elif parts.username is not None:
         hint = "write `webhook: $LUMEN_ALERT_URL`, and the address into that environment variable"
         report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
-    elif parts.scheme == "http" and not _loopback(parts.hostname):
+    elif parts.scheme == "http" and not loopback(parts.hostname):
         report(ALERT_IN_CLEAR, where, f"what is sent to {parts.hostname} is not encrypted", "write https://")
 
 
-def _loopback(host: str) -> bool:
+def loopback(host: str) -> bool:
+    """Whether a host is this machine."""
     try:
         return host == "localhost" or ip_address(host).is_loopback
     except ValueError:

@@ -15,6 +15,7 @@ from lumen.loading import (
     bodies,
     complaints,
     document,
+    fleet,
     gestures,
     keyframes,
     known_words,
@@ -46,9 +47,10 @@ from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
 LOADERS = (
-    actions, behaviors, bindings, bodies, complaints, document, expression_findings, gestures, keyframes, known_words,
-    life, linking, messages, misplaced, numbers, outline, poses, project, role_names, roles, rounds, rulebook,
-    schedules, settings, shapes, signal_bindings, terms, transitions, units, variables, yaml_errors, yaml_reader,
+    actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, keyframes,
+    known_words, life, linking, messages, misplaced, numbers, outline, poses, project, role_names, roles, rounds,
+    rulebook, schedules, settings, shapes, signal_bindings, terms, transitions, units, variables, yaml_errors,
+    yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 
@@ -57,7 +59,7 @@ HELPERS = (aims, controller_shapes, ignores, lookups, on_request, routing_keys, 
 
 FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "speech", "controllers", "motions",
-    "physics", "robot", "routes", "alerts", "comments",
+    "physics", "robot", "routes", "alerts", "fleet", "comments",
 )  # fmt: skip
 """The families as they are listed: what is wrong with a file first."""
 

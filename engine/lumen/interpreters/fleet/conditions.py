@@ -1,0 +1,103 @@
+"""`abort-if`: an expression over measures, in which `before` is the same measure with the files before."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions import Scope, compile_guard, parse_expression
+from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FieldAccess, Identifier, children, walk
+from lumen.language.diagnostics import did_you_mean
+
+BEFORE = "before"
+COMPARISONS = frozenset(("<", "<=", ">", ">=", "==", "!="))
+
+
+class ConditionFault(NamedTuple):
+    """What is wrong with a condition, at this character from 0."""
+
+    offset: int
+    length: int
+    message: str
+    hint: str
+
+
+class _Replacement(NamedTuple):
+    node: Identifier
+    meant: str
+
+
+def condition_faults(source: str, measures: Mapping[str, object]) -> list[ConditionFault]:
+    """Everything wrong with names in a condition, or its first fault of syntax; empty where it can be compiled."""
+    try:
+        tree = parse_expression(source)
+    except ExpressionError as error:
+        return [ConditionFault(error.offset, 1, error.message, error.hint)]
+    found = [fault for row in _replacements(tree, measures, frozenset()) if isinstance(fault := row, ConditionFault)]
+    if found:
+        return found
+    try:
+        compile_guard(meant(source, measures))
+    except ExpressionError as error:
+        return [ConditionFault(0, len(source), error.message, error.hint)]
+    return []
+
+
+def meant(source: str, measures: Mapping[str, object]) -> str:
+    """The condition as an expression about `context.now` and `context.before`, which hold measures by name.
+
+    `errors > 2 * before` becomes `context.now.errors > 2 * context.before.errors`. Raises ExpressionError.
+    """
+    tree = parse_expression(source)
+    rows = [row for row in _replacements(tree, measures, frozenset()) if isinstance(row, _Replacement)]
+    for row in sorted(rows, key=lambda row: row.node.offset, reverse=True):
+        source = source[: row.node.offset] + row.meant + source[row.node.end :]
+    return source
+
+
+def holds(
+    source: str, measures: Mapping[str, object], now: Mapping[str, float], before: Mapping[str, float]
+) -> bool | None:
+    """Whether a condition holds; None where that hangs on a measure that is not known (absent in `now`, `before`)."""
+    guard = compile_guard(meant(source, measures))
+    try:
+        return bool(guard(Scope(context={"now": now, BEFORE: before})))
+    except ExpressionError:
+        return None
+
+
+def _replacements(
+    node: ExpressionNode, measures: Mapping[str, object], around: frozenset[str]
+) -> Iterator[_Replacement | ConditionFault]:
+    """What each name stands for; `around` are the measures that the comparison around it names."""
+    match node:
+        case Identifier(name=name):
+            yield _named(node, name, measures, around)
+            return
+        case FieldAccess(base=Identifier(name="before") as base, name=name):
+            if name not in measures:
+                yield ConditionFault(node.offset, node.end - node.offset, *_unknown(name, measures))
+            yield _Replacement(base, f"context.{BEFORE}")
+            return
+        case Binary(sign=sign) if sign in COMPARISONS:
+            around = frozenset(each.name for each, _ in walk(node) if isinstance(each, Identifier)) - {BEFORE}
+    for child in children(node):
+        yield from _replacements(child, measures, around)
+
+
+def _named(
+    node: Identifier, name: str, measures: Mapping[str, object], around: frozenset[str]
+) -> _Replacement | ConditionFault:
+    length = node.end - node.offset
+    if name != BEFORE:
+        if name in measures:
+            return _Replacement(node, f"context.now.{name}")
+        return ConditionFault(node.offset, length, *_unknown(name, measures))
+    known = around & measures.keys()
+    if len(known) != 1:
+        hint = "write it in a comparison with one measure, as in `errors > 1.5 * before`, or as `before.errors`"
+        return ConditionFault(node.offset, length, "`before` stands for no measure here", hint)
+    return _Replacement(node, f"context.{BEFORE}.{next(iter(known))}")
+
+
+def _unknown(name: str, measures: Mapping[str, object]) -> tuple[str, str]:
+    return f"there is no measure `{name}`", did_you_mean(name, [*measures, BEFORE], "there are")

@@ -1,0 +1,18 @@
+"""Measures of several robots together, with the files that they have and with those before."""
+
+from collections.abc import Iterable, Mapping
+
+from lumen.interpreters.fleet.presence import HOURS
+from lumen.language.fleet import FleetMeasure
+
+
+def rates(counts: Iterable[Mapping[str, float]], measures: Mapping[str, FleetMeasure]) -> dict[str, float]:
+    """Each measure for an hour of a robot, or for each time that another has counted; absent where nothing is known."""
+    rows = list(counts)
+    found = {}
+    for name, measure in measures.items():
+        known = [row for row in rows if row.get(HOURS, 0.0) > 0.0 and name in row]
+        per = sum(row.get(measure.per or HOURS, 0.0) for row in known)
+        if per > 0.0:
+            found[name] = sum(row[name] for row in known) / per
+    return found

@@ -1,0 +1,76 @@
+"""What a centre wants its houses to run, and which of that a robot heeds."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+NOT = "!"
+"""`!HASH` wants anything but that bundle: what the robot ran before it."""
+
+
+@dataclass(frozen=True, slots=True)
+class DesiredState:
+    """What each robot of a house is to run, by its name: a hash, or `!HASH`.
+
+    A `centre` counts its orders by `version`. Whoever takes over from another centre begins a higher `term`.
+    """
+
+    centre: str
+    term: int
+    version: int
+    house: str
+    robots: Mapping[str, str] = field(default_factory=dict)
+
+    def text(self) -> str:
+        """As JSON text, which is what is signed."""
+        data = {name: getattr(self, name) for name in self.__slots__}
+        return json.dumps(data, sort_keys=True, separators=(",", ":"))
+
+
+def desired_from(text: str) -> DesiredState | None:
+    """The order that a text is, None for what is none."""
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    match data:
+        case {
+            "centre": str(centre), "term": int(term), "version": int(version), "house": str(house),
+            "robots": dict(robots),
+        } if all(isinstance(want, str) for want in robots.values()):  # fmt: skip
+            return DesiredState(centre, term, version, house, robots)
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedOrder:
+    """The last order that a robot heeded; `wanted` is what it is to run, empty where it may run what it does."""
+
+    centre: str = ""
+    term: int = 0
+    version: int = 0
+    wanted: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.__slots__}
+
+
+def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[FollowedOrder, str]:
+    """What a robot follows once it has heard an order, and why it does not heed this one: empty where it does.
+
+    No clock is asked: an order is newer by its term and version, however late it comes. Signatures were checked.
+    """
+    wanted = desired.robots.get(robot, "")
+    newer = replace(followed, centre=desired.centre, term=desired.term, version=desired.version, wanted=wanted)
+    if not followed.centre or desired.term > followed.term:
+        return newer, ""
+    if desired.term < followed.term:
+        return followed, f"centre {desired.centre[:8]} was replaced: term {desired.term} is over"
+    if desired.centre != followed.centre:
+        return followed, f"two centres: {desired.centre[:8]} orders, and {followed.centre[:8]} is followed"
+    if desired.version > followed.version:
+        return newer, ""
+    if desired.version == followed.version and wanted != followed.wanted:
+        return followed, f"order {desired.version} was another one when it came first"
+    return followed, ""

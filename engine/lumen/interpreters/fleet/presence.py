@@ -1,0 +1,72 @@
+"""What a robot tells its centre of itself every ten seconds, as JSON data: no names, no words, no images."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
+
+MAX_TEXT = 300
+MAX_MEASURES = 50
+PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN = (
+    "proved", "probation", "waiting", "fetching", "checking", "refused", "rolled back", "edited",
+)  # fmt: skip
+STATES = (PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN)
+"""How far a robot is with the bundle that it is to have; `edited`: somebody changed its files by hand."""
+
+HOURS = "hours"
+"""The measure that is always counted: how long a bundle has run [h]."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotPresence:
+    """`bundle` runs; with the bundle `about` the robot is as far as `state` says, `trouble` says why no farther.
+
+    `centre`, `term` and `version` are of the order that it follows. `wants` is the hash of a bundle that it lacks.
+    `now` and `before` are counts since `bundle` runs, and of the bundle before. `clock` is what its clock says [s since
+    1970].
+    """
+
+    robot: str
+    bundle: str = ""
+    state: str = PROVED
+    about: str = ""
+    trouble: str = ""
+    wants: str = ""
+    centre: str = ""
+    term: int = 0
+    version: int = 0
+    now: Mapping[str, float] = field(default_factory=dict)
+    before: Mapping[str, float] = field(default_factory=dict)
+    clock: float = 0.0
+    since: float = 0.0
+
+    def to_json(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.__slots__ if name != "robot"}
+
+
+def presence_from(robot: str, body: Any) -> RobotPresence | None:
+    """The presence that a message tells, None for one that is none."""
+    if not isinstance(body, Mapping):
+        return None
+    texts = {name: body.get(name, "") for name in ("bundle", "state", "about", "trouble", "wants", "centre")}
+    counts = {name: body.get(name, 0) for name in ("term", "version")}
+    times = {name: body.get(name, 0.0) for name in ("clock", "since")}
+    measures = {name: body.get(name, {}) for name in ("now", "before")}
+    sound = (
+        all(isinstance(text, str) and len(text) <= MAX_TEXT for text in texts.values())
+        and all(isinstance(count, int) and not isinstance(count, bool) and count >= 0 for count in counts.values())
+        and all(_number(time) for time in times.values())
+        and all(_measures(each) for each in measures.values())
+        and texts["state"] in STATES
+    )
+    return RobotPresence(robot, **texts, **counts, **times, **measures) if sound else None
+
+
+def _measures(data: Any) -> bool:
+    if not isinstance(data, Mapping) or len(data) > MAX_MEASURES + 1:
+        return False
+    return all(isinstance(name, str) and _number(count) and count >= 0 for name, count in data.items())
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

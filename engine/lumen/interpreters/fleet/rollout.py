@@ -1,0 +1,232 @@
+"""A rollout: a bundle comes to more and more robots, or back from all of them.
+
+What holds at every moment, whatever is late, lost, killed or doubled: no more robots may run a bundle that is not
+proved than the step at hand allows. So a robot that was told to have it counts until it was heard to be back.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from itertools import zip_longest
+
+from lumen.interpreters.fleet.conditions import holds
+from lumen.interpreters.fleet.counting import rates
+from lumen.interpreters.fleet.orders import NOT
+from lumen.interpreters.fleet.presence import PROVED, REFUSED, ROLLED_BACK, RobotPresence
+from lumen.interpreters.fleet.state import ABORTED, FINISHED, GOING, PERSON, CentreState, HeardPresence, Rollout
+from lumen.language.fleet import Fleet, RolloutPlan, StepTarget
+
+FRESH = 60.0
+"""For how long a robot counts as there after it was heard [s]."""
+LONGEST_LOOK = 30.0
+"""How much time one look may count [s]: a clock that is set, or a centre that was dead, hurries nothing."""
+PATIENCE = 900.0
+"""For how long beyond twice its pause a step may fail to be proved before a person is asked [s]."""
+
+HeardRobots = Mapping[str, HeardPresence]
+
+
+def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
+    """The state a moment later; what is new in it has to be written down before anybody is told."""
+    passed = min(max(now - state.looked, 0.0), LONGEST_LOOK) if state.looked else 0.0
+    state = _released(_overruled(replace(state, looked=now), heard), heard)
+    rollout = state.rollout
+    if rollout is None or not rollout.under_way or state.overruled:
+        return state
+    if why := _failed(rollout, fleet, heard):
+        return abort(state, why)
+    if rollout.state != GOING:
+        return state
+    state = _assigned(state, rollout, fleet, heard, now)
+    assert state.rollout
+    return _judged(state, state.rollout, fleet, heard, now, passed)
+
+
+def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now: float) -> CentreState:
+    """With another rollout, which the next step begins. Raises ValueError, saying why, where there can be none now."""
+    if state.overruled:
+        raise ValueError(state.overruled)
+    if state.rollout and state.rollout.under_way:
+        raise ValueError(f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or let it end")
+    for target in plan.steps:
+        if not fleet.members(target):
+            raise ValueError(f"no robot belongs to the step `{target}`")
+    return replace(state, rollout=Rollout(bundle, plan, begun=now, version=state.version))
+
+
+def abort(state: CentreState, why: str) -> CentreState:
+    """All go back: to what was wanted of them before, or else to what they ran."""
+    rollout = state.rollout
+    if rollout is None or not rollout.under_way:
+        return state
+    other = f"{NOT}{rollout.bundle}"
+    state = state.want({robot: rollout.prior.get(robot, other) for robot in rollout.assigned})
+    exposed = {
+        robot: (bundle, version or state.version) if bundle == rollout.bundle else (bundle, version)
+        for robot, (bundle, version) in state.exposed.items()
+    }
+    return replace(state, exposed=exposed, rollout=replace(rollout, state=ABORTED, reason=why))
+
+
+def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
+    """What a person says of the rollout under way: `paused`, or `going` (on). Raises ValueError where there is none."""
+    rollout = state.rollout
+    if rollout is None or not rollout.under_way:
+        raise ValueError("no rollout is under way")
+    settled = rollout.state == PERSON and decision == GOING
+    if settled:  # what nobody knew a person has said: this step is good
+        return _onward(state, replace(rollout, state=GOING, reason=why))
+    return replace(state, rollout=replace(rollout, state=decision, reason=why))
+
+
+def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
+    """The state of a centre that replaces one that is gone, or goes on with an old copy of its folder.
+
+    Its orders are of a new term. A rollout that was under way waits for a person, and whoever may have got more of it
+    since counts as exposed: everybody who was not heard, and everybody who runs it.
+    """
+    term = max([state.term, *(row.presence.term for row in heard.values())]) + 1
+    state = replace(state, term=term, version=state.version + 1, overruled="")
+    rollout = state.rollout
+    if rollout is None or not rollout.under_way:
+        return state
+    return _ask(state, rollout, "another centre has taken over while it was under way")
+
+
+def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
+    """How many robots may run the bundle in that step: as many as this step or one before it has."""
+    return max(_size(target, fleet) for target in plan.steps[: at + 1])
+
+
+def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
+    """What a robot said of itself where that was just now, else None."""
+    found = heard.get(robot)
+    return found.presence if found and abs(now - found.at) <= FRESH else None
+
+
+def _size(target: StepTarget, fleet: Fleet) -> int:
+    everybody = len(fleet.members(target))
+    return everybody if target.group else max(1, int(target.share * everybody + 1e-9))
+
+
+def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
+    """A centre whose robots have heard newer orders than it knows of orders nothing more."""
+    for robot, row in heard.items():
+        said = row.presence
+        if said.term > state.term:
+            why = f"{robot} follows centre {said.centre[:8]} of term {said.term}: this one was replaced"
+            return replace(state, overruled=why)
+        if said.term == state.term and said.centre == state.centre and said.version > state.version:
+            why = f"{robot} has heard order {said.version}, and here is {state.version}: this folder is an old copy"
+            return replace(state, overruled=why)
+    return state
+
+
+def _released(state: CentreState, heard: HeardRobots) -> CentreState:
+    """Without the robots that were heard to be back, or whose bundle is proved by now."""
+
+    def back(robot: str, bundle: str, version: int) -> bool:
+        said = heard[robot].presence if robot in heard else None
+        follows = said is not None and said.term == state.term and said.version >= version > 0
+        return bundle in state.proved or (follows and said is not None and said.bundle not in ("", bundle))
+
+    exposed = {robot: row for robot, row in state.exposed.items() if not back(robot, *row)}
+    return state if len(exposed) == len(state.exposed) else replace(state, exposed=exposed)
+
+
+def _failed(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
+    """Why the bundle is bad, empty while nothing says so."""
+    for robot in rollout.assigned:
+        said = heard[robot].presence if robot in heard else None
+        new = said is not None and said.version > rollout.version
+        if new and said and said.about == rollout.bundle and said.state in (REFUSED, ROLLED_BACK):
+            return f"{robot} has {said.state} it: {said.trouble or 'no reason was told'}"
+    if rollout.plan.abort_if and _holds(rollout, fleet, heard):
+        return f"`{rollout.plan.abort_if}` holds: {_told(rollout, fleet, heard)}"
+    return ""
+
+
+def _holds(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> bool | None:
+    now, before = _measured(rollout, fleet, heard)
+    return holds(rollout.plan.abort_if, fleet.measures, now, before)
+
+
+def _measured(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> tuple[dict[str, float], dict[str, float]]:
+    there = [heard[robot].presence for robot in rollout.assigned if robot in heard]
+    running = [said for said in there if said.bundle == rollout.bundle]
+    now = rates((said.now for said in running), fleet.measures)
+    return now, rates((said.before for said in running), fleet.measures)
+
+
+def _told(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
+    now, before = _measured(rollout, fleet, heard)
+    rows = (f"{name} {value:.3g}, before {before.get(name, float('nan')):.3g}" for name, value in now.items())
+    return ", ".join(rows).replace("before nan", "before unknown")
+
+
+def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
+    """With as many robots told to have the bundle as the step has and there is room for.
+
+    Who may still run what was taken back takes room, and is chosen once it was heard to be back.
+    """
+    target = rollout.plan.steps[rollout.at]
+    room = allowed(rollout.plan, rollout.at, fleet) - len({*state.exposed, *rollout.assigned})
+    missing = [robot for robot in fleet.members(target) if robot not in rollout.assigned]
+    there = [robot for robot in missing if robot not in state.pinned]
+    if target.share and target.share < 1.0:
+        there = [robot for robot in _spread(there) if fresh(heard, robot, now)]
+        room = min(room, _size(target, fleet) - len(rollout.assigned))
+    free = [robot for robot in there if robot not in state.exposed or rollout.bundle in state.proved]
+    chosen = tuple(free[: max(room, 0)])
+    if not chosen:
+        return state
+    known = {robot: want for robot in chosen if (want := state.wanted.get(robot, "")) in state.proved}
+    state = state.want(dict.fromkeys(chosen, rollout.bundle))
+    rollout = replace(rollout, prior={**rollout.prior, **known})
+    exposed = dict(state.exposed)
+    if rollout.bundle not in state.proved:
+        exposed |= dict.fromkeys(chosen, (rollout.bundle, 0))
+    return replace(state, exposed=exposed, rollout=replace(rollout, assigned=(*rollout.assigned, *chosen)))
+
+
+def _spread(robots: Iterable[str]) -> list[str]:
+    """One of each house in turn: what goes wrong in one house shows beside another."""
+    houses: dict[str, list[str]] = {}
+    for robot in robots:
+        houses.setdefault(robot.partition("/")[0], []).append(robot)
+    return [robot for row in zip_longest(*houses.values()) for robot in row if robot]
+
+
+def _judged(
+    state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float, passed: float
+) -> CentreState:
+    """Good, bad, or a person decides: once the step was watched for its pause."""
+    said = [fresh(heard, robot, now) for robot in rollout.assigned]
+    there = [each for each in said if each]
+    proved = [each for each in there if each.bundle == rollout.bundle and each.state == PROVED]
+    mostly = 2 * len(proved) > len(rollout.assigned)
+    watched = rollout.watched + (passed if mostly else 0.0)
+    rollout = replace(rollout, watched=watched, waited=rollout.waited + passed)
+    state = replace(state, rollout=rollout)
+    pause = rollout.plan.pause
+    if mostly and len(proved) == len(there) and watched >= pause:
+        if rollout.plan.abort_if and _holds(rollout, fleet, heard) is None:
+            return _ask(state, rollout, f"nothing is known yet that `{rollout.plan.abort_if}` asks for")
+        return _onward(state, rollout)
+    if rollout.waited > 2.0 * pause + PATIENCE:
+        late = [robot for robot, each in zip(rollout.assigned, said, strict=True) if not (each and each in proved)]
+        return _ask(
+            state, rollout, f"not proved after {rollout.waited / 60.0:.0f} min: {', '.join(late[:5]) or 'nobody'}"
+        )
+    return state
+
+
+def _ask(state: CentreState, rollout: Rollout, why: str) -> CentreState:
+    return replace(state, rollout=replace(rollout, state=PERSON, reason=why))
+
+
+def _onward(state: CentreState, rollout: Rollout) -> CentreState:
+    """The next step, or the end: then the bundle is proved."""
+    if rollout.at + 1 < len(rollout.plan.steps):
+        return replace(state, rollout=replace(rollout, at=rollout.at + 1, watched=0.0, waited=0.0))
+    proved = tuple(dict.fromkeys((*state.proved, rollout.bundle)))
+    return _released(replace(state, proved=proved, rollout=replace(rollout, state=FINISHED)), {})

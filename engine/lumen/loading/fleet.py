@@ -1,0 +1,73 @@
+"""fleet.yaml, from its plain data to a `Fleet`."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath
+from lumen.language.fleet import (
+    DEFAULT_PAUSE,
+    Fleet,
+    FleetGroup,
+    FleetHouse,
+    FleetMeasure,
+    RolloutPlan,
+    StepTarget,
+    step_target,
+)
+from lumen.loading.built_file import BuiltFile, read_file
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.files import FLEET_FILE, MAX_FILE_BYTES
+from lumen.loading.regular_files import read_regular
+from lumen.loading.routes import duration
+
+BAD_SHARE = Code("bad-share", "fleet", ERROR, "a step of a rollout is a share that there can't be")
+
+
+def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
+    """The fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key."""
+    if not isinstance(data, Mapping):
+        return None
+    return Fleet(
+        centre=data.get("centre", {}).get("broker", ""),
+        key=data.get("key", ""),
+        houses={key: _house(row) for key, row in data.get("houses", {}).items()},
+        groups={key: _group(row) for key, row in data.get("groups", {}).items()},
+        measures={key: FleetMeasure(**row) for key, row in data.get("measures", {}).items()},
+        rollout=_rollout(data.get("rollout", {}), report),
+    )
+
+
+def read_fleet(root: Path) -> tuple[BuiltFile[Fleet] | None, list[Diagnostic]]:
+    """What fleet.yaml in that folder holds, None where there is none that can be read; and what is wrong with it."""
+    try:
+        content = read_regular(root / FLEET_FILE, MAX_FILE_BYTES)
+    except OSError:
+        return None, []
+    return read_file(FLEET_FILE, content, "fleet", build_fleet)
+
+
+def _house(row: Mapping[str, Any]) -> FleetHouse:
+    return FleetHouse(row.get("broker", ""), tuple(row.get("robots", ())), dict(row.get("labels", {})))
+
+
+def _group(row: Mapping[str, Any]) -> FleetGroup:
+    return FleetGroup(tuple(row.get("robots", ())), tuple(row.get("houses", ())), dict(row.get("labels", {})))
+
+
+def _rollout(data: Mapping[str, Any], report: DocumentReport) -> RolloutPlan:
+    where: NodePath = ("rollout",)
+    rows = [_step(row, report, (*where, "steps", i)) for i, row in enumerate(data.get("steps", ()))]
+    steps = tuple(row for row in rows if row is not None)
+    pause = duration(data, "pause", report, where)
+    return RolloutPlan(
+        steps or RolloutPlan().steps, DEFAULT_PAUSE if pause is None else pause, str(data.get("abort-if", ""))
+    )
+
+
+def _step(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> StepTarget | None:
+    target = step_target(row["to"])
+    if target is None:
+        hint = "write a share such as `10%`, more than 0 and at most 100, the name of a group, or `all`"
+        report(BAD_SHARE, (*where, "to"), f"`{row['to']}` is no share of the robots", hint)
+    return target

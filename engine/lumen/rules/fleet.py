@@ -1,0 +1,109 @@
+"""fleet.yaml: whether its names stand for something, its steps grow, and nobody reads along."""
+
+import base64
+import binascii
+from collections.abc import Iterable
+from urllib.parse import urlsplit
+
+from lumen.interpreters.fleet.conditions import condition_faults
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
+from lumen.language.fleet import Fleet
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.expressions import place_within
+from lumen.loading.files import FLEET_FILE
+from lumen.rules.alerts import loopback
+from lumen.rules.routes import PASSWORD_IN_FILE
+
+BAD_CONDITION = Code("bad-condition", "fleet", ERROR, "the condition that ends a rollout can't be computed")
+BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the key of a fleet is no public key")
+FLEET_IN_CLEAR = Code("fleet-in-clear", "fleet", WARNING, "houses and centre talk unencrypted: others can read along")
+SHRINKING_STEP = Code("shrinking-step", "fleet", ERROR, "a step of a rollout is no larger than the one before")
+UNKNOWN_HOUSE = Code("unknown-house", "fleet", ERROR, "a house or a robot is named that the fleet does not have")
+UNKNOWN_GROUP = Code("unknown-group", "fleet", ERROR, "a step goes to a group that there is not")
+UNKNOWN_MEASURE = Code("unknown-measure", "fleet", ERROR, "a measure counts nothing, or per one that there is not")
+
+KEY_BYTES = 32
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what is wrong with the fleet beside a project, where there is one."""
+    fleet, report = draft.fleet, draft.reports.get(FLEET_FILE)
+    if fleet is not None and report is not None:
+        check_fleet(fleet, report)
+
+
+def check_fleet(fleet: Fleet, report: DocumentReport) -> None:
+    """Report what is wrong with a fleet, whose file may have no project beside it."""
+    _key(fleet, report)
+    addresses: list[tuple[NodePath, str]] = [(("centre", "broker"), fleet.centre)] if fleet.centre else []
+    addresses += [(("houses", name, "broker"), house.broker) for name, house in fleet.houses.items()]
+    for where, address in addresses:
+        _address(address, where, report)
+    for name, group in fleet.groups.items():
+        _known(group.robots, fleet.robots, "robot", ("groups", name, "robots"), report)
+        _known(group.houses, fleet.houses, "house", ("groups", name, "houses"), report)
+    for name, measure in fleet.measures.items():
+        if not measure.event and not measure.enters:
+            hint = "write `event: NAME`, or `enters: STATE`"
+            report(UNKNOWN_MEASURE, ("measures", name), "the measure counts nothing", hint, key=True)
+        if measure.per and measure.per not in fleet.measures:
+            hint = did_you_mean(measure.per, fleet.measures, "there are")
+            report(UNKNOWN_MEASURE, ("measures", name, "per"), f"there is no measure `{measure.per}`", hint)
+    _steps(fleet, report)
+    _condition(fleet, report)
+
+
+def _key(fleet: Fleet, report: DocumentReport) -> None:
+    if not fleet.key:
+        return
+    try:
+        sound = len(base64.b64decode(fleet.key, validate=True)) == KEY_BYTES
+    except (binascii.Error, ValueError):
+        sound = False
+    if not sound:
+        hint = "`lumen fleet keygen` makes a pair of keys, and prints the line that belongs here"
+        report(BAD_FLEET_KEY, ("key",), "this is no public key: 32 bytes in base64 are expected", hint)
+
+
+def _address(address: str, where: NodePath, report: DocumentReport) -> None:
+    try:
+        parts = urlsplit(address)
+        host = parts.hostname or ""
+    except ValueError:
+        return
+    if parts.username is not None:
+        hint = "take them out: `lumen fleet init` writes names and passwords into files of their own"
+        report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
+    elif parts.scheme == "amqp" and not loopback(host):
+        report(FLEET_IN_CLEAR, where, f"what is sent to {host} is not encrypted", "write amqps://")
+
+
+def _known(names: Iterable[str], known: Iterable[str], what: str, where: NodePath, report: DocumentReport) -> None:
+    there = list(known)
+    for i, name in enumerate(names):
+        if name not in there:
+            hint = did_you_mean(name, there, "there are")
+            report(UNKNOWN_HOUSE, (*where, i), f"the fleet has no {what} `{name}`", hint)
+
+
+def _steps(fleet: Fleet, report: DocumentReport) -> None:
+    """Each step has to reach more robots than the one before; a group may be as small as it likes after none."""
+    last = 0.0
+    for i, step in enumerate(fleet.rollout.steps):
+        where: NodePath = ("rollout", "steps", i, "to")
+        if step.group and step.group not in fleet.groups:
+            hint = did_you_mean(step.group, [*fleet.groups, "all"], "there are")
+            report(UNKNOWN_GROUP, where, f"there is no group `{step.group}`", hint)
+        if not step.group:
+            if step.share <= last:
+                hint = f"write a larger share than {100.0 * last:g}%, or take the step out"
+                report(SHRINKING_STEP, where, f"{step} is no more than the step before", hint)
+            last = step.share
+
+
+def _condition(fleet: Fleet, report: DocumentReport) -> None:
+    source, where = fleet.rollout.abort_if, ("rollout", "abort-if")
+    for fault in condition_faults(source, fleet.measures) if source else ():
+        place = place_within(report.document, where, source, fault.offset, fault.length)
+        report.diagnostics.append(BAD_CONDITION.at(place, fault.message, fault.hint))

@@ -1,0 +1,1 @@
+"""Many houses: fleet.yaml, rollouts, the agent of a robot, brokers."""
