@@ -29,7 +29,18 @@ def main() -> int:
     both = ("pyproject.toml", "--group", "build")
     core = _resolve(pinned, *both)
     whole = _resolve(
-        pinned, *both, "--extra", "simulation", "--extra", "plot", "--extra", "recording", "--extra", "console"
+        pinned,
+        *both,
+        "--extra",
+        "simulation",
+        "--extra",
+        "plot",
+        "--extra",
+        "recording",
+        "--extra",
+        "console",
+        "--extra",
+        "fleet",
     )
     if more := [name for name in core if _version(core[name]) != _version(whole[name])]:
         print(

@@ -15,6 +15,7 @@ from tests.guarded import run_guarded
 ENGINE = Path(__file__).parents[2] / "engine" / "lumen"
 MAKERS = {
     "upkeep/private_folder.py": "the one function",
+    "app/fleet/installing.py": "a folder of the project, which is to be committed",
     "app/lint/outcome_cache.py": "a folder within a private one",
     "app/starting.py": "a project, which is to be committed",
     "cli/importing_robot.py": "where the user says",

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.answering import WHY, WHY_NOT, answer
+from lumen.app.fleet.part import fleet_part
 from lumen.app.narrator import Narrator
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
@@ -84,6 +85,10 @@ class Exhibition:
             taken_by = directory.reloader if directory else Reloader
             self.reloader = taken_by(behavior, self.node.narrator, mode=reload)
             self.node.add(ReloadPart(self.reloader))
+            if directory and story is None:
+                tell = partial(self.node.narrator.line, "fleet")
+                agent = fleet_part(directory.root, opened, behavior, self.reloader, directory.home, tell)
+                self.node.add(*([agent] if agent else []))
         self._operator = OperatorPart(
             behavior,
             self.node.narrator,

@@ -11,6 +11,7 @@ from pathlib import Path
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.exhibition import Exhibition
+from lumen.app.fleet.installing import finish as finish_installing
 from lumen.app.loudspeaker import Loudspeaker
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
@@ -107,6 +108,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> RunVerdict:
+    finish_installing(root)
     project = startup_project(root, run_directory, last_good=options.last_good, warn=complain)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):

@@ -43,6 +43,13 @@ class SavedFiles(NamedTuple):
     asked: object = None
 
 
+class GivenFiles(NamedTuple):
+    """Files to be judged that do not lie in the project's folder, and what comes back with the verdict."""
+
+    files: WatchedFiles
+    asked: object
+
+
 class FileWatcher(Generic[T]):
     """Judges the project's files anew whenever their content has changed and stayed quiet, or when somebody asks.
 
@@ -87,6 +94,19 @@ class FileWatcher(Generic[T]):
         self._asked.put(what)
         self._hint.set()
 
+    def give(self, files: WatchedFiles, what: object) -> None:
+        """Judge these files, which do not lie in the folder; `what` comes back with it."""
+        self._asked.put(GivenFiles(files, what))
+        self._hint.set()
+
+    def write(self, change: Callable[[], WatchedFiles]) -> None:
+        """Let the folder be changed, on the thread that reads it: nothing half-written is read.
+
+        The files that `change` gives back run already: they are not judged.
+        """
+        self._asked.put(change)
+        self._hint.set()
+
     def close(self) -> None:
         """End the threads; returns when they have ended."""
         self._stop.set()
@@ -99,9 +119,21 @@ class FileWatcher(Generic[T]):
             self._hint.wait(MAX_READ_PERIOD if self._watching else None)
             self._hint.clear()
             while not self._asked.empty():
-                self._look(self._asked.get())
+                self._serve(self._asked.get())
             if self._watching:
                 self._look()
+
+    def _serve(self, asked: object) -> None:
+        if isinstance(asked, GivenFiles):
+            now = time.monotonic()
+            judged = self._judged(SavedFiles(asked.files, (), now, now, asked.asked))
+            if judged is not None:
+                self.results.put(judged)
+        elif callable(asked):
+            self._files = asked()
+            self._hash = fingerprint(self._files)
+        else:
+            self._look(asked)
 
     def _look(self, asked: object = None) -> None:
         saved = SavedFiles(read_files(self._root), (), time.monotonic(), 0.0, asked)

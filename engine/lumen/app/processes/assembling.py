@@ -8,6 +8,7 @@ from typing import Any
 
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.claiming import presence_of
+from lumen.app.fleet.part import fleet_part
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
 from lumen.app.parts.alerting import AlertPart
@@ -129,8 +130,11 @@ def assemble(
             needs=brain.needs,
         )
         operator.marking = recording.marking
+        tell = partial(narrator.line, "fleet")
+        agent = fleet_part(run_directory.root, bus, behavior, reloader, run_directory.home, tell, brain.needs)
         node.parts += [
             ReloadPart(reloader, brain.needs),
+            *([agent] if agent and story is None else []),
             operator,
             ForgettingPart(project, bus, behavior.forget, records.forget, needs=brain.needs),
             brain,

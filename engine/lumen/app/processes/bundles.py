@@ -2,7 +2,7 @@
 
 import queue
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from lumen.app.reload.requests import status_key
@@ -10,6 +10,8 @@ from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.ports import Bus, Message
 from lumen.rules import check_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.runtime.watcher import SWITCH_INTERVAL
 from lumen.upkeep.threads import WatchedThread
 
@@ -58,8 +60,8 @@ class BundleFollower:
             usual = sys.getswitchinterval()
             sys.setswitchinterval(SWITCH_INTERVAL)
             try:
-                files = read_files(self._root)  # what the brain has not judged is not read here
-                project = check_files(self._root, files)[0] if fingerprint(files) == wanted else None
+                files = self._files(wanted)  # what the brain has not judged is not read here
+                project = check_files(self._root, files)[0] if files else None
             finally:
                 sys.setswitchinterval(usual)
             if project is not None:
@@ -68,6 +70,11 @@ class BundleFollower:
             elif not missed:
                 missed = "the files here are not those that the brain runs on now: it goes on alone"
                 self._loaded.put(missed)
+
+    def _files(self, wanted: str) -> Mapping[str, bytes] | None:
+        """The files of that hash: in the project's folder, or among those that a brain on this machine keeps."""
+        files = read_files(self._root)
+        return files if fingerprint(files) == wanted else SnapshotStore(Home(home_of(self._root))).files(wanted)
 
     def _latest(self) -> str | None:
         """The newest hash that is wanted, None at the end; waits for one."""

@@ -16,12 +16,14 @@ from lumen.app.reload.validator import Validation, fault_of
 from lumen.errors import BusError
 from lumen.interpreters.changes import Change, changes, live
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
+from lumen.interpreters.replay.visits import home_of
 from lumen.language.projects import Project
 
 OTHER_VISITS = "recorded visits would be others with these files"
 APPLY = "`lumen reload --apply` takes them all the same"
 ONE_VISITOR = "for one visitor: when that visit is over the files before come back"
 VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` takes them for good"
+BETWEEN = "a visit is under way"
 BY_A_PERSON = "somebody refused them"
 
 _log = logging.getLogger(__name__)
@@ -33,7 +35,7 @@ class StagedBundle:
 
     `asked` is the snapshot from which it could not go on; `told` what it was said to wait for; `objected` whether
     it was refused for what it would change in recorded visits. With `trial` it is made active for one visitor;
-    `kept` is what waits again once this one is active.
+    `kept` is what waits again once this one is active. One that comes `between` two visits waits for the end of one.
     """
 
     project: Project
@@ -48,6 +50,7 @@ class StagedBundle:
     told: str = ""
     objected: bool = False
     trial: bool = False
+    between: bool = False
     kept: "StagedBundle | None" = None
     orders: list[ReloadRequest] = field(default_factory=list)
 
@@ -80,6 +83,7 @@ class MigrationQueue:
         if order:
             staged.orders.append(order)
             staged.now |= order.now
+            staged.between |= order.between
         staged.going, staged.since, staged.asked, staged.told = True, time.monotonic(), None, ""
         self.staged = staged
 
@@ -145,8 +149,14 @@ class MigrationQueue:
 
     def _go(self, staged: StagedBundle, now: float) -> None:
         """Apply it, wait for what it has to wait for, or refuse it."""
-        expired = time.monotonic() - staged.since > self.running.patience
         before, snapshot = self.running, self._behavior.loop.runtime.snapshot
+        if staged.between and (home := home_of(before.machine)) and home not in snapshot.configuration:
+            staged.since = time.monotonic()
+            if staged.told != BETWEEN:
+                staged.told = BETWEEN
+                self._wait(staged, home, BETWEEN)
+            return
+        expired = time.monotonic() - staged.since > self.running.patience
         if staged.asked is snapshot and not expired:
             return
         staged.asked = snapshot
@@ -165,9 +175,12 @@ class MigrationQueue:
             self._give_up(staged, verdict)
         elif verdict.reason != staged.told:
             staged.told = verdict.reason
-            waiting = self._about(staged, "waiting")
-            waiting.waiting_for, waiting.reason = what_for(verdict), verdict.reason
-            self._notifier.tell(waiting, staged.orders)
+            self._wait(staged, what_for(verdict), verdict.reason)
+
+    def _wait(self, staged: StagedBundle, what: str, why: str) -> None:
+        waiting = self._about(staged, "waiting")
+        waiting.waiting_for, waiting.reason = what, why
+        self._notifier.tell(waiting, staged.orders)
 
     def _apply(self, staged: StagedBundle, plan: MigrationPlan, now: float) -> None:
         before, began = self.running, time.perf_counter()

@@ -3,9 +3,10 @@
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
@@ -114,6 +115,24 @@ class Reloader:
         self._queue.tick(now)
         assert self.last
         return self.last
+
+    @property
+    def mode(self) -> str:
+        """How saved files are taken: one of `MODES`."""
+        return self._mode
+
+    @property
+    def on_probation(self) -> bool:
+        """Whether the files that run have not stood their probation yet."""
+        return self._queue.rollback_guard.left(self._behavior.loop.clock.now()) is not None
+
+    def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        """Have files taken that do not lie in the project's folder, between two visits; `answer` hears each verdict."""
+        self._watcher.give(files, ReloadRequest("reload", now=False, answer=answer, between=True))
+
+    def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
+        """Let `change` bring the files that run into the project's folder; it gives back what lies there then."""
+        self._watcher.write(change)
 
     def tick(self, now: float) -> None:
         """Take what was asked, see what the watcher found, and apply what is staged.

@@ -27,11 +27,15 @@ def status_key(robot: str) -> str:
 
 @dataclass(frozen=True)
 class ReloadRequest:
-    """`verb` is one of `REQUESTS`; `now` does not wait for what is under way. `answer` sends a body to who asked."""
+    """`verb` is one of `REQUESTS`; `now` does not wait for what is under way. `answer` sends a body to who asked.
+
+    With `between` it waits for the end of a visit, however long that is.
+    """
 
     verb: str
     now: bool
     answer: Callable[[Any], None]
+    between: bool = False
 
 
 def request_from(message: Message, bus: Bus) -> ReloadRequest:

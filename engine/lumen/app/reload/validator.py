@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
 from lumen.app.rehearsal import Rehearsal
+from lumen.app.reload.requests import ReloadRequest
 from lumen.app.reload.validation_worker import FileJudge
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
@@ -15,6 +16,7 @@ from lumen.interpreters.changes import Change, Risk, changes
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
+from lumen.language.replay_check import ReplayCheck
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint
 from lumen.runtime.watcher import SavedFiles
@@ -97,7 +99,8 @@ class BundleValidator:
             loaded = time.perf_counter()
             failed = tuple(self._play(project, _saved_stories(project, saved.changed)))
             played = time.perf_counter()
-            visits = None if failed else self._replayed(running, project, found)
+            given = isinstance(saved.asked, ReloadRequest) and saved.asked.between
+            visits = None if failed else self._replayed(running, project, found, always=given)
             took = loaded - began, played - loaded, visits, time.perf_counter() - played
             return Validation(saved, hash, project, diagnostics, running, found, failed, "", *took)
         except FatalFilesError as error:
@@ -105,9 +108,13 @@ class BundleValidator:
         except Exception as error:  # a fault of ours costs the reload, and nothing else
             return Validation(saved, hash, fault=fault_of(error))
 
-    def _replayed(self, running: Project, project: Project, found: Iterable[Change]) -> VisitsCheck | None:
+    def _replayed(
+        self, running: Project, project: Project, found: Iterable[Change], *, always: bool = False
+    ) -> VisitsCheck | None:
         """What the files that run want to be known of visits; a fault of ours costs that, and not the reload."""
         check = running.replay_check
+        if always and not check.mode:
+            check = ReplayCheck("warn")
         if not check.mode or all(change.risk is Risk.COSMETIC and change.kind != "text" for change in found):
             return None
         try:

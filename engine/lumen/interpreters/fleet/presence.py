@@ -22,6 +22,7 @@ class RobotPresence:
     """`bundle` runs; with the bundle `about` the robot is as far as `state` says, `trouble` says why no farther.
 
     `centre`, `term` and `version` are of the order that it follows. `wants` is the hash of a bundle that it lacks.
+    `played` of its last visits were played with the bundle, and `same` of them came out as they were.
     `now` and `before` are counts since `bundle` runs, and of the bundle before. `clock` is what its clock says [s since
     1970].
     """
@@ -39,6 +40,8 @@ class RobotPresence:
     before: Mapping[str, float] = field(default_factory=dict)
     clock: float = 0.0
     since: float = 0.0
+    played: int = 0
+    same: int = 0
 
     def to_json(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in self.__slots__ if name != "robot"}
@@ -49,7 +52,7 @@ def presence_from(robot: str, body: Any) -> RobotPresence | None:
     if not isinstance(body, Mapping):
         return None
     texts = {name: body.get(name, "") for name in ("bundle", "state", "about", "trouble", "wants", "centre")}
-    counts = {name: body.get(name, 0) for name in ("term", "version")}
+    counts = {name: body.get(name, 0) for name in ("term", "version", "played", "same")}
     times = {name: body.get(name, 0.0) for name in ("clock", "since")}
     measures = {name: body.get(name, {}) for name in ("now", "before")}
     sound = (

@@ -1,0 +1,265 @@
+"""The agent of a robot: it hears what the robot is to run, and gets it there by itself.
+
+It fetches the bundle by its hash, checks signature and hash, and has it linted for its own body, played on its own last
+visits, planned from the configuration at hand, taken between two visitors, and watched. Nothing here asks a clock what
+is newer, waits for the network, or trusts a message.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from lumen.app.fleet.bundle import BadBundleError, opened
+from lumen.app.fleet.house_keys import at_home
+from lumen.app.fleet.kept_bundles import BundleFolder
+from lumen.app.fleet.memory import AgentMemory
+from lumen.app.fleet.signing import ORDER, verified
+from lumen.errors import UsageError
+from lumen.interpreters.fleet.orders import NOT, desired_from, heed
+from lumen.interpreters.fleet.presence import (
+    BROKEN,
+    CHECKING,
+    FETCHING,
+    HOURS,
+    MAX_TEXT,
+    PROBATION,
+    PROVED,
+    REFUSED,
+    ROLLED_BACK,
+    WAITING,
+    RobotPresence,
+)
+from lumen.loading.files import fingerprint
+from lumen.loading.packaged import MAIN_FILE
+
+MOST_TRIES = 2
+"""How often a process may end while a bundle is on probation, until the robot goes without it."""
+
+
+class FileTaker(Protocol):
+    """What takes files for a behaviour that runs."""
+
+    @property
+    def running(self) -> str:
+        """The hash of the files that run."""
+
+    @property
+    def on_probation(self) -> bool:
+        """Whether they have not proved themselves yet."""
+
+    def files(self, hash: str) -> Mapping[str, bytes] | None:
+        """The files of that hash, where they ran here."""
+
+    def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        """Have files taken between two visits; `answer` hears each verdict."""
+
+    def install(self, files: Mapping[str, bytes]) -> None:
+        """Bring the files that run into the project's folder."""
+
+
+class FleetAgent:
+    """Of one robot; `key` is whom it trusts. `tick` it; what it hears comes by `order` and `bundle`.
+
+    `save` writes its memory before it acts on what it has heard; `tell` hears what people want to know, and `incident`
+    what the centre is to know at once. What leaves the house names nobody and quotes nobody.
+    """
+
+    def __init__(
+        self,
+        house: str,
+        robot: str,
+        key: str,
+        taker: FileTaker,
+        memory: AgentMemory,
+        folder: BundleFolder,
+        *,
+        save: Callable[[AgentMemory], str],
+        tell: Callable[[str], None],
+        incident: Callable[[str, str], None] = lambda kind, text: None,
+    ) -> None:
+        self._house, self._robot, self._key = house, robot, key
+        self._taker, self.memory, self._folder = taker, memory, folder
+        self._save, self._tell, self._incident = save, tell, incident
+        self.state, self.trouble, self.wants = PROVED, "", ""
+        self._told: set[str] = set()
+        self._offered = self._goal = ""
+        self.played = 0, 0
+        if memory.trying:
+            memory.tries += 1
+            self._save(memory)
+
+    @property
+    def running(self) -> str:
+        """The bundle that runs, as the fleet calls it."""
+        return self.memory.names.get(self._taker.running, self._taker.running)
+
+    def order(self, body: Any) -> None:
+        """A message says what this house is to run."""
+        match body:
+            case {"order": str(text), "signature": str(signature)}:
+                pass
+            case _:
+                return self._refuse("an order came that is none")
+        if not verified(self._key, ORDER, text.encode(), signature):
+            return self._refuse("an order is not signed with the key of fleet.yaml")
+        desired = desired_from(text)
+        if desired is None or desired.house != self._house:
+            return self._refuse("a signed order is none for this house")
+        followed, why = heed(self.memory.followed, desired, self._robot)
+        if why:
+            return self._refuse(why)
+        if followed != self.memory.followed:
+            self.memory.followed, self._told = followed, set()
+            self._save(self.memory)
+        return None
+
+    def bundle(self, body: Any) -> None:
+        """A message brings a bundle, which may be the one that is wanted."""
+        if not self.wants or not isinstance(body, Mapping) or body.get("hash") != self.wants:
+            return
+        try:
+            files = opened(body, self.wants, self._key)
+        except BadBundleError as error:
+            self._refuse(str(error))
+            return
+        if why := self._folder.keep(files):
+            self._refuse(f"bundle {self.wants[:12]} can't be kept: {why}")
+            return
+        self.wants = ""
+
+    def tick(self) -> None:
+        """Go on towards what is wanted."""
+        memory, wanted = self.memory, self.memory.followed.wanted
+        if self.state == PROBATION and self._taker.running != self._offered:
+            self._fail(ROLLED_BACK, "it did not stand its probation; the house's journal says why")
+        elif self.state == PROBATION and not self._taker.on_probation:
+            self._proved()
+        if self.state in (CHECKING, WAITING, PROBATION):
+            return
+        back = wanted.startswith(NOT) and self.running == wanted[1:]
+        goal = (memory.before if back else "") if wanted.startswith(NOT) else wanted
+        self._goal = goal
+        if back and not goal:
+            self._fail(REFUSED, "there are no files from before it to go back to", wanted)
+        elif not goal or goal == self.running:
+            self.state, self.wants = PROVED, ""
+            if goal and not self._taker.on_probation and memory.done != memory.order:
+                memory.done = memory.order
+                self._save(memory)
+        elif (failed := memory.failed.get(goal)) and failed[0] == memory.order:
+            self.state, self.trouble = str(failed[1]), str(failed[2])
+        elif memory.done == memory.order:
+            self.state, self.trouble = BROKEN, "its files were changed here after it had the bundle"
+        else:
+            self._go(goal, own=back)
+
+    def presence(self, seconds: float, counted: Mapping[str, int]) -> RobotPresence:
+        """What it tells of the robot, after it has lived for so long [s] and counted this."""
+        memory = self.memory
+        if memory.counted != self._taker.running:
+            memory.past, memory.now = memory.now, {}
+            memory.counted, memory.since = self._taker.running, time.time()
+        for name, count in {HOURS: seconds / 3600.0, **counted}.items():
+            memory.now[name] = memory.now.get(name, 0.0) + count
+        self._save(memory)
+        at = memory.followed
+        name = f"{self._house}/{self._robot}"
+        trouble = (self.trouble or next(iter(self._told), ""))[:MAX_TEXT]
+        about = self._goal or self.running
+        return RobotPresence(
+            name, self.running, self.state, about, trouble, self.wants, at.centre, at.term, at.version,
+            dict(memory.now), dict(memory.past), time.time(), memory.since, *self.played,
+        )  # fmt: skip
+
+    def _go(self, goal: str, *, own: bool) -> None:
+        """Fetch a bundle, or have it taken; `own` files have run here."""
+        self.trouble = ""
+        if self.memory.trying == goal and self.memory.tries >= MOST_TRIES:
+            self._fail(ROLLED_BACK, f"the exhibition ended {self.memory.tries} times before it had proved itself")
+            return
+        kept = self._folder.files(goal)
+        if kept is None:
+            self.state, self.wants = FETCHING, goal
+            return
+        files = dict(kept)
+        try:
+            here = self._taker.files(self._taker.running)
+            if not own:
+                files[MAIN_FILE] = at_home(files.get(MAIN_FILE, b""), (here or {}).get(MAIN_FILE, b""))
+        except UsageError as error:
+            self._fail(REFUSED, str(error))
+            return
+        if here is not None and (why := self._folder.keep(here)):
+            self._fail(REFUSED, f"the files that run can't be kept: {why}")
+            return
+        self._offered = fingerprint(files)
+        if not own:
+            self.memory.name(self._offered, goal)
+        if self._offered == self._taker.running:
+            return
+        self.state, self.wants = CHECKING, ""
+        self._tell(f"bundle {goal[:12]} is checked")
+        self._taker.offer(files, self._answer)
+
+    def _answer(self, verdict: Any) -> None:
+        """What came of the files that were offered."""
+        match verdict:
+            case {"verdict": "waiting", **more}:
+                self.state, self.trouble = WAITING, str(more.get("reason", ""))
+            case {"verdict": "applied", "before": str(before)}:
+                self._played(verdict)
+                self.state, self.trouble = PROBATION, ""
+                if self.memory.trying != self._goal:
+                    self.memory.trying, self.memory.tries = self._goal, 0
+                self.memory.before = before
+                self._save(self.memory)
+            case {"verdict": "unchanged"}:
+                self.state = PROVED
+            case {"verdict": str(said)} if said != "judging":
+                self._fail(REFUSED, _reason(verdict))
+
+    def _played(self, verdict: Mapping[str, Any]) -> None:
+        match verdict.get("visits"):
+            case {"visits": int(visits), "same": int(same)}:
+                self.played = visits, same
+
+    def _proved(self) -> None:
+        memory = self.memory
+        memory.trying, memory.tries, memory.done = "", 0, memory.order
+        memory.writing = self._offered
+        self.state = PROVED
+        self._save(memory)
+        if (files := self._taker.files(self._offered)) is not None and not self._folder.keep(files):
+            self._taker.install(files)
+        wanted = memory.followed.wanted
+        kept = {memory.before, self._offered, self._goal, *memory.names.values(), wanted.removeprefix(NOT)}
+        self._folder.prune(kept)
+        self._tell(f"bundle {self._goal[:12]} has proved itself")
+
+    def _fail(self, state: str, why: str, goal: str = "") -> None:
+        """The robot goes without a bundle until another order comes."""
+        memory, about = self.memory, goal or self._goal
+        if memory.failed.get(about, [None])[0] != memory.order:
+            memory.failed[about] = [memory.order, state, why[:MAX_TEXT]]
+            memory.failed = dict(list(memory.failed.items())[-8:])
+            self._tell(f"bundle {about.removeprefix(NOT)[:12]} {state}: {why}")
+            self._incident(state, why[:MAX_TEXT])
+        memory.trying, memory.tries = "", 0
+        self.state, self.trouble, self.wants = state, why, ""
+        self._save(memory)
+
+    def _refuse(self, why: str) -> None:
+        """Something came that is not heeded: that is told once, until another order is."""
+        if why not in self._told and len(self._told) < 10:
+            self._told.add(why)
+            self._tell(why)
+            self._incident("refused", why[:MAX_TEXT])
+
+
+def _reason(verdict: Mapping[str, Any]) -> str:
+    """Why files were refused: where lint found an error, else the reason. Recorded visits may name people."""
+    found = [row for row in verdict.get("diagnostics", ()) if row.get("severity") == "error"]
+    if found:
+        row = found[0]
+        return f"{row.get('file')}:{row.get('line')}: {row.get('code')}"
+    return str(verdict.get("reason") or verdict["verdict"])

@@ -1,0 +1,89 @@
+"""A bundle as it travels: the files of a project in a zip, called by their hash, and signed."""
+
+import base64
+import binascii
+import io
+import re
+import zipfile
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.app.fleet.signing import BUNDLE, Signer, verified
+from lumen.errors import UsageError
+from lumen.loading.files import FLEET_FILE, MAX_PROJECT_BYTES, belongs, fingerprint
+from lumen.runtime.snapshot_store import DAMAGED_BUNDLE
+
+HASH = re.compile(r"[0-9a-f]{64}")
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The date of each file: the same files make the same zip."""
+MAX_BYTES = 12_000_000
+"""Of a packed bundle: one message takes it."""
+
+
+class BadBundleError(UsageError):
+    """What came is no bundle, not the one that was meant, or nobody's who is trusted; the message says which."""
+
+
+def packed(files: Mapping[str, bytes]) -> bytes:
+    """The files as a zip; fleet.yaml is left out."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for path, content in sorted(files.items()):
+            if path != FLEET_FILE:
+                entry = zipfile.ZipInfo(path, EPOCH)
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                archive.writestr(entry, content)
+    return buffer.getvalue()
+
+
+def message_of(files: Mapping[str, bytes], signer: Signer) -> dict[str, Any]:
+    """The bundle that these files are, signed, as a message. Raises UsageError where it is too large for one."""
+    hash, data = fingerprint(files), packed(files)
+    if len(data) > MAX_BYTES:
+        raise UsageError(f"the bundle takes {len(data) / 1e6:.1f} MB packed, and a message {MAX_BYTES / 1e6:g}")
+    signature = signer.sign(BUNDLE, hash.encode())
+    return {"hash": hash, "zip": base64.b64encode(data).decode(), "signature": signature}
+
+
+def opened(body: Any, wanted: str, key: str) -> dict[str, bytes]:
+    """The files of a bundle that came, which is the one wanted and signed with the other half of the key.
+
+    Raises BadBundleError.
+    """
+    match body:
+        case {"hash": str(hash), "zip": str(text), "signature": str(signature)}:
+            pass
+        case _:
+            raise BadBundleError("what came is no bundle")
+    if hash != wanted:
+        raise BadBundleError(f"bundle {hash[:12]} came in place of {wanted[:12]}")
+    if not verified(key, BUNDLE, hash.encode(), signature):
+        raise BadBundleError(f"bundle {hash[:12]} is not signed with the key of fleet.yaml")
+    try:
+        data = base64.b64decode(text, validate=True)
+    except (ValueError, binascii.Error):
+        raise BadBundleError(f"bundle {hash[:12]} came damaged") from None
+    return unpacked(data, wanted)
+
+
+def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
+    """The files in a zip, which have that hash. Raises BadBundleError."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if sum(entry.file_size for entry in archive.infolist()) > MAX_PROJECT_BYTES:
+                raise BadBundleError(f"bundle {wanted[:12]} holds more than a project may")
+            names = archive.namelist()
+            if bad := next((name for name in names if name == FLEET_FILE or not _inside(name)), None):
+                raise BadBundleError(f"bundle {wanted[:12]} holds `{bad[:80]}`, which is no file of a project")
+            files = {name: archive.read(name) for name in names}
+    except DAMAGED_BUNDLE:
+        raise BadBundleError(f"bundle {wanted[:12]} came damaged, or only half of it") from None
+    if fingerprint(files) != wanted:
+        raise BadBundleError(f"what came as bundle {wanted[:12]} are other files")
+    return files
+
+
+def _inside(name: str) -> bool:
+    """Whether a file of that name is one of a project, and is written nowhere else."""
+    parts = name.split("/")
+    return belongs(name) and "\\" not in name and not {"", ".", ".."} & {*parts} and "\0" not in name

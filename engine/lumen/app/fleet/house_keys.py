@@ -1,0 +1,40 @@
+"""lumen.yaml of a bundle, as it is in a house: what is the house's own stays."""
+
+import re
+
+from lumen.errors import UsageError
+
+HOUSE_KEYS = (
+    "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules", "alerts",
+    "console", "journal", "record", "imperfections", "shared",
+)  # fmt: skip
+"""What lumen.yaml says of a house and its robots: no bundle changes it."""
+
+_BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
+_KEY = re.compile(r"""["']?([\w-]+)["']?\s*:""")
+
+
+def at_home(shared: bytes, own: bytes) -> bytes:
+    """The lumen.yaml of a bundle with the house's own keys in place of the bundle's.
+
+    Raises UsageError where one of them is not written with a key at the left edge of each block.
+    """
+    ours = {key: text for key, text in _blocks(own) if key in HOUSE_KEYS}
+    kept = [text for key, text in _blocks(shared) if key not in HOUSE_KEYS]
+    ended = [text if text.endswith("\n") else f"{text}\n" for text in (*kept, *ours.values())]
+    return "".join(ended).encode()
+
+
+def _blocks(content: bytes) -> list[tuple[str, str]]:
+    """The top-level keys with their texts; what stands before the first has none."""
+    try:
+        parts = _BLOCK.split(content.decode().replace("\r\n", "\n"))
+    except UnicodeDecodeError:
+        raise UsageError("lumen.yaml is not UTF-8") from None
+    found = []
+    for part in filter(None, parts):
+        key = _KEY.match(part)
+        if key is None and not part.startswith("#") and part.strip():
+            raise UsageError(f"lumen.yaml: a key is expected at the left edge, not `{part[:20].strip()}`")
+        found.append((key.group(1) if key else "", part))
+    return found

@@ -1,0 +1,35 @@
+"""The keys under which houses and centre speak; nothing else crosses between their brokers."""
+
+EXCHANGE = "lumen.fleet"
+"""The exchange of a broker that is joined with that of others."""
+PRESENCE, INCIDENT, DESIRED, BUNDLE, ORDER = (
+    "fleet.presence", "fleet.incident", "fleet.desired", "fleet.bundle", "fleet.order",
+)  # fmt: skip
+UP, DOWN = (PRESENCE, INCIDENT), (DESIRED, BUNDLE)
+"""From a house to the centre; and from the centre to a house."""
+
+
+def presence_key(house: str, robot: str) -> str:
+    """Where a robot tells of itself."""
+    return f"{PRESENCE}.{house}.{robot}"
+
+
+def incident_key(house: str, robot: str) -> str:
+    """Where a robot tells at once what can't wait."""
+    return f"{INCIDENT}.{house}.{robot}"
+
+
+def desired_key(house: str) -> str:
+    """Where a house hears what its robots are to run."""
+    return f"{DESIRED}.{house}"
+
+
+def bundle_key(house: str) -> str:
+    """Where a house gets the bundles that one of its robots lacks."""
+    return f"{BUNDLE}.{house}"
+
+
+def robot_of(key: str) -> str:
+    """HOUSE/ROBOT of a presence's or an incident's key, empty for any other."""
+    words = key.split(".")
+    return "/".join(words[2:4]) if len(words) == 4 else ""

@@ -1,0 +1,162 @@
+"""The agent beside a robot's brain: what joins it to the bus, the reload and the robot's home."""
+
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from lumen.app.fleet.agent import FleetAgent
+from lumen.app.fleet.counter import MeasureCounter
+from lumen.app.fleet.installing import bundle_folder, install, written
+from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, presence_key
+from lumen.app.fleet.memory import keep, remember
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.parts.part import Part
+from lumen.app.reload.reloader import Reloader
+from lumen.buses.validated import ValidatedBus
+from lumen.errors import BusError
+from lumen.language.diagnostics import has_errors
+from lumen.language.events import Event
+from lumen.language.fleet import Fleet
+from lumen.loading.files import fingerprint, read_files
+from lumen.loading.fleet import read_fleet
+from lumen.ports import Message
+from lumen.runtime.home import Home
+from lumen.runtime.snapshot_store import SnapshotStore
+
+HOUSE_VARIABLE = "LUMEN_HOUSE"
+PERIOD = 10.0
+"""How often a robot tells of itself [s]."""
+MAX_WAITING = 50
+
+
+class ReloadTaker:
+    """Has files taken by the reload of a running exhibition."""
+
+    def __init__(self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home) -> None:
+        self._root, self._reloader, self._behavior = root, reloader, behavior
+        self._store = SnapshotStore(home)
+        self.installed: Callable[[], None] = lambda: None
+
+    @property
+    def running(self) -> str:
+        return self._behavior.loop.project.hash
+
+    @property
+    def on_probation(self) -> bool:
+        return self._reloader.on_probation
+
+    def files(self, hash: str) -> Mapping[str, bytes] | None:
+        kept = self._store.files(hash)
+        if kept is None and fingerprint(there := read_files(self._root)) == hash:
+            return there
+        return kept
+
+    def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        self._reloader.offer(files, answer)
+
+    def install(self, files: Mapping[str, bytes]) -> None:
+        def change() -> Mapping[str, bytes]:
+            there = install(self._root, files)
+            self.installed()
+            return there
+
+        self._reloader.write(change)
+
+
+class FleetPart(Part):
+    """The agent of this robot; it stands beside the reload, whose `needs` it has."""
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        house: str,
+        bus: ValidatedBus,
+        behavior: LiveBehavior,
+        reloader: Reloader,
+        home: Home,
+        root: Path,
+        tell: Callable[[str], None],
+        needs: Sequence[str] = (),
+    ) -> None:
+        self.needs, self._house, self._robot = needs, house, behavior.project.robot
+        self._bus, self._home = bus.unchecked, home
+        self.counter = MeasureCounter(fleet.measures)
+        behavior.loop.observers.append(self.counter)
+        taker = ReloadTaker(root, reloader, behavior, home)
+        memory = remember(home, self._robot)
+        self.agent = FleetAgent(
+            house, self._robot, fleet.key, taker, memory, bundle_folder(root),
+            save=lambda memory: keep(home, self._robot, memory), tell=tell, incident=self._incident,
+        )  # fmt: skip
+        taker.installed = lambda: written(home, self._robot, memory)
+        self._came: deque[Message] = deque(maxlen=MAX_WAITING)
+        self._told, self._as = time.monotonic(), ""
+        self._undo = [self._bus.subscribe(key, self._came.append) for key in (desired_key(house), bundle_key(house))]
+
+    def begin(self, now: float) -> None:
+        self._tell_presence()
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        while self._came:
+            message = self._came.popleft()
+            hear = self.agent.order if message.key == desired_key(self._house) else self.agent.bundle
+            hear(message.body)
+        self.agent.tick()
+        at = f"{self.agent.state} {self.agent.running} {self.agent.wants} {self.agent.memory.order}"
+        if at != self._as or time.monotonic() - self._told >= PERIOD:
+            self._as = at
+            self._tell_presence()
+
+    def close(self) -> None:
+        for undo in self._undo:
+            undo()
+
+    def _tell_presence(self) -> None:
+        now = time.monotonic()
+        said = self.agent.presence(now - self._told, self.counter.take())
+        self._told = now
+        with suppress(BusError):
+            self._bus.publish(presence_key(self._house, self._robot), said.to_json(), ttl=60.0)
+
+    def _incident(self, kind: str, text: str) -> None:
+        body = {"kind": kind, "text": text, "bundle": self.agent.running}
+        with suppress(BusError):
+            self._bus.publish(incident_key(self._house, self._robot), body)
+
+
+def fleet_part(
+    root: Path,
+    bus: ValidatedBus,
+    behavior: LiveBehavior,
+    reloader: Reloader,
+    home: Home | None,
+    tell: Callable[[str], None],
+    needs: Sequence[str] = (),
+) -> FleetPart | None:
+    """The agent of the robot whose behaviour that is; None where it belongs to no fleet, or files are left alone."""
+    project = behavior.project
+    found = fleet_of(root, getattr(project, "house", ""), project.robot)
+    if found is None or home is None:
+        return None
+    if reloader.mode == "off":
+        tell("no bundle of the fleet is taken: files are left alone (--reload off)")
+        return None
+    return FleetPart(*found, bus, behavior, reloader, home, root, tell, needs)
+
+
+def fleet_of(root: Path, house: str, robot: str) -> tuple[Fleet, str] | None:
+    """The fleet that a robot belongs to, and its house; None where fleet.yaml has no such robot, or no key to trust.
+
+    The house is the one of that name; else the one that the environment names, or the only one with such a robot.
+    """
+    read, found = read_fleet(root)
+    fleet = read.built if read else None
+    if fleet is None or not fleet.key or has_errors(found):
+        return None
+    said = house if house in fleet.houses else os.environ.get(HOUSE_VARIABLE, "")
+    named = [name for name, row in fleet.houses.items() if robot in row.robots and said in ("", name)]
+    return (fleet, named[0]) if len(named) == 1 else None

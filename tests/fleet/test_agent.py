@@ -1,0 +1,232 @@
+"""The agent of a robot: what it takes, what it refuses and tells, and how it gets there after everything."""
+
+import base64
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.app.fleet.bundle import message_of, packed
+from lumen.app.fleet.house_keys import at_home
+from lumen.app.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
+from lumen.errors import UsageError
+from lumen.loading.files import FLEET_FILE, fingerprint, read_files
+from tests.fleet.houses import House, changed, ordered
+
+
+@pytest.fixture(scope="session")
+def signer(tmp_path_factory: pytest.TempPathFactory) -> Signer:
+    file = tmp_path_factory.mktemp("keys") / "centre.key"
+    generate(file)
+    return Signer(file)
+
+
+@pytest.fixture(scope="session")
+def stranger(tmp_path_factory: pytest.TempPathFactory) -> Signer:
+    file = tmp_path_factory.mktemp("keys") / "stranger.key"
+    generate(file)
+    return Signer(file)
+
+
+@pytest.fixture
+def house(tmp_path: Path, signer: Signer) -> House:
+    return House(tmp_path, signer)
+
+
+def test_a_bundle_is_fetched_checked_taken_proved_and_installed(house: House) -> None:
+    files = changed(house.root)
+    hash = fingerprint(files)
+    house.agent.order(ordered(house.signer, hash))
+    house.agent.tick()
+    assert (house.agent.state, house.agent.wants) == ("fetching", hash)
+    house.agent.bundle(message_of(files, house.signer))
+    house.agent.tick()
+    assert house.agent.state == "checking"
+    house.taker.offered[-1][1]({"verdict": "waiting", "reason": "a visit is under way"})
+    assert house.agent.state == "waiting"
+    house.taker.take(house.agent)
+    said = house.agent.presence(10.0, {"falls": 0})
+    assert (said.bundle, said.state, said.version, said.played, said.same) == (hash, "proved", 1, 9, 7)
+    assert house.taker.installed == [house.taker.running]
+    assert FLEET_FILE not in house.taker.offered[-1][0]
+
+
+def test_what_is_the_houses_own_in_lumen_yaml_stays(house: House) -> None:
+    files = changed(house.root)
+    files["lumen.yaml"] = files["lumen.yaml"].replace(b"name: nao1", b"name: other") + b"timezone: Asia/Tokyo\n"
+    house.send(files)
+    taken = house.taker.offered[-1][0]["lumen.yaml"]
+    assert b"name: nao1" in taken
+    assert b"Tokyo" not in taken
+    house.taker.take(house.agent)
+    assert house.agent.running == fingerprint(files)
+
+
+def test_keys_of_the_house_are_put_in_place_of_the_bundles() -> None:
+    shared = b"# a museum\nname: Museum\nrobot: {name: a}\nroutes:\n  face: {key: x}\nbus: memory://\n"
+    own = b"name: old\nrobots:\n  nao1: {model: nao}\nhouse: itb"
+    expected = b"# a museum\nname: Museum\nroutes:\n  face: {key: x}\nrobots:\n  nao1: {model: nao}\nhouse: itb\n"
+    assert at_home(shared, own) == expected
+    with pytest.raises(UsageError, match="a key is expected at the left edge"):
+        at_home(b"{name: x}", own)
+
+
+def damage(body: dict[str, Any], how: str, stranger: Signer) -> dict[str, Any]:
+    data = base64.b64decode(body["zip"])
+    match how:
+        case "half":
+            return {**body, "zip": base64.b64encode(data[: len(data) // 2]).decode()}
+        case "nobody":
+            return {**body, "signature": stranger.sign(BUNDLE, body["hash"].encode())}
+        case "order's":
+            return {**body, "signature": stranger.sign(ORDER, body["hash"].encode())}
+        case "other files":
+            return {**body, "zip": base64.b64encode(packed({"lumen.yaml": b"name: x\n"})).decode()}
+        case "outside":
+            return {**body, "zip": base64.b64encode(packed({"behaviors/../../x.yaml": b"x"})).decode()}
+        case _:
+            return {**body, "zip": "%%%"}
+
+
+@pytest.mark.parametrize("how", ["half", "nobody", "order's", "other files", "outside", "no base64"])
+def test_a_bundle_that_is_not_the_one_signed_is_refused_and_told(house: House, stranger: Signer, how: str) -> None:
+    files = changed(house.root)
+    house.agent.order(ordered(house.signer, fingerprint(files)))
+    house.agent.tick()
+    house.agent.bundle(damage(message_of(files, house.signer), how, stranger))
+    house.agent.tick()
+    assert house.agent.state == "fetching"
+    assert house.told
+    assert house.agent.presence(1.0, {}).trouble
+    assert house.taker.offered == []
+    house.agent.bundle(message_of(files, house.signer))
+    house.agent.tick()
+    assert house.agent.state == "checking"
+
+
+def test_orders_of_strangers_other_houses_other_centres_and_older_ones_are_refused(
+    house: House, stranger: Signer
+) -> None:
+    other = "b" * 64
+    house.agent.order(ordered(house.signer, "", 5))
+    assert house.told == []
+    for body, said in [
+        (ordered(stranger, other, 9), "not signed"),
+        (ordered(house.signer, other, 9, house="museum"), "none for this house"),
+        (ordered(house.signer, other, 9, centre="two"), "two centres"),
+        (ordered(house.signer, other, 5), "was another one"),
+        (ordered(house.signer, other, 9, term=0), "is over"),
+        ({"order": 3}, "an order came that is none"),
+        ("x", "an order came that is none"),
+    ]:
+        house.agent.order(body)
+        house.agent.tick()
+        assert house.agent.memory.followed.wanted == ""
+        assert said in " | ".join(house.told)
+    house.agent.order(ordered(house.signer, other, 4))
+    assert house.agent.memory.followed.wanted == ""
+    house.agent.order(ordered(house.signer, other, 1, centre="two", term=2))
+    assert house.agent.memory.followed.wanted == other
+
+
+def test_what_lint_finds_is_told_by_its_place_and_not_taken_again_until_another_order(house: House) -> None:
+    files = changed(house.root)
+    house.send(files)
+    found = [{"file": "behaviors/hello.yaml", "line": 7, "code": "unknown-state", "severity": "error"}]
+    house.taker.offered[-1][1]({"verdict": "refused", "diagnostics": found, "lines": ["Budi said hello"]})
+    house.agent.tick()
+    said = house.agent.presence(1.0, {})
+    assert (said.state, said.trouble) == ("refused", "behaviors/hello.yaml:7: unknown-state")
+    assert len(house.taker.offered) == 1
+    assert house.incidents == [("refused", "behaviors/hello.yaml:7: unknown-state")]
+    house.agent.order(ordered(house.signer, fingerprint(files), 2))
+    house.agent.tick()
+    assert len(house.taker.offered) == 2
+
+
+def test_one_that_fails_in_its_probation_is_told_and_counts_as_rolled_back(house: House) -> None:
+    before = house.taker.running
+    house.send(changed(house.root))
+    files, answer = house.taker.offered[-1]
+    house.taker.running, house.taker.on_probation = fingerprint(files), True
+    answer({"verdict": "applied", "before": before})
+    house.taker.running, house.taker.on_probation = before, False
+    house.agent.tick()
+    assert house.agent.presence(1.0, {}).state == "rolled back"
+    assert house.taker.installed == []
+
+
+def test_aborted_it_goes_back_to_the_very_files_that_ran_before(house: House) -> None:
+    before = house.taker.running
+    hash = house.send(changed(house.root))
+    house.taker.take(house.agent)
+    house.agent.order(ordered(house.signer, f"!{hash}", 2))
+    house.agent.tick()
+    assert fingerprint(house.taker.offered[-1][0]) == before
+    house.taker.take(house.agent)
+    assert house.agent.presence(1.0, {}).bundle == before
+    house.agent.order(ordered(house.signer, f"!{'c' * 64}", 3))
+    house.agent.tick()
+    assert house.agent.state == "proved"
+
+
+def test_a_bundle_under_which_the_process_ends_twice_is_given_up(house: House) -> None:
+    before = house.taker.running
+    house.send(changed(house.root))
+    for _ in range(2):
+        house.taker.offered[-1][1]({"verdict": "applied", "before": before})
+        house.taker.running, house.taker.on_probation = before, False
+        house.begin()
+        house.agent.tick()
+    assert house.agent.state == "rolled back"
+    assert "ended 2 times" in house.agent.trouble
+
+
+def test_files_that_somebody_changes_in_the_house_are_left_and_told(house: House) -> None:
+    house.send(changed(house.root))
+    house.taker.take(house.agent)
+    house.taker.running = "d" * 64
+    house.agent.tick()
+    assert house.agent.presence(1.0, {}).state == "edited"
+    assert len(house.taker.offered) == 1
+
+
+def test_after_three_weeks_the_last_order_counts(house: House) -> None:
+    first, last = changed(house.root), changed(house.root, new="Good day! I am Nao.")
+    house.agent.order(ordered(house.signer, fingerprint(last), 40))
+    house.agent.order(ordered(house.signer, fingerprint(first), 7))
+    house.agent.tick()
+    house.agent.bundle(message_of(first, house.signer))
+    assert house.agent.wants == fingerprint(last)
+    house.agent.bundle(message_of(last, house.signer))
+    house.agent.tick()
+    house.taker.take(house.agent)
+    assert house.agent.running == fingerprint(last)
+
+
+def test_counts_begin_anew_with_other_files_and_those_before_are_kept(house: House) -> None:
+    house.agent.presence(3600.0, {"falls": 2})
+    house.send(changed(house.root))
+    house.taker.take(house.agent)
+    said = house.agent.presence(1800.0, {"falls": 1})
+    assert said.now == {"hours": 0.5, "falls": 1}
+    assert said.before == {"hours": 1.0, "falls": 2}
+
+
+def test_a_key_is_written_for_its_owner_alone_and_never_over(tmp_path: Path) -> None:
+    file = tmp_path / "centre.key"
+    public = generate(file)
+    assert file.stat().st_mode & 0o077 == 0
+    assert verified(public, ORDER, b"x", Signer(file).sign(ORDER, b"x"))
+    assert not verified(public, BUNDLE, b"x", Signer(file).sign(ORDER, b"x"))
+    assert not verified("no key", ORDER, b"x", "no signature")
+    with pytest.raises(UsageError, match="is there already"):
+        generate(file)
+    file.write_text("nothing")
+    with pytest.raises(UsageError, match="holds no private key"):
+        Signer(file)
+
+
+def test_the_same_files_make_the_same_zip(house: House) -> None:
+    files = read_files(house.root)
+    assert packed(files) == packed(dict(reversed(files.items())))

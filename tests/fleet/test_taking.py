@@ -1,0 +1,56 @@
+"""A running exhibition takes a bundle between two visits, and has it in its folder once it is proved."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from lumen.app.exhibition import Exhibition
+from lumen.app.fleet.bundle import message_of
+from lumen.app.fleet.memory import memory_file
+from lumen.app.fleet.signing import Signer, generate
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.setup import set_up
+from lumen.buses.memory import MemoryBus
+from lumen.loading.files import fingerprint, read_files
+from lumen.project import load
+from lumen.runtime.home import home_of
+from tests.fleet.houses import ROBOT, changed, ordered, project
+from tests.waiting import Collector, until
+
+
+def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LUMEN_HOUSE", "itb")
+    key = tmp_path / "key"
+    generate(key)
+    signer = Signer(key)
+    root = project(tmp_path / "house", signer.public)
+    files = changed(root)
+    loaded, bus, heard = load(root), MemoryBus("fleet-taking"), Collector()
+    bus.subscribe("fleet.presence.itb.nao1", heard)
+    directory = RunDirectory(root)
+    setup = set_up("recording", loaded, "max", None)
+    show = Exhibition(loaded, setup, MemoryBus("fleet-taking"), run_directory=directory, reload="auto")
+    directory.begin(loaded, read_files(root))
+    try:
+        show.start()
+        show.send("face", {"x": 160, "y": 120})
+        until(lambda: show.tick() and "greeting" in show.configuration, every=0.0)
+        bus.publish("fleet.desired.itb", ordered(signer, fingerprint(files)))
+        until(lambda: show.tick() and heard.bodies[-1]["wants"], every=0.0)
+        bus.publish("fleet.bundle.itb", message_of(files, signer))
+        until(lambda: show.tick() and heard.bodies[-1]["state"] == "waiting", every=0.0)
+        assert "greeting" in show.configuration
+        assert show.project.hash == loaded.hash
+        until(lambda: show.tick() and heard.bodies[-1]["state"] == "probation", every=0.0)
+        assert "waiting" in show.configuration
+        until(lambda: show.tick() and heard.bodies[-1]["state"] == "proved", every=0.0)
+        assert heard.bodies[-1]["bundle"] == fingerprint(files)
+        until(lambda: b"Welcome" in (root / "behaviors/hello.yaml").read_bytes())
+        until(lambda: not json.loads((home_of(root) / memory_file(ROBOT)).read_text())["writing"])
+        assert load(root).hash == show.project.hash
+    finally:
+        show.close()
+        directory.close(forget=True)
