@@ -7,6 +7,8 @@ import pytest
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
+from lumen.interpreters.statechart.execution_context import MAX_TIMERS
+from lumen.interpreters.statechart.stepping import elapse
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
 
 COUNTING = {"assign": {"n": "context.n + 1"}}
@@ -163,6 +165,28 @@ def test_a_send_that_answers_itself_ends_in_an_error() -> None:
     it.start()
     with pytest.raises(LumenError, match="`go` is sent over and over"):
         it.send("go")
+
+
+def test_timers_that_set_ever_more_timers_end_in_an_error() -> None:
+    later = {"send": {"delay": "0.01ms", "event": "go"}}
+    machine = Machine.from_dict({"entry": later, "on": {"go": {"actions": [later, later]}}, "states": {"a": {}}})
+    snapshot = initial(machine).snapshot
+    with pytest.raises(LumenError, match="timers set timers, `go` among them, more than 10,000 a second"):
+        for taken in elapse(machine, lambda: snapshot, 0.02):
+            snapshot = taken.snapshot
+    assert len(snapshot.timers) < MAX_TIMERS
+
+
+def test_a_send_is_refused_where_too_many_wait() -> None:
+    many = [{"send": {"event": "late", "delay": "1h"}}] * 100
+    it = Interpreter(Machine.from_dict({"on": {"face": {"actions": [*many, {"log": "sent"}]}}, "states": {"a": {}}}))
+    it.start()
+    *_, last, refused = [it.send("face") for _ in range(MAX_TIMERS // 100 + 1)]
+    assert last.commands
+    assert not refused.commands
+    (error,) = refused.raised
+    assert (error.name, error.data["reason"]) == ("error.execution", "`late` is not sent: 10,000 timers wait already")
+    assert len(it.snapshot()["timers"]) == MAX_TIMERS
 
 
 def test_a_context_key_keeps_to_its_whole_schema() -> None:

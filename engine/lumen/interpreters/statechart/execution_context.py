@@ -19,6 +19,9 @@ from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import nanoseconds
 
+MAX_TIMERS = 10_000
+"""How many timers may wait before a `send` is refused: events that send two each would fill the memory."""
+
 _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
 
 
@@ -212,12 +215,15 @@ class ExecutionContext:
     def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
         """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2).
 
-        What goes to another behaviour without delay is handed over in this macrostep.
+        What goes to another behaviour without delay is handed over in this macrostep. Raises ActionError where MAX_TIMERS
+        wait already.
         """
         length = nanoseconds(delay)
         if to and not length:
             self.hand_over(to, Event(event, data, self.at))
             return
+        if len(self.timers) >= MAX_TIMERS:
+            raise ActionError(f"`{event}` is not sent: {MAX_TIMERS:,} timers wait already")
         due = nanoseconds(self.at) + length
         timer = Timer(id or self._timer_id("s"), due, length, event, data, to=to)
         self.timers = (*self.timers, timer)

@@ -20,6 +20,9 @@ from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import HALF
 
+MAX_RATE = 10_000
+"""How many timers may end [1/s]: where each sets others, a tick would have no end."""
+
 
 def initial(
     machine: MachineDefinition,
@@ -107,14 +110,18 @@ def elapse(machine: MachineDefinition, current: Callable[[], Snapshot], until: f
     """The steps of every timer that ends until `until` [s], those set on the way included, in order.
 
     `current` gives the snapshot to step from: whoever takes a step may have more happen before the next. Raises
-    LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself; those
-    that were set before that time do not count.
+    LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself, or where
+    they are more than MAX_RATE; those that were set before do not count.
     """
-    left, last = MAX_MICROSTEPS, -inf
-    soon = until + HALF
+    left, last, soon, steps = MAX_MICROSTEPS, -inf, until + HALF, 0
     while (event := due(current())) and event.at < soon:
+        if not steps:
+            most = 2 * MAX_MICROSTEPS + waiting(current()) + int(MAX_RATE * (until - event.at))
         left = left - 1 if event.at == last else MAX_MICROSTEPS + waiting(current())
-        last = event.at
+        last, steps = event.at, steps + 1
         if left < 0:
             raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent over and over without delay")
+        if steps > most:
+            many = f"timers set timers, `{event.name}` among them, more than {MAX_RATE:,} a second"
+            raise LumenError(f"`{machine.id}` never comes to rest: {many}")
         yield step(machine, current(), event)
