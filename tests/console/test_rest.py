@@ -148,13 +148,13 @@ def pressed(house: House, chromium: Chromium, draw: Random, troubles: tuple[Trou
 
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
-def test_rest_at_10_moments_on_the_local_bus(house: House, chromium: Chromium, draw: Random) -> None:
-    pressed(house, chromium, draw, WITHOUT_BROKER, 10)
+def test_rest_at_6_moments_on_the_local_bus(house: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house, chromium, draw, WITHOUT_BROKER, 6)
 
 
 @pytest.mark.slow
-def test_rest_at_10_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
-    pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 10)
+def test_rest_at_6_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 6)
 
 
 @pytest.mark.soak

@@ -86,11 +86,12 @@ class Watch(Observer):
 
 
 @pytest.mark.physics
+@pytest.mark.soak  # walks between places are in tests/places, a story in physics in tests/tour
 @pytest.mark.parametrize(
     ("story", "places", "shown"),
     [
         ("operator", ["clock", "globe"], ["clock", "clock", "organ", "globe", "globe"]),
-        pytest.param("visit", EXHIBITS, [name for name in EXHIBITS for _ in range(2)], marks=pytest.mark.soak),
+        ("visit", EXHIBITS, [name for name in EXHIBITS for _ in range(2)]),
     ],
 )
 def test_a_visit_at_honest_physics(museum: Project, story: str, places: list[str], shown: list[str]) -> None:

@@ -10,16 +10,16 @@ SEED = 20_000
 
 
 @pytest.mark.slow
-def test_fifty_mutants() -> None:
-    counts, misses, said = survey(SEED, 50, stories=1)
+def test_thirty_mutants() -> None:
+    counts, misses, said = survey(SEED, 30, stories=1)
     assert not misses, [(mutant.number, mutant.difference, outcome) for mutant, outcome in misses]
-    assert counts.total() == 50
-    assert len(said) > 20
+    assert counts.total() == 30
+    assert len(said) > 10
     assert said.count(1) > 0.9 * len(said)  # one mistake is told once, not wherever it shows
     outcomes = {what: sum(n for (_, w), n in counts.items() if w == what) for what in WELL}
-    assert outcomes["error found"] > 20  # mutants that are no better than the original would prove nothing
-    assert outcomes["clean, and runs"] > 5
-    assert len({kind for kind, _ in counts}) > 12
+    assert outcomes["error found"] > 12  # mutants that are no better than the original would prove nothing
+    assert outcomes["clean, and runs"] > 3
+    assert len({kind for kind, _ in counts}) > 9
 
 
 @pytest.mark.soak

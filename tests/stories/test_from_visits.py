@@ -37,7 +37,7 @@ LONG = {
     *(("museum", name) for name in ("closing", "german")),
 }
 """Stories of many minutes, or with several visits: `make soak` tries them,"""
-SAMPLE = 18
+SAMPLE = 8
 """and what is not among so many of the others: `LUMEN_SEED=5` draws others."""
 
 
