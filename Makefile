@@ -7,14 +7,14 @@ WITH := sh scripts/with_packages.sh
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
-# Two more than there are cores: many tests wait for processes of their own.
-WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 2)
+# Four more than there are cores: many tests wait for processes of their own.
+WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 4)
 LEFT_OUT := soak or slow or broker or physics or npm
 
 # Where Python may not write what it has compiled, each of the processes that tests start compiles everything again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run setup quick test soak broker check docs packages clean
+.PHONY: help run setup quick test tested soak broker check docs packages clean
 
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
@@ -38,7 +38,11 @@ quick: .venv/test
 	@$(BIN)/python scripts/nearest.py $(TESTS) | xargs $(BIN)/python -m pytest -n 2 --dist loadfile \
 		-p tests.time_budget --begin-within 40 --no-loadscope-reorder --hypothesis-profile quick --cpu-limit 1 -m "not ($(LEFT_OUT))"
 
-test: setup check
+# The checks and the tests side by side: the checks use one core.
+test: setup
+	@$(MAKE) --no-print-directory -j 2 check tested
+
+tested:
 	@$(BIN)/lumen lint --strict
 	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder -rs -m "not soak"
 
