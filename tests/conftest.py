@@ -1,6 +1,8 @@
 """What all tests may ask for, how they are marked and measured, and which examples hypothesis draws: the same ones."""
 
+import os
 import signal
+from pathlib import Path
 
 from hypothesis import settings
 
@@ -26,6 +28,9 @@ __all__ = [
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+os.environ["XDG_CACHE_HOME"] = str(Path(__file__).parents[1] / ".cache/xdg")
+"""What starts keep for the next one is kept here, for all tests of this and later runs."""
 
 settings.register_profile("seeded", derandomize=True, deadline=None)
 settings.register_profile("quick", settings.get_profile("seeded"), max_examples=10)

@@ -38,6 +38,9 @@ class Here:
     def begin(self) -> None:
         """Nothing to begin."""
 
+    def warm(self, files: Mapping[str, bytes]) -> None:
+        """Nothing to have ready."""
+
     def load(self, files: Mapping[str, bytes]) -> Loaded:
         return check_files(self._root, files)
 

@@ -104,7 +104,10 @@ def test_a_start_on_them_is_refused_or_takes_the_last_good_ones(copy: Path, read
     run_directory.close(forget=False)
 
 
-def test_where_no_process_can_be_begun_nothing_is_read_here(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_no_process_can_be_begun_nothing_is_read_here(
+    copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(validation_worker, "COMMAND", ["/nowhere/python"])
     with pytest.raises(FatalFilesError, match="no process can be begun that reads the files: No such file"):
         load_apart(copy, read_files(copy))

@@ -17,8 +17,9 @@ SORRY = b"en: I am sorry, I did not understand that."
 
 
 @pytest.fixture(autouse=True)
-def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
-    """The numbers of the processes that were begun."""
+def begun(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[int]]:
+    """The numbers of the processes that were begun; no project is known from before."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     end_idle()
     numbers, usual = list[int](), validation_worker.subprocess.Popen
 

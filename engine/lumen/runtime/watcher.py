@@ -19,6 +19,8 @@ SHORT_QUIET_FRACTION = 0.3
 MAX_READ_PERIOD = 1.0
 HINT_DEBOUNCE = 5
 """How long the operating system's notices are gathered [ms]."""
+EARLY = 5.0
+"""How long after its beginning a watcher has what judges made ready [s]: until then an exhibition has enough to do."""
 SWITCH_INTERVAL = 0.001
 """How long one thread may keep the others of an exhibition from their work [s]: a stop passes four on its way."""
 
@@ -56,8 +58,8 @@ class FileWatcher(Generic[T]):
     The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
     once a second. `files` are those before, `hash` that of the bundle that runs where it is another. `results` yields
     what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
-    says whether there is something more urgent. `noticed` is called when a change shows, before it has settled.
-    Without `hints` only who asks is served.
+    says whether there is something more urgent. `noticed` is called when a change shows, before it has settled,
+    `early` once, EARLY after the beginning, with the files that run. Without `hints` only who asks is served.
 
     With `good` one file that ends as it did before is judged at once: where that is said of what came of it, a part of
     the quiet period is enough (docs/decisions/080).
@@ -74,10 +76,12 @@ class FileWatcher(Generic[T]):
         hints: bool = True,
         leisure: Callable[[T, Callable[[], bool]], None] = lambda judged, urgent: None,
         noticed: Callable[[], None] = lambda: None,
+        early: Callable[[WatchedFiles], None] = lambda files: None,
         good: Callable[[T], bool] | None = None,
     ) -> None:
         self._root, self._files, self._hash, self._good = root, files, hash or fingerprint(files), good
         self._judge, self._leisure, self._noticed, self._quiet, self._watching = judge, leisure, noticed, quiet, hints
+        self._early = early
         self._stop, self._hint = threading.Event(), threading.Event()
         self._asked: queue.SimpleQueue[object] = queue.SimpleQueue()
         self.results: queue.SimpleQueue[T] = queue.SimpleQueue()
@@ -115,9 +119,14 @@ class FileWatcher(Generic[T]):
             thread.join()
 
     def _load(self) -> None:
+        begun, ready = time.monotonic(), not self._watching
         while not self._stop.is_set():
             self._hint.wait(MAX_READ_PERIOD if self._watching else None)
             self._hint.clear()
+            if not ready and not self._stop.is_set() and time.monotonic() - begun > EARLY:
+                ready = True
+                with _as_others_need():
+                    self._early(self._files)
             while not self._asked.empty():
                 self._serve(self._asked.get())
             if self._watching:

@@ -41,6 +41,11 @@ class DeltaDecoder:
         self._packed: dict[PieceKey, bytes] = {}
         self._pieces: dict[PieceKey, Any] = {}
 
+    @property
+    def packed(self) -> Delta:
+        """All pieces of the last project, packed."""
+        return dict(self._packed)
+
     def unpack(self, parcel: Delta) -> Project:
         """The project; its pieces are those of the one before wherever they say the same."""
         packed = {piece: data or self._packed[piece] for piece, data in parcel.items()}

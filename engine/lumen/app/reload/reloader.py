@@ -74,6 +74,7 @@ class Reloader:
             hints=mode != "off",
             leisure=self._advise,
             noticed=self._worker.begin,
+            early=self._validator.warm,
             good=lambda judged: isinstance(judged, Validation) and judged.good,
         )
         self._undo = self._bus.subscribe(command_key(behavior.project.robot), self._came.append)

@@ -17,8 +17,10 @@ from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from lumen.app.reload.delta import DeltaDecoder
+from lumen.app.reload.delta import Delta, DeltaDecoder
 from lumen.app.reload.idle_process import JudgingProcess, keep, take
+from lumen.app.reload.known_projects import keep as keep_known
+from lumen.app.reload.known_projects import recall
 from lumen.app.reload.validation_process import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
@@ -37,6 +39,9 @@ class FileJudge(Protocol):
 
     def begin(self) -> None:
         """Files will have to be loaded soon."""
+
+    def warm(self, files: Mapping[str, bytes]) -> None:
+        """Files that differ little from these may have to be loaded."""
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
         """The project that the files make, None where they have errors, and everything wrong with them.
@@ -67,6 +72,17 @@ class ValidationWorker:
         self._root, self._timeout = root.absolute(), timeout
         self._process = take(tuple(COMMAND))
         self._receiver = self._process.receiver if self._process else DeltaDecoder()
+
+    @property
+    def packed(self) -> Delta:
+        """The project that was loaded last, all of it, packed."""
+        return self._receiver.packed
+
+    def warm(self, files: Mapping[str, bytes]) -> None:
+        """Have a process that was not begun yet read what runs: of files that are saved later one will differ."""
+        if self._process is None:
+            with suppress(FatalFilesError):
+                self._load(files)
 
     def begin(self) -> None:
         """Begin the process: it takes about as long as files do to settle."""
@@ -151,9 +167,17 @@ class ValidationWorker:
 
 
 def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
-    """What these files make, read in a process of its own; raises FatalFilesError where they end it."""
+    """What these files make, read in a process of its own; raises FatalFilesError where they end it.
+
+    A project that was read before is not read again (app/reload/known_projects.py), nor warned of.
+    """
+    if project := recall(root, files):
+        return project, ()
     with closing(ValidationWorker(root)) as worker:
-        return worker.load(files)
+        loaded = worker.load(files)
+        if loaded[0]:
+            keep_known(root, files, worker.packed)
+        return loaded
 
 
 def _how(code: int) -> str:

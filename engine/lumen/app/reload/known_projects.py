@@ -1,0 +1,75 @@
+"""Projects whose files were judged before, byte for byte and by this very engine: they are not judged again.
+
+What is kept is what the process that judged them sent (app/reload/delta.py), in the user's own cache: a start of the
+files of yesterday needs no process to read them. Only projects without errors are kept, and not what was warned of.
+"""
+
+import hashlib
+import os
+import pickle
+import sys
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from lumen.app.reload.delta import Delta, DeltaDecoder
+from lumen.language.projects import Project
+from lumen.loading.files import fingerprint
+from lumen.loading.packaged import schema_folder, shipped_root
+from lumen.upkeep.cache_folder import CacheFolder
+
+PACKAGE = Path(__file__).parents[2]
+"""The folder `lumen`."""
+MODELS = "models"
+"""The folder of which lint asks which files there are, beside those that it reads."""
+_LEVEL = 1
+
+
+def recall(root: Path, files: Mapping[str, bytes]) -> Project | None:
+    """The project that these files make, None where nobody has kept it."""
+    packed = CacheFolder("projects").read(_name(root, files))
+    if packed is None:
+        return None
+    try:
+        return replace(DeltaDecoder().unpack(pickle.loads(zlib.decompress(packed))), root=str(root.absolute()))
+    except Exception:  # whatever is in the file: it is made anew
+        return None
+
+
+def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
+    """Keep what these files make, all of it."""
+    content = zlib.compress(pickle.dumps(packed, pickle.HIGHEST_PROTOCOL), _LEVEL)
+    CacheFolder("projects").write(_name(root, files), content)
+
+
+def _name(root: Path, files: Mapping[str, bytes]) -> str:
+    """A name for all that the project depends on; of a file that is not read it counts which one is there."""
+    digest = hashlib.sha256(f"{fingerprint(files)} {engine()} {sys.version}".encode())
+    for path, line in sorted(_listed(root / MODELS)):
+        if f"{MODELS}/{path}" not in files:
+            digest.update(line)
+    return digest.hexdigest()
+
+
+@cache
+def engine() -> str:
+    """A hash of which files the engine and what comes with it are: one that was edited is another engine."""
+    digest = hashlib.sha256()
+    for folder in (PACKAGE, schema_folder(), shipped_root() / MODELS):
+        for _, line in sorted(_listed(folder)):
+            digest.update(os.fsencode(folder) + line)
+    return digest.hexdigest()
+
+
+def _listed(folder: Path) -> Iterator[tuple[str, bytes]]:
+    """The files below a folder, each with what tells it from what it was before; a link by where it leads."""
+    for here, folders, names in os.walk(folder):
+        folders[:] = [name for name in folders if name != "__pycache__"]
+        for name in names:
+            path = os.path.join(here, name)
+            status = os.lstat(path)
+            leads = os.readlink(path) if os.path.islink(path) else ""
+            within = os.path.relpath(path, folder)
+            yield within, os.fsencode(f"{within} {status.st_size} {status.st_mtime_ns} {leads}\n")
