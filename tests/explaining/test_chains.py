@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 
 from lumen.errors import UsageError
-from lumen.interpreters.explaining import RecordedStep, why, why_not
+from lumen.interpreters.explaining import RecordedStep
+from lumen.interpreters.explaining.answers import why, why_not
 from lumen.interpreters.statechart import Snapshot, Step, due, initial, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause

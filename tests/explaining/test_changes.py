@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.explaining import RecordedStep, why_not
+from lumen.interpreters.explaining import RecordedStep
+from lumen.interpreters.explaining.answers import why_not
 from lumen.interpreters.explaining.changes import StepSituation
 from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart import initial, step

@@ -6,7 +6,8 @@ import pytest
 
 import lumen
 from lumen.errors import UsageError
-from lumen.interpreters.explaining import RecordedStep, StepHistory, why_not
+from lumen.interpreters.explaining import RecordedStep, StepHistory
+from lumen.interpreters.explaining.answers import why_not
 from lumen.interpreters.explaining.chains import chain
 from lumen.interpreters.explaining.effects import Effect
 from lumen.interpreters.explaining.outlook import ways_out

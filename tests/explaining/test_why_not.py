@@ -7,7 +7,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from lumen.errors import LumenError, UsageError
-from lumen.interpreters.explaining import RecordedStep, why_not
+from lumen.interpreters.explaining import RecordedStep
+from lumen.interpreters.explaining.answers import why_not
 from lumen.interpreters.explaining.changes import StepSituation
 from lumen.interpreters.explaining.refusals import Reason
 from lumen.interpreters.statechart import Snapshot, due, step

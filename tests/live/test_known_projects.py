@@ -1,4 +1,4 @@
-"""A project that was read before is not read again: what is kept is the same project, and only of the very same files."""
+"""A project that was read before is not read again: it is the same project, and only for the very same files."""
 
 import os
 import shutil

@@ -10,7 +10,7 @@ from typing import Any
 
 from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
-from lumen.interpreters.explaining import RecordedStep, why, why_not
+from lumen.interpreters.explaining import RecordedStep
 from lumen.ports import Bus, Message
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.upkeep.drops import DropLog
@@ -31,6 +31,8 @@ _log = logging.getLogger(__name__)
 
 def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | None = None) -> dict[str, Any]:
     """The answer as JSON data; `at` is an ISO 8601 time. Raises UsageError, saying what to do, where there is none."""
+    from lumen.interpreters.explaining.answers import why, why_not  # thirty modules that only a question needs
+
     until = _until(steps, at) if at else None
     if question == WHY:
         return why(steps, what, until).to_json()

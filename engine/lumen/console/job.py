@@ -18,7 +18,8 @@ from typing import IO, Any
 import orjson
 
 from lumen.app.recalling import answer_from_journal
-from lumen.app.reload.validation_process import MAX_MEMORY, NICENESS, limit_memory, limit_time
+from lumen.app.reload.judging_pipe import MAX_MEMORY
+from lumen.app.reload.validation_process import NICENESS, limit_memory, limit_time
 from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against

@@ -3,9 +3,6 @@
 from pathlib import Path
 
 from lumen.app.alerts.alert import Alert, Origin
-from lumen.app.alerts.mail import send_mail
-from lumen.app.alerts.program import run_program
-from lumen.app.alerts.webhook import post
 from lumen.language.alerts import AlertChannel, Mail, Program, Webhook
 
 
@@ -13,10 +10,16 @@ def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> 
     """Tell somebody; waits for the network. Raises UndeliveredError, which says why it did not arrive."""
     match channel:
         case Webhook(url):
+            from lumen.app.alerts.webhook import post  # each with libraries that few exhibitions need
+
             post(url, origin.body(alert))
         case Mail():
+            from lumen.app.alerts.mail import send_mail
+
             send_mail(channel, origin.line(alert), origin.body(alert))
         case Program(command):
+            from lumen.app.alerts.program import run_program
+
             run_program(command, origin.body(alert), root)
 
 

@@ -10,7 +10,6 @@ from lumen.app.answering import AnsweringThread
 from lumen.app.asking import operator_key
 from lumen.app.decisions import Decisions
 from lumen.app.doings import Doings
-from lumen.app.forking import forked
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.now import NowView, PresentMoment, moment
@@ -113,6 +112,8 @@ class OperatorPart(Part, Observer):
                 case {"ask": "now"}:
                     self._pages.answer(message, partial(self._view.tell, self._moment()))
                 case {"ask": "fork"}:
+                    from lumen.app.forking import forked  # with all that judges files
+
                     running = self._behavior.loop.runtime.project
                     self._answering.answer(message, partial(forked, self._journal, running, message.body))
                 case {"ask": "event" | "press"}:

@@ -9,7 +9,6 @@ from lumen.app.reload.requests import status_key
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.ports import Bus, Message
-from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.runtime.watcher import SWITCH_INTERVAL
@@ -55,6 +54,8 @@ class BundleFollower:
             self._wanted.put(body["after"])
 
     def _run(self) -> None:
+        from lumen.rules import check_files  # with all the rules, of which one process alone needs none
+
         missed = ""
         while (wanted := self._latest()) is not None:
             usual = sys.getswitchinterval()

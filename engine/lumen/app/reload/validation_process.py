@@ -5,9 +5,7 @@ at then. Its exit code says that it was the memory.
 """
 
 import os
-import pickle
 import signal
-import struct
 import sys
 import time
 from collections.abc import Sequence
@@ -17,6 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from lumen.app.garbage import gc_paused
 from lumen.app.reload.delta import DeltaEncoder
+from lumen.app.reload.judging_pipe import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
 from lumen.language.projects import Project
 from lumen.rules import check_files
 from lumen.upkeep.heap import give_back
@@ -24,33 +23,12 @@ from lumen.upkeep.heap import give_back
 if TYPE_CHECKING:
     from lumen.app.rehearsal import Rehearsal
 
-MAX_MEMORY = 1 << 30
-"""How much the process may take [bytes]; a behaviour of ten thousand states takes a third. Linux keeps to it."""
-ANSWER_TIMEOUT = 60.0
-"""How long one question may take [s]."""
-OUT_OF_MEMORY = 77
-"""The exit code of a process that was refused more memory."""
 NICENESS = 5
 """By how much the judging process gives way to others on a busy machine, the robot above all (`nice`)."""
-_LENGTH = struct.Struct(">Q")
 
 
 class EnoughError(Exception):
     """There is no time left for this story."""
-
-
-def send(pipe: IO[bytes], what: Any) -> None:
-    data = pickle.dumps(what, pickle.HIGHEST_PROTOCOL)
-    pipe.write(_LENGTH.pack(len(data)) + data)
-    pipe.flush()
-
-
-def receive(pipe: IO[bytes]) -> Any:
-    """What comes next; raises EOFError at the end."""
-    head = pipe.read(_LENGTH.size)
-    if len(head) < _LENGTH.size:
-        raise EOFError
-    return pickle.loads(pipe.read(*_LENGTH.unpack(head)))
 
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":

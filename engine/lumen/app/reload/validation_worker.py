@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from lumen.app.reload.delta import Delta, DeltaDecoder
 from lumen.app.reload.idle_process import JudgingProcess, keep, take
+from lumen.app.reload.judging_pipe import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
 from lumen.app.reload.known_projects import keep as keep_known
 from lumen.app.reload.known_projects import recall
-from lumen.app.reload.validation_process import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.language.diagnostics import Diagnostic

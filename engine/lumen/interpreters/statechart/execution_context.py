@@ -215,8 +215,8 @@ class ExecutionContext:
     def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
         """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2).
 
-        What goes to another behaviour without delay is handed over in this macrostep. Raises ActionError where MAX_TIMERS
-        wait already.
+        What goes to another behaviour without delay is handed over in this macrostep. Raises ActionError where
+        MAX_TIMERS wait already.
         """
         length = nanoseconds(delay)
         if to and not length:
