@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.fleet.agent import FleetAgent
-from lumen.app.fleet.bundle import message_of
+from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.signing import ORDER, Signer
@@ -99,6 +99,7 @@ class House:
         """Order these files and send them; their hash."""
         self.agent.order(ordered(self.signer, fingerprint(files), version))
         self.agent.tick()
-        self.agent.bundle(message_of(files, self.signer))
+        for body in messages_of(files, self.signer):
+            self.agent.bundle(body)
         self.agent.tick()
         return fingerprint(files)

@@ -1,12 +1,14 @@
 """The agent of a robot: what it takes, what it refuses and tells, and how it gets there after everything."""
 
 import base64
+import random
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from lumen.app.fleet.bundle import message_of, packed
+from lumen.app.fleet.bundle import messages_of, packed
 from lumen.app.fleet.house_keys import at_home
 from lumen.app.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
 from lumen.errors import UsageError
@@ -39,7 +41,7 @@ def test_a_bundle_is_fetched_checked_taken_proved_and_installed(house: House) ->
     house.agent.order(ordered(house.signer, hash))
     house.agent.tick()
     assert (house.agent.state, house.agent.wants) == ("fetching", hash)
-    house.agent.bundle(message_of(files, house.signer))
+    house.agent.bundle(only(files, house.signer))
     house.agent.tick()
     assert house.agent.state == "checking"
     house.taker.offered[-1][1]({"verdict": "waiting", "reason": "a visit is under way"})
@@ -71,6 +73,12 @@ def test_keys_of_the_house_are_put_in_place_of_the_bundles() -> None:
         at_home(b"{name: x}", own)
 
 
+def only(files: Mapping[str, bytes], signer: Signer) -> dict[str, Any]:
+    """The one message of a small bundle."""
+    (body,) = messages_of(files, signer)
+    return body
+
+
 def damage(body: dict[str, Any], how: str, stranger: Signer) -> dict[str, Any]:
     data = base64.b64decode(body["zip"])
     match how:
@@ -93,13 +101,13 @@ def test_a_bundle_that_is_not_the_one_signed_is_refused_and_told(house: House, s
     files = changed(house.root)
     house.agent.order(ordered(house.signer, fingerprint(files)))
     house.agent.tick()
-    house.agent.bundle(damage(message_of(files, house.signer), how, stranger))
+    house.agent.bundle(damage(only(files, house.signer), how, stranger))
     house.agent.tick()
     assert house.agent.state == "fetching"
     assert house.told
     assert house.agent.presence(1.0, {}).trouble
     assert house.taker.offered == []
-    house.agent.bundle(message_of(files, house.signer))
+    house.agent.bundle(only(files, house.signer))
     house.agent.tick()
     assert house.agent.state == "checking"
 
@@ -196,9 +204,9 @@ def test_after_three_weeks_the_last_order_counts(house: House) -> None:
     house.agent.order(ordered(house.signer, fingerprint(last), 40))
     house.agent.order(ordered(house.signer, fingerprint(first), 7))
     house.agent.tick()
-    house.agent.bundle(message_of(first, house.signer))
+    house.agent.bundle(only(first, house.signer))
     assert house.agent.wants == fingerprint(last)
-    house.agent.bundle(message_of(last, house.signer))
+    house.agent.bundle(only(last, house.signer))
     house.agent.tick()
     house.taker.take(house.agent)
     assert house.agent.running == fingerprint(last)
@@ -230,3 +238,17 @@ def test_a_key_is_written_for_its_owner_alone_and_never_over(tmp_path: Path) -> 
 def test_the_same_files_make_the_same_zip(house: House) -> None:
     files = read_files(house.root)
     assert packed(files) == packed(dict(reversed(files.items())))
+
+
+def test_a_large_bundle_comes_in_parts_in_whatever_order_and_more_than_once(house: House) -> None:
+    noise = random.Random(1).randbytes(900_000).hex().encode()
+    files = {**changed(house.root), "models/large.xml": b"<x>" + noise + b"</x>"}
+    bodies = messages_of(files, house.signer)
+    assert len(bodies) > 1
+    house.agent.order(ordered(house.signer, fingerprint(files)))
+    house.agent.tick()
+    for body in [bodies[-1], bodies[0], bodies[-1], *bodies[1:]]:
+        house.agent.bundle(body)
+    assert house.agent.wants == ""
+    house.agent.tick()
+    assert house.agent.state == "checking"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumen.app.exhibition import Exhibition
-from lumen.app.fleet.bundle import message_of
+from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.memory import memory_file
 from lumen.app.fleet.signing import Signer, generate
 from lumen.app.recovery.run_directory import RunDirectory
@@ -40,7 +40,7 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
         until(lambda: show.tick() and "greeting" in show.configuration, every=0.0)
         bus.publish("fleet.desired.itb", ordered(signer, fingerprint(files)))
         until(lambda: show.tick() and heard.bodies[-1]["wants"], every=0.0)
-        bus.publish("fleet.bundle.itb", message_of(files, signer))
+        bus.publish("fleet.bundle.itb", messages_of(files, signer)[0])
         until(lambda: show.tick() and heard.bodies[-1]["state"] == "waiting", every=0.0)
         assert "greeting" in show.configuration
         assert show.project.hash == loaded.hash

@@ -43,6 +43,7 @@ VERBS = {
     "record": "record the messages of a running exhibition, for Foxglove and Lichtblick",
     "console": "show a running exhibition in a browser, and steer it from there",
     "doctor": "check an exhibition's bus, and say what is missing on it",
+    "fleet": "let many houses take other files, step by step",
     "alerts": "send a test alert to everybody who is told of trouble",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
-from lumen.app.fleet.bundle import BadBundleError, opened
+from lumen.app.fleet.bundle import BadBundleError, BundleParts
 from lumen.app.fleet.house_keys import at_home
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory
@@ -84,6 +84,7 @@ class FleetAgent:
         self._told: set[str] = set()
         self._offered = self._goal = ""
         self.played = 0, 0
+        self._parts = BundleParts()
         if memory.trying:
             memory.tries += 1
             self._save(memory)
@@ -118,9 +119,11 @@ class FleetAgent:
         if not self.wants or not isinstance(body, Mapping) or body.get("hash") != self.wants:
             return
         try:
-            files = opened(body, self.wants, self._key)
+            files = self._parts.take(body, self.wants, self._key)
         except BadBundleError as error:
             self._refuse(str(error))
+            return
+        if files is None:
             return
         if why := self._folder.keep(files):
             self._refuse(f"bundle {self.wants[:12]} can't be kept: {why}")

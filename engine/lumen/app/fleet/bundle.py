@@ -17,7 +17,9 @@ HASH = re.compile(r"[0-9a-f]{64}")
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The date of each file: the same files make the same zip."""
 MAX_BYTES = 12_000_000
-"""Of a packed bundle: one message takes it."""
+"""Of a packed bundle."""
+PIECE = 500_000
+"""Of it in one message [bytes]."""
 
 
 class BadBundleError(UsageError):
@@ -36,34 +38,63 @@ def packed(files: Mapping[str, bytes]) -> bytes:
     return buffer.getvalue()
 
 
-def message_of(files: Mapping[str, bytes], signer: Signer) -> dict[str, Any]:
-    """The bundle that these files are, signed, as a message. Raises UsageError where it is too large for one."""
+def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, Any]]:
+    """The bundle that these files are, signed, in messages that a bus takes. Raises UsageError if it is too large."""
     hash, data = fingerprint(files), packed(files)
     if len(data) > MAX_BYTES:
-        raise UsageError(f"the bundle takes {len(data) / 1e6:.1f} MB packed, and a message {MAX_BYTES / 1e6:g}")
+        raise UsageError(f"the bundle takes {len(data) / 1e6:.1f} MB packed, and may take {MAX_BYTES / 1e6:g}")
     signature = signer.sign(BUNDLE, hash.encode())
-    return {"hash": hash, "zip": base64.b64encode(data).decode(), "signature": signature}
+    pieces = [data[at : at + PIECE] for at in range(0, len(data), PIECE)]
+    common = {"hash": hash, "signature": signature, "parts": len(pieces)}
+    return [{**common, "part": i, "zip": base64.b64encode(piece).decode()} for i, piece in enumerate(pieces)]
 
 
-def opened(body: Any, wanted: str, key: str) -> dict[str, bytes]:
-    """The files of a bundle that came, which is the one wanted and signed with the other half of the key.
+class BundleParts:
+    """Puts the parts of a bundle together as they come, in whatever order and however often; one bundle at a time."""
 
-    Raises BadBundleError.
-    """
-    match body:
-        case {"hash": str(hash), "zip": str(text), "signature": str(signature)}:
-            pass
-        case _:
-            raise BadBundleError("what came is no bundle")
-    if hash != wanted:
-        raise BadBundleError(f"bundle {hash[:12]} came in place of {wanted[:12]}")
-    if not verified(key, BUNDLE, hash.encode(), signature):
-        raise BadBundleError(f"bundle {hash[:12]} is not signed with the key of fleet.yaml")
-    try:
-        data = base64.b64decode(text, validate=True)
-    except (ValueError, binascii.Error):
-        raise BadBundleError(f"bundle {hash[:12]} came damaged") from None
-    return unpacked(data, wanted)
+    def __init__(self) -> None:
+        self._of: tuple[str, int] = ("", 0)
+        self._parts: dict[int, bytes] = {}
+
+    def take(self, body: Any, wanted: str, key: str) -> dict[str, bytes] | None:
+        """The files once all parts are there, which are the ones wanted and signed with the other half of the key.
+
+        None while a part is missing. Raises BadBundleError, and forgets what has come.
+        """
+        try:
+            return self._take(body, wanted, key)
+        except BadBundleError:
+            self._parts = {}
+            raise
+
+    def _take(self, body: Any, wanted: str, key: str) -> dict[str, bytes] | None:
+        match body:
+            case {
+                "hash": str(hash),
+                "zip": str(text),
+                "signature": str(signature),
+                "part": int(part),
+                "parts": int(parts),
+            }:
+                pass
+            case _:
+                raise BadBundleError("what came is no bundle")
+        if hash != wanted:
+            raise BadBundleError(f"bundle {hash[:12]} came in place of {wanted[:12]}")
+        if not 0 <= part < parts <= MAX_BYTES // PIECE + 1:
+            raise BadBundleError(f"bundle {hash[:12]} came in {parts} parts, which no bundle has")
+        if not verified(key, BUNDLE, hash.encode(), signature):
+            raise BadBundleError(f"bundle {hash[:12]} is not signed with the key of fleet.yaml")
+        if self._of != (hash, parts):
+            self._of, self._parts = (hash, parts), {}
+        try:
+            self._parts[part] = base64.b64decode(text, validate=True)
+        except (ValueError, binascii.Error):
+            raise BadBundleError(f"bundle {hash[:12]} came damaged") from None
+        if len(self._parts) < parts:
+            return None
+        data, self._parts = b"".join(self._parts[i] for i in range(parts)), {}
+        return unpacked(data, wanted)
 
 
 def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:

@@ -1,0 +1,161 @@
+"""A centre: it hears the robots, lets a rollout go on, and says what each house is to run."""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from lumen.app.fleet.bundle import messages_of
+from lumen.app.fleet.centre_journal import CentreJournal
+from lumen.app.fleet.kept_bundles import BundleFolder
+from lumen.app.fleet.keys import INCIDENT, PRESENCE, bundle_key, desired_key, robot_of
+from lumen.app.fleet.overview import overview
+from lumen.app.fleet.signing import ORDER, Signer
+from lumen.errors import BusError, UsageError
+from lumen.interpreters.fleet.orders import DesiredState
+from lumen.interpreters.fleet.presence import presence_from
+from lumen.interpreters.fleet.rollout import step
+from lumen.interpreters.fleet.state import CentreState, HeardPresence
+from lumen.language.fleet import Fleet
+from lumen.ports import Bus, Message
+
+TELL_PERIOD = 10.0
+"""How often every house is told what it is to run, whether that is news or not [s]."""
+BUNDLE_PERIOD = 20.0
+"""How often a house gets the same bundle, at most [s]."""
+KEEP_PERIOD = 60.0
+"""How often it is written down how long a step was watched [s]."""
+MAX_WAITING = 20_000
+MAX_INCIDENTS = 200
+
+
+class Centre:
+    """Of one fleet, on the centre's bus. `tick` it about once a second.
+
+    What it decides is in its journal before anybody hears of it; where that can't be written it decides nothing, and
+    `trouble` says why. `clock` gives the time [s since 1970].
+    """
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        state: CentreState,
+        journal: CentreJournal,
+        bundles: BundleFolder,
+        signer: Signer,
+        bus: Bus,
+        *,
+        tell: Callable[[str], None] = lambda _: None,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        self.fleet, self.state, self.bundles, self.trouble = fleet, state, bundles, ""
+        self.heard: dict[str, HeardPresence] = {}
+        self.incidents: deque[dict[str, Any]] = deque(maxlen=MAX_INCIDENTS)
+        self._journal, self._signer, self._bus, self._tell, self._clock = journal, signer, bus, tell, clock
+        self._came: deque[Message] = deque(maxlen=MAX_WAITING)
+        self._told, self._version, self._kept = 0.0, -1, 0.0
+        self._sent: dict[tuple[str, str], float] = {}
+        self._known = frozenset(fleet.robots)
+        self._undo = [bus.subscribe(f"{key}.*.*", self._came.append) for key in (PRESENCE, INCIDENT)]
+
+    def tick(self) -> None:
+        """Hear what came, go on with the rollout, tell the houses."""
+        now = self._clock()
+        while self._came:
+            self._hear(self._came.popleft(), now)
+        self._decide(step(self.state, self.fleet, self.heard, now), now)
+        if not self.trouble and not self.state.overruled:
+            self._order(now)
+
+    def change(self, state: CentreState, what: str) -> None:
+        """Go on from another state, which a person wanted. Raises UsageError where it can't be written down."""
+        if why := self._journal.write(what, state):
+            raise UsageError(f"the centre's journal can't be written: {why}")
+        self.state, self.trouble = state, ""
+        self._tell(what)
+
+    def overview(self) -> dict[str, Any]:
+        """How the fleet is, as JSON data."""
+        told = overview(self.fleet, self.state, self.heard, self._clock())
+        return told | {
+            "incidents": list(self.incidents)[-20:],
+            "trouble": self.trouble,
+            "bundles": self.bundles.hashes(),
+        }
+
+    def close(self) -> None:
+        for undo in self._undo:
+            undo()
+
+    def _hear(self, message: Message, now: float) -> None:
+        robot = robot_of(message.key)
+        if robot not in self._known:
+            return
+        if message.key.startswith(INCIDENT):
+            match message.body:
+                case {"kind": str(kind), "text": str(text)}:
+                    self.incidents.append({"robot": robot, "kind": kind[:40], "text": text[:300], "at": round(now)})
+                    self._tell(f"{robot}: {kind[:40]}: {text[:300]}")
+            return
+        said = presence_from(robot, message.body)
+        if said is not None:
+            self.heard[robot] = HeardPresence(said, now)
+            if said.wants:
+                self._send(said.robot.partition("/")[0], said.wants, now)
+
+    def _send(self, house: str, hash: str, now: float) -> None:
+        """The bundle that a robot of a house lacks."""
+        if abs(now - self._sent.get((house, hash), -BUNDLE_PERIOD)) < BUNDLE_PERIOD:
+            return
+        files = self.bundles.files(hash)
+        if files is not None:
+            self._sent[house, hash] = now
+            for body in messages_of(files, self._signer):
+                self._publish(bundle_key(house), body, 60.0)
+
+    def _decide(self, state: CentreState, now: float) -> None:
+        before, after = _settled(self.state), _settled(state)
+        if after != before or (state.rollout != self.state.rollout and abs(now - self._kept) > KEEP_PERIOD):
+            what = _said(state)
+            self.trouble = self._journal.write(what, state)
+            if self.trouble:
+                return
+            self._kept = now
+            if after != before:
+                self._tell(what)
+        self.state = state
+
+    def _order(self, now: float) -> None:
+        if self._version == self.state.version and abs(now - self._told) < TELL_PERIOD:
+            return
+        self._version, self._told = self.state.version, now
+        for name, house in self.fleet.houses.items():
+            rows = ((robot, self.state.wanted.get(f"{name}/{robot}", "")) for robot in house.robots)
+            wanted = {robot: want for robot, want in rows if want}
+            text = DesiredState(self.state.centre, self.state.term, self.state.version, name, wanted).text()
+            self._publish(
+                desired_key(name), {"order": text, "signature": self._signer.sign(ORDER, text.encode())}, 60.0
+            )
+
+    def _publish(self, key: str, body: Any, ttl: float) -> None:
+        with suppress(BusError):  # it is told again
+            self._bus.publish(key, body, ttl=ttl)
+
+
+def _settled(state: CentreState) -> CentreState:
+    """Without what changes at each look."""
+    rollout = state.rollout and replace(state.rollout, watched=0.0, waited=0.0)
+    return replace(state, looked=0.0, rollout=rollout)
+
+
+def _said(state: CentreState) -> str:
+    rollout = state.rollout
+    if state.overruled:
+        return state.overruled
+    if rollout is None:
+        return "the centre goes on"
+    at = f"step {rollout.at + 1} of {len(rollout.plan.steps)} ({rollout.plan.steps[rollout.at]})"
+    reason = f": {rollout.reason}" if rollout.reason else ""
+    return f"bundle {rollout.bundle[:12]}: {rollout.state}, {at}, {len(rollout.assigned)} robots{reason}"

@@ -1,0 +1,70 @@
+"""What a centre has decided, line by line in a file: it is on the disk before any robot hears of it."""
+
+import json
+import os
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from lumen.interpreters.fleet.state import CentreState, state_from_json, state_to_json
+from lumen.upkeep.private_folder import private_folder
+
+FILE = "centre.jsonl"
+TAIL = 4_000_000
+"""How much of its end is read for what was written last [bytes]."""
+
+
+class CentreJournal:
+    """The journal in a folder, which is made when something is written first."""
+
+    def __init__(self, folder: Path) -> None:
+        self.file = folder / FILE
+
+    def last(self) -> CentreState | None:
+        """The state that was written last; a line that a crash has cut counts for nothing."""
+        for row in reversed(self.rows()):
+            try:
+                return state_from_json(row["state"])
+            except (KeyError, TypeError, ValueError):
+                continue
+        return None
+
+    def rows(self) -> list[Mapping[str, Any]]:
+        """What stands at its end, the newest last: `at`, `what` happened, and the `state` after it."""
+        try:
+            with open(self.file, "rb") as opened:
+                opened.seek(max(0, self.file.stat().st_size - TAIL))
+                lines = opened.read().splitlines()
+        except OSError:
+            return []
+        found = []
+        for line in lines:
+            try:
+                row = json.loads(line)
+            except (ValueError, RecursionError):
+                continue
+            if isinstance(row, Mapping):
+                found.append(row)
+        return found
+
+    def write(self, what: str, state: CentreState) -> str:
+        """Add a line, and wait until the disk has it; why that could not be, else empty."""
+        row = {"at": datetime.now(UTC).isoformat(timespec="seconds"), "what": what, "state": state_to_json(state)}
+        try:
+            private_folder(self.file.parent)
+            with open(self.file, "ab") as opened:
+                opened.write(b"\n" * self._torn() + json.dumps(row).encode() + b"\n")
+                opened.flush()
+                os.fsync(opened.fileno())
+        except OSError as error:
+            return (error.strerror or str(error)).lower()
+        return ""
+
+    def _torn(self) -> bool:
+        """Whether a crash has cut the last line."""
+        if not self.file.exists() or not self.file.stat().st_size:
+            return False
+        with open(self.file, "rb") as opened:
+            opened.seek(-1, os.SEEK_END)
+            return opened.read(1) != b"\n"

@@ -1,0 +1,91 @@
+"""How a fleet is, as `lumen fleet status --format json` prints it."""
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from lumen.interpreters.fleet.counting import rates
+from lumen.interpreters.fleet.rollout import FRESH, allowed
+from lumen.interpreters.fleet.state import CentreState, HeardPresence, Rollout
+from lumen.language.fleet import Fleet
+
+MOST_SKEW = 30.0
+"""How wrong a robot's clock may be until that is told [s]."""
+
+
+def overview(fleet: Fleet, state: CentreState, heard: Mapping[str, HeardPresence], now: float) -> dict[str, Any]:
+    """Houses, robots and the rollout; `now` is the centre's time [s since 1970]."""
+    robots = [_robot(name, state, heard.get(name), fleet, now) for name in fleet.robots]
+    houses = [
+        {
+            "name": name,
+            "broker": house.broker,
+            "robots": len(house.robots),
+            "here": sum(row["here"] for row in robots if row["house"] == name),
+            "labels": dict(house.labels),
+        }
+        for name, house in fleet.houses.items()
+    ]
+    rollout = _rollout(state.rollout, state, fleet) if state.rollout else None
+    return {
+        "houses": houses,
+        "robots": robots,
+        "rollout": rollout,
+        "centre": {"name": state.centre, "term": state.term, "version": state.version, "overruled": state.overruled},
+        "proved": list(state.proved),
+    }
+
+
+def _robot(name: str, state: CentreState, heard: HeardPresence | None, fleet: Fleet, now: float) -> dict[str, Any]:
+    house, _, robot = name.partition("/")
+    row: dict[str, Any] = {
+        "name": robot, "house": house, "bundle": "", "state": "unknown", "since": None, "here": False,
+        "wanted": state.wanted.get(name, ""), "pinned": name in state.pinned, "trouble": "", "heard": None,
+    }  # fmt: skip
+    if heard is None:
+        return row
+    said = heard.presence
+    here = abs(now - heard.at) <= FRESH
+    trouble = said.trouble
+    if here and said.clock and abs(said.clock - heard.at) > MOST_SKEW:
+        trouble = trouble or f"its clock is wrong by {said.clock - heard.at:+.0f} s"
+    return row | {
+        "bundle": said.bundle,
+        "state": said.state if here else "away",
+        "since": _iso(said.since),
+        "here": here,
+        "trouble": trouble,
+        "heard": _iso(heard.at),
+        "played": said.played,
+        "same": said.same,
+        "measures": rates([said.now], fleet.measures),
+        "before": rates([said.before], fleet.measures),
+    }
+
+
+def _rollout(rollout: Rollout, state: CentreState, fleet: Fleet) -> dict[str, Any]:
+    steps = [
+        {
+            "to": str(target),
+            "most": allowed(rollout.plan, i, fleet),
+            "done": i < rollout.at or rollout.state == "finished",
+        }
+        for i, target in enumerate(rollout.plan.steps)
+    ]
+    return {
+        "bundle": rollout.bundle,
+        "state": rollout.state,
+        "reason": rollout.reason,
+        "step": rollout.at,
+        "steps": steps,
+        "assigned": list(rollout.assigned),
+        "exposed": len(state.exposed),
+        "watched": round(rollout.watched, 1),
+        "pause": rollout.plan.pause,
+        "abort-if": rollout.plan.abort_if,
+        "since": _iso(rollout.begun),
+    }
+
+
+def _iso(at: float) -> str | None:
+    return datetime.fromtimestamp(at, UTC).isoformat(timespec="seconds").replace("+00:00", "Z") if at > 0.0 else None

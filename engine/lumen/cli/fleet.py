@@ -1,0 +1,235 @@
+"""`lumen fleet`: many houses, and how they take other files."""
+
+import argparse
+import getpass
+import os
+import signal
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.app.asking import OPERATOR_ANSWERS, ask
+from lumen.app.fleet.broker_check import check_broker
+from lumen.app.fleet.brokers import CENTRE, write_settings
+from lumen.app.fleet.bundle import messages_of
+from lumen.app.fleet.keys import ORDER
+from lumen.app.fleet.serving import ServedCentre, fleet_in
+from lumen.app.fleet.signing import Signer, generate
+from lumen.app.versions import version
+from lumen.bus import connect
+from lumen.cli.fleet_text import fleet_lines
+from lumen.cli.formats import configure_format, print_object
+from lumen.errors import BusUnreachableError, ProjectError, UsageError
+from lumen.interpreters.changes import changes, risk, summary
+from lumen.loading.files import FLEET_FILE
+from lumen.loading.units import seconds
+from lumen.rules import check_files
+
+WHATS: Mapping[str, str] = {
+    "keygen": "make the key that bundles are signed with",
+    "init": "write what each RabbitMQ needs",
+    "check": "say whether a RabbitMQ has what it needs",
+    "serve": "be the centre",
+    "publish": "send a project to the centre as a bundle",
+    "rollout": "let the robots have a bundle, step by step",
+    "status": "say how houses, robots and the rollout are",
+    "pause": "let a rollout wait",
+    "go": "let it go on, or decide what nobody knew",
+    "abort": "let all robots go back",
+    "pin": "leave a robot out of rollouts",
+    "unpin": "let it take part again",
+    "diff": "say what a bundle would change",
+    "take-over": "replace a centre that is gone",
+}
+KEY_FILE = "fleet.key"
+ANSWER_TIMEOUT = 15.0
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("what", choices=WHATS, metavar="WHAT", help="; ".join(f"{what}: {says}" for what, says in WHATS.items()))
+    add(
+        "name",
+        nargs="?",
+        metavar="NAME",
+        help="rollout, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
+    )
+    add("--project", metavar="DIR", help="the folder of fleet.yaml; default: this one")
+    add("--bus", metavar="URL", help="the broker; default: LUMEN_BUS, then the one in fleet.yaml")
+    add("--key", metavar="FILE", type=Path, help=f"the private key; default: {KEY_FILE} in that folder")
+    add("--first", metavar="TO", help="rollout: the first step: a group, a share such as 10%%, or all")
+    add("--then", metavar="TO", action="append", default=[], help="rollout: the next step; may be said again")
+    add("--pause", metavar="30min", help="rollout: how long each step is watched")
+    add("--abort-if", metavar="TEXT", help="rollout: send all back where this holds, as in fleet.yaml")
+    add("--against", metavar="HASH", help="diff: the bundle to compare with; default: the one that was proved last")
+    add("-o", "--output", metavar="DIR", type=Path, default=Path("brokers"), help="init: where to (default: brokers)")
+    add("--ca", metavar="FILE", default="", help="init: the authority of the centre's certificate, on a house's broker")
+    configure_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0; 1 where a broker lacks something. Raises UsageError and BusError."""
+    root = Path(options.project or ".")
+    match options.what:
+        case "keygen":
+            return _keygen(options, root)
+        case "init":
+            return _init(options, root)
+        case "check":
+            return _check(options, root)
+        case "serve":
+            return _serve(options, root)
+        case "publish":
+            answer = _publish(options, root)
+        case "rollout":
+            answer = _asked(options, root, {"bundle": _named(options), **_plan(options)})
+        case "diff":
+            return _diff(options, root)
+        case "pin" | "unpin":
+            answer = _asked(options, root, {"robot": _named(options)})
+        case _:
+            answer = _asked(options, root, {})
+    if options.format == "json":
+        print_object(answer)
+    elif options.what == "status":
+        print("\n".join(fleet_lines(answer)))
+    else:
+        print(answer.get("bundle") or "done")
+    return 0
+
+
+def _keygen(options: argparse.Namespace, root: Path) -> int:
+    file = options.key or root / KEY_FILE
+    public = generate(file)
+    if options.format == "json":
+        print_object({"file": str(file), "key": public})
+    else:
+        print(f"{file} is the private key: keep it where only the centre reads it.\nInto fleet.yaml:\n\nkey: {public}")
+    return 0
+
+
+def _init(options: argparse.Namespace, root: Path) -> int:
+    written = [str(file) for file in write_settings(fleet_in(root), options.output, ca=options.ca)]
+    if options.format == "json":
+        print_object({"written": written})
+    else:
+        print("\n".join(written))
+        print("They hold passwords: copy each folder to its broker alone. docs/fleet.md says where each file belongs.")
+    return 0
+
+
+def _check(options: argparse.Namespace, root: Path) -> int:
+    fleet, name = fleet_in(root), options.name or CENTRE
+    if name != CENTRE and name not in fleet.houses:
+        raise UsageError(f"the fleet has no house `{name}`: there are {', '.join(fleet.houses)}, and `{CENTRE}`")
+    address = fleet.centre if name == CENTRE else fleet.houses[name].broker
+    found = check_broker(options.bus or os.environ.get("LUMEN_BUS") or address, house=name != CENTRE)
+    if options.format == "json":
+        print_object(
+            {"broker": name, "ok": not any(row.wrong for row in found), "found": [row._asdict() for row in found]}
+        )
+    else:
+        for row in found:
+            print(
+                f"{'!!' if row.wrong else 'ok'} {row.what}{': ' * bool(row.wrong or row.note)}{row.wrong or row.note}"
+            )
+    return int(any(row.wrong for row in found))
+
+
+def _serve(options: argparse.Namespace, root: Path) -> int:
+    bus = connect(_address(options, root), sender="centre")
+    try:
+        served = ServedCentre(root, _signer(options, root), bus, lambda line: print(line, flush=True))
+    except BaseException:
+        bus.close()
+        raise
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: served.end())
+    print(f"the centre of {len(served.centre.fleet.robots)} robots, on {bus_name(_address(options, root))}", flush=True)
+    try:
+        served.run()
+    finally:
+        served.close()
+    return 0
+
+
+def bus_name(url: str) -> str:
+    """An address without who uses it."""
+    return url.rpartition("@")[2]
+
+
+def _publish(options: argparse.Namespace, root: Path) -> dict[str, Any]:
+    """Lint first: what has errors is sent to nobody."""
+    found = version(options.name, root) if options.name else version(None, root)
+    files = {path: content for path, content in found.files.items() if path != FLEET_FILE}
+    answer: dict[str, Any] = {}
+    for body in messages_of(files, _signer(options, root)):
+        answer = _asked(options, root, {"bundle": body})
+    return answer
+
+
+def _plan(options: argparse.Namespace) -> dict[str, Any]:
+    steps = [*([options.first] if options.first else []), *options.then]
+    plan: dict[str, Any] = {"steps": steps} if steps else {}
+    if options.pause is not None:
+        pause = seconds(options.pause)
+        if pause is None:
+            raise UsageError(f"--pause takes a duration such as 30min or 90s, not `{options.pause}`")
+        plan["pause"] = pause
+    return plan | ({"abort-if": options.abort_if} if options.abort_if is not None else {})
+
+
+def _diff(options: argparse.Namespace, root: Path) -> int:
+    proved = [] if options.against else _asked(options, root, {}, "status")["proved"]
+    base = options.against or next(reversed(proved), "")
+    if not base:
+        raise UsageError("no bundle was proved yet: say with --against HASH what to compare with")
+    projects = []
+    for name in (base, _named(options)):
+        files = _asked(options, root, {"bundle": name}, "files")["files"]
+        project, diagnostics = check_files(root, {path: text.encode() for path, text in files.items()})
+        if project is None:
+            raise ProjectError(diagnostics)
+        projects.append(project)
+    found = changes(*projects)
+    if options.format == "json":
+        print_object(
+            {"changes": [str(change) for change in found], "risk": str(risk(found)), "summary": summary(found)}
+        )
+    else:
+        print("\n".join(map(str, found)) or "nothing differs")
+    return 0
+
+
+def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], what: str = "") -> dict[str, Any]:
+    """What the centre says to it. Raises UsageError with its words where it refuses, BusError where none answers."""
+    url = _address(options, root)
+    bus = connect(url, sender="lumen fleet")
+    question = {"ask": what or options.what, "by": getpass.getuser(), **body}
+    try:
+        answer = next(ask(bus, ORDER, question, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
+    except BusUnreachableError:
+        raise BusUnreachableError(f"no centre answers on {bus_name(url)}: start it with `lumen fleet serve`") from None
+    finally:
+        bus.close()
+    if not isinstance(answer, dict) or not answer.pop("ok", False):
+        raise UsageError(str(answer.get("reason")) if isinstance(answer, dict) else "the centre's answer is none")
+    return answer
+
+
+def _address(options: argparse.Namespace, root: Path) -> str:
+    url = options.bus or os.environ.get("LUMEN_BUS") or fleet_in(root).centre
+    if not url:
+        raise UsageError("which broker? say --bus URL, or write `centre: {broker: …}` into fleet.yaml")
+    return str(url)
+
+
+def _signer(options: argparse.Namespace, root: Path) -> Signer:
+    return Signer(options.key or root / KEY_FILE)
+
+
+def _named(options: argparse.Namespace) -> str:
+    if not options.name:
+        what = "HOUSE/ROBOT" if "pin" in options.what else "a bundle's hash, as `lumen fleet publish` prints it"
+        raise UsageError(f"lumen fleet {options.what} needs {what}")
+    return str(options.name)

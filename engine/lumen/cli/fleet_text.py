@@ -1,0 +1,44 @@
+"""`lumen fleet status` for people."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from lumen.cli.tables import table
+
+SHORT = 12
+
+
+def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
+    """The rollout, each robot, and what is wrong."""
+    yield from _rollout(found["rollout"])
+    rows = [
+        [
+            f"{row['house']}/{row['name']}",
+            row["bundle"][:SHORT] or "-",
+            f"{row['state']}{', pinned' if row['pinned'] else ''}",
+            row["since"] or "-",
+            row["trouble"],
+        ]
+        for row in found["robots"]
+    ]
+    yield table(("robot", "bundle", "state", "since", ""), rows)
+    here, houses = sum(row["here"] for row in found["robots"]), len(found["houses"])
+    yield f"{here} of {len(rows)} robots are there, in {houses} houses"
+    for name in ("trouble",):
+        if found.get(name):
+            yield f"!! {found[name]}"
+    if found["centre"]["overruled"]:
+        yield f"!! this centre orders nothing: {found['centre']['overruled']}"
+
+
+def _rollout(rollout: Mapping[str, Any] | None) -> Iterator[str]:
+    if rollout is None:
+        yield "no rollout"
+        return
+    reason = f": {rollout['reason']}" if rollout["reason"] else ""
+    yield f"rollout of {rollout['bundle'][:SHORT]} is {rollout['state']}{reason}"
+    for i, step in enumerate(rollout["steps"]):
+        now = i == rollout["step"] and not step["done"]
+        watched = f", watched {rollout['watched'] / 60:.0f} of {rollout['pause'] / 60:.0f} min" if now else ""
+        mark = "ok" if step["done"] else "->" if now else "  "
+        yield f"{mark} {step['to']}: at most {step['most']} robots{watched}"
