@@ -11,13 +11,15 @@ from lumen.rules import check_files
 __all__ = ["Project", "load"]
 
 
-def load(path: str | Path | None = None) -> Project:
+def load(path: str | Path | None = None, *, robot: str = "") -> Project:
     """The project in that folder; without a path the one here or above, otherwise the shipped one.
+
+    Of several robots it is that of `robot`, the first where none is named.
 
     Raises ProjectError with the diagnostics if its files have errors, and UsageError if the folder does not exist.
     """
     root = find_project(path)
-    project, diagnostics = check_files(root, read_files(root))
+    project, diagnostics = check_files(root, read_files(root, robot))
     if project is None:
         raise ProjectError(diagnostics)
     return project

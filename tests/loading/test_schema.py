@@ -70,9 +70,9 @@ def test_items_of_a_list_keep_their_places() -> None:
 
 
 def test_a_missing_key_takes_its_parent_along_but_never_the_root() -> None:
-    data, report = check("behavior: tour\nroutes: {face: {direction: in}}", "lumen")
-    assert data == {"behavior": "tour", "routes": {}}
-    assert [d.code for d in report.diagnostics].count("missing-key") == 3
+    data, report = check("robot: {}\nroutes: {face: {direction: in}}", "lumen")
+    assert data == {"routes": {}}
+    assert [d.code for d in report.diagnostics].count("missing-key") == 4
     assert ("routes", "face") in report.pruned
 
 

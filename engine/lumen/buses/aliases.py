@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 
 def aliases_of(project: Project) -> Mapping[str, str]:
     """The aliases of a project's keys, and of those of ours that it does not list."""
-    if project.aliases is False or (project.aliases is None and len(project.robots) > 1):
+    if project.aliases is False or (project.aliases is None and len(project.served) > 1):
         return {}
     listed = {row.key_for(project.robot): row.alias for row in project.routes.values() if row.alias}
     unlisted = DEFAULT_ALIASES.keys() - project.routes.keys()

@@ -23,7 +23,7 @@ def body_checks(project: Project) -> dict[str, BodyCheck]:
         key: compiled[route.schema]
         for route in project.routes.values()
         if route.schema in compiled
-        for key in (route.alias, *map(route.key_for, project.robots))
+        for key in (route.alias, *map(route.key_for, project.served))
         if key
     }
 

@@ -178,7 +178,7 @@ def by_key(project: Project) -> dict[str, Route]:
     """The project's routes under their keys and aliases; of several with the same key, the one that promises most."""
     routes = sorted(project.routes.values(), key=lambda route: route.must_arrive)
     aliases = {route.alias: route for route in routes if route.alias and project.aliases is not False}
-    return aliases | {route.key_for(robot): route for route in routes for robot in project.robots}
+    return aliases | {route.key_for(robot): route for route in routes for robot in project.served}
 
 
 def validated(bus: Bus, project: Project, on_refused: OnRefused | None = None) -> ValidatedBus:

@@ -9,6 +9,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.gestures import GestureLibrary
 from lumen.language.hall_places import HallPlace
+from lumen.language.house import RobotSpec
 from lumen.language.imperfections import Imperfections
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
@@ -38,14 +39,15 @@ class Stage:
 class Project:
     """Everything the YAML of a project says. `root` is its folder, `hash` of all its files' contents.
 
-    `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
-    the default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
-    stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for
-    what is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by
-    name; `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened,
-    `record` what is recorded of the bus, `console` where its pages are. `replay_check` is how saved files are tried
-    on recorded visits. `aliases` is whether routes have their aliases: None for as long as no other robot is seen on
-    the bus. `imperfections` are those of a simulated robot.
+    `robot` is the robot's name in routing keys; `robots` are all of the house, `told_apart` where lumen.yaml has
+    `robots:`; each has a project of its own, of the same files. `house` is the name that they have in common.
+    `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
+    name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
+    wherever it runs. `patience` [s] is how long saved files wait for what is under way; `alerts` are told of what goes
+    wrong; `places` are those of the hall that the robot knows by name; `show` is what goes to lamps, screens and sound
+    desks; `journal` is how long it is kept what happened, `record` what is recorded of the bus, `console` where its
+    pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their
+    aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot.
     """
 
     root: str
@@ -79,6 +81,9 @@ class Project:
     replay_check: ReplayCheck = field(default_factory=ReplayCheck)
     console: ConsoleSettings = field(default_factory=ConsoleSettings)
     hash: str = ""
+    robots: Mapping[str, RobotSpec] = field(default_factory=dict)
+    told_apart: bool = False
+    house: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
     @property
@@ -87,7 +92,12 @@ class Project:
         return self.behaviors[self.behavior]
 
     @property
-    def robots(self) -> tuple[str, ...]:
+    def one_of_several(self) -> str:
+        """The robot's name where it needs one to be told from others of the house, on the disk as well; else empty."""
+        return self.robot if self.told_apart else ""
+
+    @property
+    def served(self) -> tuple[str, ...]:
         """The robot, and those that one of the modules serves besides (`robots` of `eyes`)."""
         others = self.modules[EYES].options.get("robots", ()) if EYES in self.modules else ()
         return tuple(dict.fromkeys((self.robot, *others)))

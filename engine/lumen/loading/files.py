@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from lumen.loading.chosen_model import choice
+from lumen.loading.chosen_robot import CHOSEN_ROBOT, as_robot
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.regular_files import MEGABYTE, read_regular
 
@@ -71,11 +72,11 @@ class Unreadable(bytes):
     """Stands in place of the content of a file that can't be read; its text is the reason, in words."""
 
 
-def read_files(root: Path) -> dict[str, bytes]:
+def read_files(root: Path, robot: str = "") -> dict[str, bytes]:
     """The content of every file that counts, by its path from the project's root, sorted; nothing here raises.
 
     Links within the project are followed. Of what lies outside nothing is read, not even which files a folder holds:
-    that folder itself is `Unreadable`.
+    that folder itself is `Unreadable`. They are read as that `robot` of several does, where one is named.
     """
     read = _Reader(root)
     found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}
@@ -89,7 +90,7 @@ def read_files(root: Path) -> dict[str, bytes]:
             content = read.file(f"{folder}/{name}")
             if content is not None:
                 found[f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"] = content
-    return dict(sorted({**found, **choice()}.items()))
+    return dict(sorted(as_robot({**found, **choice()}, robot).items()))
 
 
 def read_main_file(root: Path) -> bytes:
@@ -110,10 +111,10 @@ def counts(file: str) -> bool:
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:
-    """The hash of all paths and contents; fleet.yaml is no part of what runs."""
+    """The hash of all paths and contents; fleet.yaml is no part of what runs, and who reads them is none of theirs."""
     digest = hashlib.sha256()
     for path, content in sorted(files.items()):
-        if path == FLEET_FILE:
+        if path in (FLEET_FILE, CHOSEN_ROBOT):
             continue
         digest.update(f"{len(path)} {path} {len(content)} ".encode("utf-8", "surrogatepass") + content)
     return digest.hexdigest()

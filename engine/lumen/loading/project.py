@@ -16,6 +16,7 @@ from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.chosen_model import chosen
+from lumen.loading.chosen_robot import chosen_robot
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import (
@@ -68,7 +69,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     _folders(found)
     if (content := files.get(MAIN_FILE)) is None:
         found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
-    elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
+    elif main := _main(found, content, chosen_robot(files)):
         if main.built and (other := other_vocabulary(main.built, main.report)):
             return ProjectDraft(files, loose=[other])
         found.settings = main.built and replace(main.built, model=chosen(files, main.built.model))
@@ -105,10 +106,13 @@ def motion_parts(files: Mapping[str, bytes]) -> ProjectDraft:
     return draft({file: content for file, content in files.items() if file.startswith(wanted) or file == MAIN_FILE})
 
 
-def main_settings(root: Path) -> Settings | None:
-    """What lumen.yaml says, however many errors it has, and without any other file; None where it can't be read."""
+def main_settings(root: Path, robot: str = "") -> Settings | None:
+    """What lumen.yaml says, however many errors it has, and without any other file; None where it can't be read.
+
+    `robot` is one of several, the first where it is empty.
+    """
     found, content = ProjectDraft({}), read_main_file(root)
-    main = _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report))
+    main = _main(found, content, robot)
     return main.built if main else None
 
 
@@ -121,6 +125,9 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         root=root,
         name=settings.name or PurePosixPath(root.replace("\\", "/")).name,
         robot=settings.robot,
+        robots=settings.robots,
+        told_apart=settings.told_apart,
+        house=settings.house,
         body=body,
         hall=settings.hall,
         behavior=settings.behavior,
@@ -151,6 +158,12 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )
+
+
+def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings] | None:
+    """lumen.yaml, as that robot reads it."""
+    build = partial(build_settings, robot=robot)
+    return _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build(data, report), robot)
 
 
 def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterator[str]:

@@ -10,8 +10,9 @@ from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
 from lumen.language.alerts import Alerts
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
-from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, nearest
+from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, did_you_mean, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
+from lumen.language.house import RobotSpec
 from lumen.language.imperfections import Imperfections
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
@@ -22,6 +23,7 @@ from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.alerts import build_alerts
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
 from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.show import build_show
@@ -34,14 +36,22 @@ UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not t
 
 HOW = "write `replay: warn` or `replay: refuse` beside it, or take it out"
 
+NO_SUCH_ROBOT = Code("no-such-robot", "robot", ERROR, "the files have no robot of that name")
+
 
 @dataclass(frozen=True)
 class Settings:
-    """What lumen.yaml says; a text is empty where the file lacks it or what stood there was refused."""
+    """What lumen.yaml says; a text is empty where the file lacks it or what stood there was refused.
+
+    `robot` and what is said of it is that of `robots` whose exhibition this is; `told_apart` where they are several.
+    """
 
     vocabulary: int = FIRST_VOCABULARY
     name: str = ""
-    robot: str = "NAO"
+    robot: str = DEFAULT_ROBOT
+    robots: Mapping[str, RobotSpec] = field(default_factory=dict)
+    told_apart: bool = False
+    house: str = ""
     model: str = ""
     hall: str = ""
     behavior: str = ""
@@ -65,22 +75,33 @@ class Settings:
     console: ConsoleSettings = field(default_factory=ConsoleSettings)
 
 
-def build_settings(data: Any, report: DocumentReport) -> Settings:
-    """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key."""
+def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settings:
+    """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key.
+
+    They are those of this `robot`, the first where the name is empty.
+    """
     if not isinstance(data, Mapping):
         return Settings()
-    robot, modules, journal = data.get("robot", {}), data.get("modules", {}), _journal(data, report)
+    modules, journal = data.get("modules", {}), _journal(data, report)
+    robots, several = build_robots(data, report), told_robots(data)
+    if robot and robot not in robots:
+        hint = did_you_mean(robot, robots, "there are")
+        report(NO_SUCH_ROBOT, ("robots",) if several else (), f"there is no robot `{robot}` any more", hint)
+    own = robots.get(robot) or next(iter(robots.values()))
     return Settings(
         vocabulary=data.get(VOCABULARY_KEY, FIRST_VOCABULARY),
         name=data.get("name", ""),
-        robot=robot.get("name", Settings.robot),
-        model=robot.get("model", ""),
+        robot=own.name,
+        robots=robots,
+        told_apart=several,
+        house=build_house(data),
+        model=own.model,
         hall=data.get("hall", ""),
-        behavior=data.get("behavior", ""),
-        story=data.get("story", ""),
-        languages=tuple(data.get("languages", ())),
+        behavior=own.behavior,
+        story=own.story,
+        languages=own.languages,
         timezone=_timezone(data, report),
-        routes=build_routes(data.get("routes", {}), report, stand=robot.get("stand", "")),
+        routes=build_routes(data.get("routes", {}), report, stand=own.stand),
         stage=_stage(data, report),
         imperfections=Imperfections(**data.get("imperfections", {})),
         bus=data.get("bus", Settings.bus),
@@ -90,12 +111,21 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         places=_places(data, report),
         show=build_show(modules.get(SHOW, {})),
         journal=journal,
-        stand=robot.get("stand", ""),
-        aliases=data.get("aliases"),
+        stand=own.stand,
+        aliases=False if several else data.get("aliases"),
         record=_record(data, report),
         replay_check=_replay_check(data, journal, report),
         console=_console(data.get("console")),
     )
+
+
+def said_at(settings: Settings, report: DocumentReport, key: str) -> NodePath:
+    """Where lumen.yaml says what its robot is or does: `model`, `behavior`, `languages`, `story`."""
+    if settings.told_apart:
+        own: NodePath = ("robots", settings.robot, key)
+        if key == "model" or key in report.document.data["robots"][settings.robot]:
+            return own
+    return ("robot", key) if key == "model" else (key,)
 
 
 def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic | None:

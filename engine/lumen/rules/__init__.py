@@ -5,12 +5,15 @@ from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot, chosen_robot
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft
 from lumen.rules.checks import CHECKS
 from lumen.rules.codes import CODES
 from lumen.rules.ignores import obey
+from lumen.rules.several_robots import together
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:
@@ -27,13 +30,27 @@ def check_files(
 ) -> tuple[Project | None, tuple[Diagnostic, ...]]:
     """The project that these files make, None where they have errors, and everything wrong with them.
 
-    `between` is called between one rule and the next: whoever does not want to know any more raises what they catch.
+    Of several robots it is that of the one that is chosen among the files; without a choice all are looked at, and it
+    is that of the first. `between` is called between one rule and the next: whoever does not want to know any more
+    raises what they catch.
     """
+    found, diagnostics = _checked(root, files, between)
+    if found.settings and not chosen_robot(files):
+        others = list(found.settings.robots)[1:]
+        views = [_checked(root, as_robot(files, robot), between)[1] for robot in others]
+        diagnostics = together((diagnostics, *views))
+    project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
+    return project, diagnostics
+
+
+def _checked(
+    root: Path, files: Mapping[str, bytes], between: Callable[[], None]
+) -> tuple[ProjectDraft, tuple[Diagnostic, ...]]:
+    """What these files make, and everything wrong with them, as one robot reads them."""
     found = draft(files)
     found.root = root
     for rule in CHECKS:
         between()
         rule.check(found)
-    diagnostics = obey(found.diagnostics, {file: report.document for file, report in found.reports.items()}, CODES)
-    project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
-    return project, diagnostics
+    documents = {file: report.document for file, report in found.reports.items()}
+    return found, obey(found.diagnostics, documents, CODES)

@@ -17,6 +17,7 @@ from lumen.loading import (
     document,
     fleet,
     gestures,
+    house,
     keyframes,
     known_words,
     life,
@@ -47,7 +48,7 @@ from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
 LOADERS = (
-    actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, keyframes,
+    actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, house, keyframes,
     known_words, life, linking, messages, misplaced, numbers, outline, poses, project, role_names, roles, rounds,
     rulebook, schedules, settings, shapes, signal_bindings, terms, transitions, units, variables, yaml_errors,
     yaml_reader,

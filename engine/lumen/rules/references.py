@@ -10,6 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.packaged_models import in_package, package_file
 from lumen.loading.poses import UNKNOWN_POSTURE
 from lumen.loading.project import MISSING_FILE
+from lumen.loading.settings import said_at
 from lumen.rules.lookups import References, first
 from lumen.rules.walk import ActionSite, action_sites
 
@@ -46,11 +47,11 @@ def _main(draft: ProjectDraft, references: References) -> None:
     if settings is None or report is None:
         return
     if settings.behavior:
-        references.look_up(report, ("behavior",), "behavior", settings.behavior)
+        references.look_up(report, said_at(settings, report, "behavior"), "behavior", settings.behavior)
     if settings.story:
-        references.look_up(report, ("story",), "story", settings.story)
+        references.look_up(report, said_at(settings, report, "story"), "story", settings.story)
     model, body = settings.model, draft.body
-    if model and references.look_up(report, ("robot", "model"), "model", model) and body and body.mjcf:
+    if model and references.look_up(report, said_at(settings, report, "model"), "model", model) and body and body.mjcf:
         _model_file(draft, draft.report("models", model), ("mjcf",), body.mjcf)
     if settings.hall and "models" not in draft.missing:
         _model_file(draft, report, ("hall",), settings.hall)

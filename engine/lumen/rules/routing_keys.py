@@ -89,7 +89,8 @@ def _shared(report: DocumentReport, route: Route, settings: Settings) -> None:
     if settings.aliases is not False or "{robot}" in route.key or not (ours or route.event):
         return
     what = f"becomes `{route.event}` for all of them" if route.event else "is nobody's in particular"
-    message = f"what comes on `{route.key}` {what}: several robots share the bus (`aliases: false`)"
+    told = "" if settings.told_apart else " (`aliases: false`)"
+    message = f"what comes on `{route.key}` {what}: several robots share the bus{told}"
     hint = f"write {DEFAULT_KEYS[route.name] if ours else _with_robot(route.key)}"
     report(SHARED_KEY, (*route.where, "key"), message, hint)
 

@@ -12,6 +12,7 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePat
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.settings import said_at
 from lumen.rules.lists import listed_texts
 from lumen.rules.lookups import value_at
 from lumen.rules.translation import begun, language_entries, switched_to
@@ -44,7 +45,7 @@ def check(draft: ProjectDraft) -> None:
     silent, few = _silent(draft, draft.settings.languages)
     speech = _Speech(tuple(n for n in draft.settings.languages if n not in silent), draft.main.lost | silent.keys())
     for language, (meant, related) in silent.items():
-        there = ("languages", draft.settings.languages.index(language))
+        there = (*said_at(draft.settings, draft.main, "languages"), draft.settings.languages.index(language))
         hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete it"
         message = f"`{language}` is in {few[language]} texts" if few[language] else f"nothing is said in `{language}`"
         draft.main.diagnostics.append(_silence(draft.main, there, message, hint, related))
@@ -170,7 +171,7 @@ class _Speech:
                 message = f"nothing lets the robot speak `{language}`"
                 hint = f"write `language: {language}` where a visitor asks for it"
                 assert draft.settings
-                path = ("languages", draft.settings.languages.index(language))
+                path = (*said_at(draft.settings, draft.main, "languages"), draft.settings.languages.index(language))
                 draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:

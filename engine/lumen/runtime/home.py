@@ -15,6 +15,8 @@ from lumen.upkeep.private_folder import private_folder
 
 STATE_FOLDER = ".lumen"
 ADDRESS_FILE = "door.json"
+ROBOTS_FOLDER = "robots"
+"""Where the robots of `robots:` have a home each."""
 MAX_RECORD_BYTES = 64_000_000
 """Of one file of a home; where a behaviour stands takes some thousands."""
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)
@@ -96,13 +98,24 @@ class Home:
             (self.folder / name).unlink()
 
 
-def home_of(root: Path) -> Path:
-    """The folder for an exhibition of the project in `root`.
+def home_of(root: Path, robot: str = "") -> Path:
+    """The folder for an exhibition of the project in `root`, of this `robot` where it has `robots:`.
 
     It is inside the project, unless that can't be written or is a link that may lead elsewhere tomorrow, or holds one,
     as whoever sends a project may send a `.lumen/` with it: then it is among the user's own files, under a name made
     from the project's path.
     """
+    within = Path(ROBOTS_FOLDER, robot) if robot else Path()
+    return _whole_home(root) / within
+
+
+def homes_of(root: Path) -> list[Home]:
+    """Those that exhibitions of the project may have: its own, and one for each of its robots."""
+    whole = home_of(root)
+    return [Home(whole), *(Home(one) for one in sorted((whole / ROBOTS_FOLDER).glob("*/")))]
+
+
+def _whole_home(root: Path) -> Path:
     inside = root / STATE_FOLDER
     if not root.is_symlink() and not _linked(inside) and os.access(inside if inside.is_dir() else root, os.W_OK):
         return inside

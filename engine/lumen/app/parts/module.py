@@ -23,7 +23,7 @@ class ModulePart(Part):
     """One of the modules, on a thread of its own; it needs nobody, and hears whoever comes.
 
     Where it is `awaited` each tick waits for the eyes: what they see does not depend on the machine. Eyes may serve
-    several robots (`Project.robots`): then there is one module for each, and each robot's exhibition sees it. Faces
+    several robots (`Project.served`): then there is one module for each, and each robot's exhibition sees it. Faces
     that it learns for another robot last as long as the process. Raises ModuleError where it can't work here.
     """
 
@@ -40,7 +40,7 @@ class ModulePart(Part):
         self.name = name
         self._modules = {project.robot: make_module(name, project, bus, lambda text: tell(name, text), folder)}
         self._presences: list[Presence] = []
-        for robot in project.robots[1:] if name == EYES else ():
+        for robot in project.served[1:] if name == EYES else ():
             other = _of_another(project, robot)
             self._modules[robot] = make_module(name, other, bus, lambda text: tell(name, text), None)
             self._presences.append(presence_of(other, bus, (name,), dict))

@@ -1,0 +1,32 @@
+"""Who performs in a house: one robot or several, each with what differs from what lumen.yaml says of all."""
+
+from dataclasses import dataclass
+
+DEFAULT_SPACING = 0.8
+"""How far to the left of the robot before it the next one stands where lumen.yaml does not say [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartPose:
+    """Where a robot stands in the hall at its start: `x`, `y` [m], and how far to the left it faces [rad]."""
+
+    x: float = 0.0
+    y: float = 0.0
+    facing: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class RobotSpec:
+    """A robot of `robots:`, or the one of `robot:`: what counts for it, its own or that of all.
+
+    `name` stands for {robot} in routing keys, `stand` for {stand}; `model` is its body, `at` where it stands in the
+    hall; `behavior`, `languages` and `story` are what it does, speaks, and is tried with.
+    """
+
+    name: str
+    model: str = ""
+    at: StartPose = StartPose()
+    behavior: str = ""
+    languages: tuple[str, ...] = ()
+    story: str = ""
+    stand: str = ""

@@ -1,0 +1,66 @@
+"""`robot:` or `robots:` of lumen.yaml, from their data to who performs."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.house import DEFAULT_SPACING, RobotSpec, StartPose
+from lumen.loading.complaints import MISSING_KEY
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import finite
+from lumen.loading.units import ANGLES, LENGTHS
+
+DEFAULT_ROBOT = "NAO"
+ROBOTS_TWICE = Code("robots-twice", "robot", ERROR, "lumen.yaml says with `robot` and with `robots` who performs")
+
+HOW = "write `robot: {name: NAO, model: nao}` for one, `robots:` with a line for each for several"
+
+
+def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
+    """The robots by name, in the order written; the one of `robot:` where there is no `robots:`."""
+    several = data.get("robots")
+    if "robot" in data and several:
+        report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` both stand here", f"delete one: {HOW}", key=True)
+    if "robot" not in data and not several and not any(path[:1] in (("robot",), ("robots",)) for path in report.pruned):
+        report(MISSING_KEY, (), "`robot` is missing", f"Which robot performs: {HOW}")
+    if not several:
+        row = data.get("robot", {})
+        one = _spec(row.get("name", DEFAULT_ROBOT), row, data, StartPose())
+        return {one.name: one}
+    found = {}
+    for i, (name, row) in enumerate(several.items()):
+        found[name] = _spec(name, row, data, _pose(data, ("robots", name, "at"), i, report))
+    return found
+
+
+def build_house(data: Mapping[str, Any]) -> str:
+    """The house's name: what lumen.yaml says, else the project's as a word of a routing key."""
+    return data.get("house", "") or re.sub(r"[^a-z0-9]+", "-", data.get("name", "").lower()).strip("-") or "house"
+
+
+def told_robots(data: Mapping[str, Any]) -> bool:
+    """Whether the robots are those of `robots:`: then each is told apart by its name, also on the disk."""
+    return bool(data.get("robots"))
+
+
+def _spec(name: str, row: Mapping[str, Any], data: Mapping[str, Any], at: StartPose) -> RobotSpec:
+    return RobotSpec(
+        name=name,
+        model=row.get("model", ""),
+        at=at,
+        behavior=row.get("behavior", data.get("behavior", "")),
+        languages=tuple(row.get("languages", data.get("languages", ()))),
+        story=row.get("story", data.get("story", "")),
+        stand=row.get("stand", ""),
+    )
+
+
+def _pose(data: Mapping[str, Any], where: NodePath, index: int, report: DocumentReport) -> StartPose:
+    row, units = data["robots"][where[1]].get("at"), data.get("units", {})
+    if row is None:
+        return StartPose(y=DEFAULT_SPACING * index)
+    if not all(finite(value, report, (*where, key)) for key, value in row.items()):
+        return StartPose(y=DEFAULT_SPACING * index)
+    length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
+    return StartPose(row.get("x", 0.0) * length, row.get("y", 0.0) * length, row.get("facing", 0.0) * angle)
