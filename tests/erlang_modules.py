@@ -5,18 +5,21 @@ processor time.
 """
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 NEEDLESS = re.compile(
     r"rabbitmq_(?!prelaunch|mqtt)|(accept|amqp10_client|base64url|cow|eetcd|enough|gun|jose|prometheus|quantile)"
 )
 """Plugins that no broker here enables, and what only those need."""
+NEEDED = ("amqp10_client",)
+"""What rabbitmq_shovel needs."""
 
 
-def link_modules(folder: Path, erlang: Path, rabbitmq: Path) -> None:
+def link_modules(folder: Path, erlang: Path, rabbitmq: Path, plugins: Sequence[str] = ()) -> None:
     """Fill `links` in the folder with the plugins that may be enabled, and `modules` with the modules of all there is.
 
-    `erlang` and `rabbitmq` are where these two are installed.
+    `erlang` and `rabbitmq` are where these two are installed; `plugins` are enabled besides, with what they need.
     """
     links, modules = folder / "links", folder / "modules"
     if modules.exists():
@@ -24,7 +27,8 @@ def link_modules(folder: Path, erlang: Path, rabbitmq: Path) -> None:
     links.mkdir()
     modules.mkdir()
     for plugin in (rabbitmq / "plugins").iterdir():
-        if not NEEDLESS.match(plugin.name):
+        wanted = (*plugins, *(NEEDED if plugins else ()))
+        if not NEEDLESS.match(plugin.name) or plugin.name.rpartition("-")[0] in wanted:
             (links / plugin.name).symlink_to(plugin)
     for module in (*links.glob("*/ebin/*.beam"), *erlang.glob("lib/*/ebin/*.beam")):
         (modules / module.name).symlink_to(module)

@@ -13,7 +13,7 @@ import shutil
 import signal
 import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import NoReturn
@@ -61,12 +61,16 @@ class RabbitMQ:
     """A broker in a folder of its own; `url` is where it listens once `start` has returned.
 
     With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/broker.md for
-    messages that nobody waits for. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`.
+    messages that nobody waits for. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`; `plugins` are
+    others. `definitions` are imported in place of the tests' usual ones.
     """
 
-    def __init__(self, certificate: Path | None = None, *, speaks_mqtt: bool = False) -> None:
+    def __init__(
+        self, certificate: Path | None = None, *, speaks_mqtt: bool = False, plugins: Sequence[str] = ()
+    ) -> None:
         self._root, self._script = _installed()
-        self.certificate, self._speaks_mqtt = certificate, speaks_mqtt
+        self.certificate, self._speaks_mqtt, self._plugins = certificate, speaks_mqtt, plugins
+        self.definitions: Mapping[str, object] | None = None
         self.folder = temporary_folder("lumen-rabbitmq-")
         self.port, self.distribution, self.epmd, self.secure, self.mqtt = _free_ports(5)
         self.url = self.url_of("guest")
@@ -79,10 +83,13 @@ class RabbitMQ:
 
     def start(self) -> None:
         """Start it, or start it again with what it had stored, and wait until it accepts connections."""
-        (self.folder / "plugins").write_text("[rabbitmq_mqtt]." if self._speaks_mqtt else "[].")
+        plugins = (*self._plugins, *["rabbitmq_mqtt"] * self._speaks_mqtt)
+        (self.folder / "plugins").write_text(f"[{','.join(plugins)}].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
-        (self.folder / "definitions.json").write_text(json.dumps(_definitions(nowhere=self.certificate is not None)))
-        link_modules(self.folder, self._root / "usr/lib/erlang", Path(self._script).parents[1])
+        (self.folder / "definitions.json").write_text(
+            json.dumps(self.definitions or _definitions(nowhere=self.certificate is not None))
+        )
+        link_modules(self.folder, self._root / "usr/lib/erlang", Path(self._script).parents[1], self._plugins)
         if self._names is None:
             # Begun by us, since the one that Erlang begins for itself makes itself a daemon, which outlives everybody.
             self._names = self._begin("epmd", "-address", "127.0.0.1", "-port", str(self.epmd))
