@@ -8,7 +8,6 @@ from typing import Any, Self
 
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.answering import WHY, WHY_NOT, answer
-from lumen.app.fleet.part import fleet_part
 from lumen.app.narrator import Narrator
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
@@ -33,6 +32,7 @@ from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.loading.files import FLEET_FILE
 from lumen.ports import Bus
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
 from lumen.runtime.home import home_of
@@ -85,7 +85,9 @@ class Exhibition:
             taken_by = directory.reloader if directory else Reloader
             self.reloader = taken_by(behavior, self.node.narrator, mode=reload)
             self.node.add(ReloadPart(self.reloader))
-            if directory and story is None:
+            if directory and story is None and (directory.root / FLEET_FILE).exists():
+                from lumen.app.fleet.part import fleet_part  # few exhibitions are of a fleet
+
                 tell = partial(self.node.narrator.line, "fleet")
                 agent = fleet_part(directory.root, opened, behavior, self.reloader, directory.home, tell)
                 self.node.add(*([agent] if agent else []))
