@@ -165,8 +165,8 @@ class FastPaths:
         outcomes = [self._outcome(start, t.alone, t.guard) for group in candidates for t in group]
         if outcomes and not any(outcome.plain for outcome in outcomes):
             return None
-        first, *others = [*outcomes, self._outcome(start, ())]
-        return FastPath(uses_event, *first, _first_enabled(others))
+        first, *others = outcomes or [self._outcome(start, ())]
+        return FastPath(uses_event, *first, self._first_enabled(start, others))
 
     def _chooser(self, start: Configuration, candidates: Candidates) -> Callable[[Scope], FastOutcome]:
         """Finds the outcome where several atomic states are active, each with its first candidate that is enabled."""
@@ -184,6 +184,20 @@ class FastPaths:
                 make_room(outcomes)
                 found = outcomes[enabled] = self._outcome(start, enabled)
             return found
+
+        return choose
+
+    def _first_enabled(self, start: Configuration, outcomes: list[FastOutcome]) -> Callable[[Scope], FastOutcome]:
+        """Finds the first of these outcomes whose guard holds, else that nothing is taken."""
+        nothing: list[FastOutcome] = []
+
+        def choose(scope: Scope) -> FastOutcome:
+            for outcome in outcomes:
+                if outcome.guard is None or outcome.guard(scope):
+                    return outcome
+            if not nothing:
+                nothing.append(self._outcome(start, ()))
+            return nothing[0]
 
         return choose
 
@@ -221,11 +235,6 @@ class FastPaths:
 def _never(_: Scope) -> bool:
     """Stands where no single transition decides."""
     return False
-
-
-def _first_enabled(outcomes: list[FastOutcome]) -> Callable[[Scope], FastOutcome]:
-    """Finds the first of these outcomes whose guard holds; the last one has none."""
-    return lambda scope: next(outcome for outcome in outcomes if outcome.guard is None or outcome.guard(scope))
 
 
 def _after_timers(plan: MicrostepPlan) -> AfterTimers | None:

@@ -55,7 +55,8 @@ class Configuration:
         self.names = frozenset(node.name for node in nodes if node.path)
         self.known = names_of(nodes)
         self.plans: dict[tuple[object, ...], MicrostepPlan] = {}
-        self.leaves = [node for node in self.ordered if not any(child in nodes for child in node.children)]
+        inner = {node.parent for node in nodes}
+        self.leaves = [node for node in self.ordered if node not in inner]
         self._by_event: dict[str, Candidates] = {}
         self.eventless = self._select(lambda transition: not transition.definition.event)
 

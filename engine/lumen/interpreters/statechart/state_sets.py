@@ -1,6 +1,6 @@
 """Which states a transition leaves and enters: the sets of SCXML's Appendix D, by its names."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
 from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
@@ -39,7 +39,8 @@ class StateSets:
         left: set[StateNode] = set()
         for transition in transitions:
             if transition.targets:
-                left.update(_active_below(self.domain(transition), active))
+                domain = self.domain(transition)
+                left.update(node for node in active if node.lies_below(domain))
         return left
 
     def without_conflicts(
@@ -146,17 +147,10 @@ class StateSets:
 def in_final(node: StateNode, active: AbstractSet[StateNode]) -> bool:
     """Whether a state has come to its end (`isInFinalState`)."""
     if node.kind is StateKind.COMPOUND:
-        return any(child.kind is StateKind.FINAL and child in active for child in node.children)
+        return any(child.kind is StateKind.FINAL and child.parent is node for child in active)
     if node.kind is StateKind.PARALLEL:
         return all(in_final(child, active) for child in node.children)
     return node.kind is StateKind.FINAL and node in active
-
-
-def _active_below(node: StateNode, active: AbstractSet[StateNode]) -> Iterator[StateNode]:
-    for child in node.children:
-        if child in active:
-            yield child
-            yield from _active_below(child, active)
 
 
 def _innermost(nodes: Sequence[StateNode]) -> list[StateNode]:
