@@ -26,7 +26,6 @@ from editing import Colleague, project
 from tests.guarded import PIPE, Guarded
 
 import lumen
-from lumen.app.garbage import GcScheduler
 from lumen.app.narrator import Narrator
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
@@ -42,6 +41,7 @@ from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.watcher import SHORT_QUIET_FRACTION
+from lumen.upkeep.garbage import GcScheduler
 
 RATE = 200
 PATIENCE = 60.0

@@ -7,10 +7,12 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.rules import check_files
+from lumen.upkeep.garbage import gc_paused
 
 __all__ = ["Project", "load"]
 
 
+@gc_paused()
 def load(path: str | Path | None = None, *, robot: str = "") -> Project:
     """The project in that folder; without a path the one here or above, otherwise the shipped one.
 

@@ -7,7 +7,6 @@ from contextlib import ExitStack
 from math import ceil, inf
 
 from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals
-from lumen.app.garbage import GcScheduler
 from lumen.app.narrator import Narrator
 from lumen.app.pace import PaceWatch
 from lumen.app.parts.part import Part
@@ -23,6 +22,7 @@ from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_ROUTE
 from lumen.runtime.watcher import SWITCH_INTERVAL
+from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 ROUNDING = 1e-6

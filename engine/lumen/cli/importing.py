@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.importing_robot import body_faults, robot_body, write_beside
@@ -40,6 +39,7 @@ from lumen.loading.project import motion_parts
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 from lumen.rules.motions import TOO_FAST
+from lumen.upkeep.garbage import gc_paused
 
 Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 

@@ -4,7 +4,6 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 
-from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
 from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
@@ -15,6 +14,7 @@ from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.rules.selection import selected
+from lumen.upkeep.garbage import gc_paused
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

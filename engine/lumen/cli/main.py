@@ -11,11 +11,11 @@ from collections.abc import Collection, Sequence
 from contextlib import suppress
 
 import lumen
-from lumen.app.garbage import gc_paused
 from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.streams import complain, finish, hush, open_streams
 from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
+from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
 

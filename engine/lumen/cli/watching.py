@@ -6,13 +6,13 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
-from lumen.app.garbage import GcScheduler, gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.targets import FindingsOf, LintTarget
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import render
 from lumen.cli.terminal import coloured, paint
 from lumen.runtime.watcher import FileWatcher, SavedFiles
+from lumen.upkeep.garbage import GcScheduler, gc_paused
 
 QUIET = 0.01
 """How long files have to be left alone [s]: nothing runs on them, so half a file is a finding for a moment only."""

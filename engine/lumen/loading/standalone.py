@@ -22,10 +22,12 @@ from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
 from lumen.loading.words import build_words
 from lumen.loading.yaml_reader import parse
+from lumen.upkeep.garbage import gc_paused
 
 ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
 
 
+@gc_paused()
 def machine_from_file(path: Path) -> MachineDefinition:
     """The machine in a file; what it invokes stands beside it.
 
@@ -35,6 +37,7 @@ def machine_from_file(path: Path) -> MachineDefinition:
     return _Family(_Shelf.of_files(beside | {path.stem: path}), _Shelf.of_files(words)).head(path.stem)
 
 
+@gc_paused()
 def machine_from_dict(
     data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any], words: Mapping[str, Any] = MappingProxyType({})
 ) -> MachineDefinition:

@@ -13,11 +13,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from lumen.app.garbage import gc_paused
 from lumen.app.reload.delta import DeltaEncoder
 from lumen.app.reload.judging_pipe import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
 from lumen.language.projects import Project
 from lumen.rules import check_files
+from lumen.upkeep.garbage import gc_paused
 from lumen.upkeep.heap import give_back
 
 if TYPE_CHECKING:

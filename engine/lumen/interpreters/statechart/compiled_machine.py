@@ -7,6 +7,7 @@ from lumen.interpreters.statechart.chart import Chart
 from lumen.interpreters.statechart.fast_path import FastPaths
 from lumen.interpreters.statechart.plans import MicrostepPlanner
 from lumen.language.machines import MachineDefinition
+from lumen.upkeep.garbage import gc_paused
 
 
 class CompiledMachine(NamedTuple):
@@ -22,9 +23,10 @@ def compiled(definition: MachineDefinition) -> CompiledMachine:
     """The machine compiled, on first use, and kept beside its definition."""
     machine: CompiledMachine | None = definition.__dict__.get("_compiled")
     if machine is None:
-        chart = Chart(definition)
-        planner = MicrostepPlanner(chart)
-        invoked = {name: compiled(other) for name, other in definition.invoked.items()}
-        machine = CompiledMachine(chart, planner, FastPaths(planner), invoked)
+        with gc_paused():  # of what is made here nothing is garbage
+            chart = Chart(definition)
+            planner = MicrostepPlanner(chart)
+            invoked = {name: compiled(other) for name, other in definition.invoked.items()}
+            machine = CompiledMachine(chart, planner, FastPaths(planner), invoked)
         object.__setattr__(definition, "_compiled", machine)  # frozen, and the same for all who hold it
     return machine
