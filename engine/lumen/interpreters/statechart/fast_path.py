@@ -157,7 +157,7 @@ class FastPaths:
     def _path(self, start: Configuration, name: str) -> FastPath | None:
         candidates = start.candidates(name)
         used = referenced_names(source for group in candidates for t in group for source in sources_of(t.definition))
-        if start.eventless or self.planner.chart.has_history or used & {"state", "In"}:
+        if start.eventless or (candidates and self.planner.chart.has_history) or used & {"state", "In"}:
             return None
         uses_event = "event" in used
         if len(candidates) > 1:
