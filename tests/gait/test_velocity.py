@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lumen.interpreters.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, fastest_of, middle
 from lumen.interpreters.gait.legs import other, sign
-from lumen.interpreters.gait.velocity import strides
+from lumen.interpreters.gait.velocity import MOST_CHANGE, strides
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import JOINTS, LIMIT, START
 from tests.simulation.bodies import shipped
@@ -114,6 +114,16 @@ def test_what_is_too_fast_keeps_its_way() -> None:
     assert slow.x / slow.theta == pytest.approx(-0.5)
     assert hypot(slow.x / most.x, slow.theta / most.theta) == pytest.approx(1.0)
     assert Velocity(0.01, 0.0, 0.0).within(PACE) == (0.01, 0.0, 0.0)
+
+
+def test_a_speed_changes_step_by_step_and_gets_there() -> None:
+    most, speed = fastest(PACE), Velocity(0.1, 0.0, 0.3)
+    there = Velocity(-9.0, 0.0, 0.0)
+    for _ in range(7):
+        before, speed = speed, speed.toward(there, PACE)
+        change = hypot(*((b - a) / limit for a, b, limit in zip(before, speed, most, strict=True)))
+        assert change < MOST_CHANGE + 1e-9
+    assert speed == pytest.approx((-most.x, 0.0, 0.0))
 
 
 def test_how_fast_a_body_goes_is_told_by_its_base() -> None:

@@ -42,7 +42,7 @@ class Gait:
     """Steps until the robot stands at `goal`; `feet` and `goal` stand in the same frame, any frame on the ground.
 
     Where `goal` is a velocity it steps at that speed until stopped, or until `goal` is no speed at all; `goal` may be
-    changed under way, and the next step that is planned obeys.
+    changed under way, and the steps that are planned next obey, little by little.
 
     `angles` begin the walk: what the legs do on these feet before the first step. Then `tick` says every `dt` [s] what
     they do next, and `heading` is the torso's [rad], as planned. It knows where the feet are from the legs' measured
@@ -62,9 +62,9 @@ class Gait:
         self.goal: Pose | Velocity = goal
         self.feet, self.pace, self.steps = feet, pace, 0
         self._com, self._dt = com, dt
+        self._stopping, self._speed = False, Velocity()
         self._side = first_side(goal.seen_from(middle(feet)) if isinstance(goal, Pose) else Pose(*goal))
         self._most = 2 * len(self.coming) + _MORE if isinstance(goal, Pose) else inf
-        self._stopping = False
         self._north: float | None = None
         self._mass = self._dcm = self._zmp = between(feet, self.pace)
         self.heading, self._offset = middle(feet).theta, np.array(_TORSO_TO_MASS)
@@ -91,7 +91,7 @@ class Gait:
     def coming(self) -> list[Footstep]:
         """The steps that are left, as planned now; of a walk that goes on and on, the next one and one that ends it."""
         if isinstance(self.goal, Velocity):
-            step = strides(self.feet, self.goal, self._side, self.pace, 1)[0]
+            step = strides(self.feet, self._speed, self._side, self.pace, 1)[0]
             return [step, self._beside(step.pose, other(step.side))]
         return footsteps(self.feet, self.goal, self._side, self.pace)
 
@@ -170,6 +170,8 @@ class Gait:
         return hypot(way.x, way.y) < GOAL_TOLERANCE and abs(way.theta) < GOAL_HEADING_TOLERANCE and side_by_side
 
     def _step(self, *, standing: bool) -> GaitPhase:
+        if isinstance(self.goal, Velocity):
+            self._speed = self._speed.toward(self.goal, self.pace) if any(self.goal) else Velocity()
         return self._planner.step(self.feet, self._next(), self._dcm, self._zmp, standing=standing)
 
     def _rest(self) -> GaitPhase:
@@ -180,7 +182,7 @@ class Gait:
         if self._stopping:
             return [self._closing()]
         if isinstance(self.goal, Velocity) and any(self.goal):
-            return strides(self.feet, self.goal, self._side, self.pace, _FORESIGHT)
+            return strides(self.feet, self._speed, self._side, self.pace, _FORESIGHT)
         steps = self.coming[:_FORESIGHT]
         ends = self.steps >= self._most or self._arrived({**self.feet, self._side: steps[0].pose})
         return steps[:1] if ends else steps

@@ -10,6 +10,9 @@ from lumen.interpreters.gait.poses import Pose
 from lumen.language.robots import Body
 from lumen.language.roles import BaseKind
 
+MOST_CHANGE = 0.3
+"""From step to step a speed changes by that part of the pace's greatest at most: who turns round at once stumbles."""
+
 
 class Velocity(NamedTuple):
     """Forward and to the left [m/s], turning to the left [rad/s], as the robot sees it; nothing at all is to stand."""
@@ -20,9 +23,19 @@ class Velocity(NamedTuple):
 
     def within(self, pace: GaitParameters) -> "Velocity":
         """This way at this speed, or at the greatest of that pace."""
-        most = fastest(pace)
-        haste = hypot(*(part / limit for part, limit in zip(self, most, strict=True)))
+        haste = self._haste(pace)
         return Velocity(*(part / max(1.0, haste) for part in self))
+
+    def toward(self, goal: "Velocity", pace: GaitParameters) -> "Velocity":
+        """How fast to go a step later where `goal` is wanted."""
+        wanted = goal.within(pace)
+        change = Velocity(*(there - here for here, there in zip(self, wanted, strict=True)))
+        part = MOST_CHANGE / max(MOST_CHANGE, change._haste(pace))
+        return Velocity(*(here + part * more for here, more in zip(self, change, strict=True)))
+
+    def _haste(self, pace: GaitParameters) -> float:
+        """This speed as a factor of the greatest of that pace."""
+        return hypot(*(part / limit for part, limit in zip(self, fastest(pace), strict=True)))
 
 
 def fastest(pace: GaitParameters) -> Velocity:

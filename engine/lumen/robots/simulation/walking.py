@@ -116,12 +116,15 @@ class WalkController:
         self._walking = WalkActivity(self, gait, now)
         return self._walking
 
-    def pace(self, way: Pose | Velocity) -> GaitParameters:
-        """Gently with hot motors; briskly only where a speed is asked for that takes it: a place asks for truth."""
+    def pace(self, way: Pose | Velocity, now: GaitParameters | None = None) -> GaitParameters:
+        """Gently with hot motors; briskly only where a speed is asked for that takes it: a place asks for truth.
+
+        A walk that is brisk `now` stays so: who changes to and fro between the two stumbles.
+        """
         usual, gentle, brisk, _ = self._paces
         if self._hot():
             return gentle
-        return brisk if isinstance(way, Velocity) and way.within(usual) != way else usual
+        return brisk if isinstance(way, Velocity) and (now == brisk or way.within(usual) != way) else usual
 
     def measured(self) -> dict[str, float]:
         """Where the encoders say the legs' joints are [rad]."""
@@ -166,7 +169,7 @@ class WalkActivity:
         goes_on = alive and isinstance(self._gait.goal, Velocity)
         if goes_on:
             self._gait.goal = velocity
-            self._gait.hasten(self._walker.pace(velocity))
+            self._gait.hasten(self._walker.pace(velocity, self._gait.pace))
         return goes_on
 
     def advance(self, now: float) -> bool:
