@@ -15,6 +15,7 @@ from starlette.staticfiles import StaticFiles
 
 from lumen.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFastError
 from lumen.console.commands import Commands, PageCommand
+from lumen.console.fleet_pages import FleetPages
 from lumen.console.jobs import Jobs
 from lumen.console.known_robot import KnownRobot, iso_now
 from lumen.console.orders import NEEDS, REST
@@ -26,6 +27,7 @@ from lumen.console.sights import STREAM, Sights
 from lumen.console.streams import Listener, Streams, positions_in
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
+from lumen.loading.files import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
 _ID = re.compile(r"[A-Za-z0-9._:-]{1,100}")
@@ -35,7 +37,7 @@ class Site:
     """Answers requests from a watch, of the project in `root`; `app` is what serves them."""
 
     def __init__(self, watch: Watch, access: Access, root: Path) -> None:
-        self.watch, self.access = watch, access
+        self.watch, self.access, self._root = watch, access, root
         self.streams, self.reception = Streams(watch), Reception(watch, access)
         self.commands = Commands(watch, self.streams)
         jobs = Jobs(root)
@@ -45,11 +47,13 @@ class Site:
                 Route("/", self._shell),
                 Route("/robot/{robot}", self._shell),
                 Route("/robot/{robot}/{page}", self._shell),
+                Route("/fleet", self._shell),
                 Route("/api/now", self._now),
                 Route("/api/events", self._events),
                 Route("/api/commands", self._command, methods=["POST"]),
                 Route("/api/session", self._session, methods=["POST", "DELETE"]),
                 *past.routes,
+                *FleetPages(self.reception).routes,
                 *self.sights.routes,
                 Mount("/pages", StaticFiles(directory=PAGES)),
             ],
@@ -76,7 +80,7 @@ class Site:
         full = person.role > Role.NOBODY
         robots = [view.to_json(full=full) for _, view in sorted(self.watch.robots.items())]
         told = {"role": person.role.word, "name": person.name, "time": iso_now(), "bus": self.watch.link.trouble}
-        return as_json({"robots": robots, **told})
+        return as_json({"robots": robots, **told, "fleet": (self._root / FLEET_FILE).is_file()})
 
     async def _events(self, request: Request) -> Response:
         full = self.reception.person(request).role > Role.NOBODY

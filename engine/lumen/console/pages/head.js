@@ -58,6 +58,7 @@ function Links({ name, several }) {
     ${several && html`<li><a href="/">${t("page.wall")}</a></li>`}
     ${PAGES.map((page) => html`<li><a href=${page ? `${base}/${page}` : base}
       aria-current=${page === lumen.page ? "page" : null}>${t(`page.${page || "now"}`)}</a></li>`)}
+    ${live.fleet && html`<li><a href="/fleet">${t("page.fleet")}</a></li>`}
     <li><a href="${base}/subtitles" target="_blank">${t("page.subtitles")}</a></li></ul></nav>`;
 }
 

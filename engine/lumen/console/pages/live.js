@@ -7,7 +7,7 @@ import { redraw } from "./ui.js";
 const AGAIN = 500, ANSWER = 2500, BEFORE = 600, MOST = 300; // [ms], [ms], entries, entries
 
 export const live = {
-  state: "connecting", since: Date.now(), role: null, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
+  state: "connecting", since: Date.now(), role: null, fleet: false, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
 };
 const seen = new Map(), heard = new Set();
 let stream = null, timer = 0;
@@ -47,6 +47,7 @@ export async function connect() {
   try {
     const now = await get("/api/now", {}, ANSWER);
     live.role = now.role ?? "author";
+    live.fleet = now.fleet ?? false;
     live.skew = Date.parse(now.time) - Date.now();
     live.robots.clear();
     now.robots.forEach(took);

@@ -1,0 +1,52 @@
+"""The paths about many houses: how they are, and what stops a rollout; asked of the centre on the console's bus."""
+
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from lumen.app.fleet.keys import ORDER
+from lumen.console.people import Role
+from lumen.console.requests import DeniedError, Reception, as_json
+from lumen.errors import BusError
+
+ANSWER_TIMEOUT = 5.0
+"""How long a centre may take [s]."""
+DECISIONS = ("pause", "go", "abort")
+
+
+class FleetPages:
+    """Answers from what a centre says."""
+
+    def __init__(self, reception: Reception) -> None:
+        self._reception = reception
+        self.routes = [
+            Route("/api/fleet", self._fleet),
+            Route("/api/fleet", self._decide, methods=["POST"]),
+        ]
+
+    async def _fleet(self, request: Request) -> Response:
+        self._reception.person(request, Role.OPERATOR)
+        return as_json(await self._asked({"ask": "status"}))
+
+    async def _decide(self, request: Request) -> Response:
+        person = self._reception.person(request, Role.OPERATOR)
+        data = await self._reception.posted(request)
+        decision = data.get("decision")
+        if decision not in DECISIONS:
+            raise DeniedError(400, f"`decision` is one of {', '.join(DECISIONS)}")
+        return as_json(await self._asked({"ask": decision, "by": person.name or person.role.word}))
+
+    async def _asked(self, body: dict[str, Any]) -> dict[str, Any]:
+        try:
+            said = await self._reception.watch.exchanges.ask(ORDER, body, ANSWER_TIMEOUT)
+        except BusError:
+            raise DeniedError(
+                503, "no centre of a fleet answers on this bus: start it with `lumen fleet serve`"
+            ) from None
+        if not isinstance(said, dict):
+            raise DeniedError(503, "the centre answers nothing that can be shown")
+        if not said.get("ok"):
+            raise DeniedError(409, str(said.get("reason")))
+        return said

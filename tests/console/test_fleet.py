@@ -1,0 +1,95 @@
+"""Many houses in the console: houses, robots, the steps of a rollout, and its stop."""
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.app.reaching import Reached
+from lumen.buses.memory import MemoryBus
+from lumen.console.people import Role
+from lumen.console.serving import Console
+from tests.console.pages import Browser
+from tests.console.viewer import WAIT, Viewer
+from tests.fetched import fetched
+from tests.fleet.houses import changed
+from tests.fleet.test_centre import PLAN, Hall
+from tests.waiting import until
+
+pytestmark = [pytest.mark.slow]
+
+
+class Watched:
+    """A centre with its robots, whose time goes by on a thread, and a console on its bus."""
+
+    def __init__(self, folder: Path) -> None:
+        self.hall, self._ending = Hall(folder), threading.Event()
+
+        def reach() -> Reached:
+            return Reached(MemoryBus(f"fleet-{folder.name}"), "nao1", "command", "stop")
+
+        self.console = Console(reach, self.hall.root, "127.0.0.1", 0, pins={Role.OPERATOR: "12345"})
+        self.browser = Browser(self.console.address)
+        self._threads = [threading.Thread(target=each) for each in (self._live, self.console.run)]
+        for thread in self._threads:
+            thread.start()
+
+    def _live(self) -> None:
+        while not self._ending.wait(0.05):
+            self.hall.look()
+
+    def close(self) -> None:
+        self._ending.set()
+        self.console.end()
+        for thread in self._threads:
+            thread.join()
+        self.hall.served.close()
+
+
+@pytest.fixture
+def watched(tmp_path: Path) -> Iterator[Watched]:
+    found = Watched(tmp_path)
+    yield found
+    found.close()
+
+
+def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched: Watched) -> None:
+    address, bearer = watched.console.address, {"Authorization": "Bearer 12345"}
+    assert watched.browser.get("/api/fleet").status == 401
+    assert watched.browser.post("/api/fleet", {"decision": "abort"}).status == 401
+    until(lambda: watched.browser.get("/api/fleet", **bearer).status == 200, WAIT)
+    assert watched.browser.post("/api/fleet", {"decision": "rollout"}, **bearer).status == 400
+    answer = watched.browser.post("/api/fleet", {"decision": "abort"}, **bearer)
+    assert (answer.status, answer.data["reason"]) == (409, "no rollout is under way")
+
+    viewer.open(address, "fleet", ready="main button")
+    viewer.run(
+        "return fetch('/api/session', {method: 'POST', headers: {'Content-Type': 'application/json'},"
+        " body: JSON.stringify({pin: '12345', name: 'Ani'})})"
+    )
+    hash = watched.hall.publish(changed(watched.hall.root))
+    watched.hall.ask("rollout", bundle=hash, **{**PLAN, "pause": 3600.0})
+    until(lambda: watched.hall.have(hash) == 1, WAIT)
+    viewer.driver.get(address)  # a centre without a robot of its own begins with its fleet
+    viewer.shows("Many houses", "main h1")
+    viewer.shows("demo-1 at most 1 robots under way", ".steps")
+    viewer.shows(hash[:12], ".house")
+    viewer.shows("6 of 6 robots are there", "main")
+    assert viewer.all("rest-button[main]")
+    viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))
+    assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
+    viewer.click(".rollout .actions button.strong")
+    viewer.shows("Let all robots go back?", "dialog")
+    viewer.click("dialog button.strong")
+    viewer.shows("aborted", ".rollout")
+    viewer.shows("by Ani", ".rollout")
+    until(lambda: watched.hall.have(hash) == 0, WAIT)
+    assert viewer.complaints() == []
+
+
+def test_where_no_centre_is_the_page_says_so(watched: Watched) -> None:
+    watched.hall.served._desk.close()
+    answer = watched.browser.get("/api/fleet", Authorization="Bearer 12345")
+    assert answer.status == 503
+    assert "no centre of a fleet answers" in answer.data["reason"]
