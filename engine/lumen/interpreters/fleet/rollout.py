@@ -170,8 +170,8 @@ def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRo
     """
     target = rollout.plan.steps[rollout.at]
     room = allowed(rollout.plan, rollout.at, fleet) - len({*state.exposed, *rollout.assigned})
-    missing = [robot for robot in fleet.members(target) if robot not in rollout.assigned]
-    there = [robot for robot in missing if robot not in state.pinned]
+    taken = {*rollout.assigned, *state.pinned}
+    there = [robot for robot in fleet.members(target) if robot not in taken]
     if target.share and target.share < 1.0:
         there = [robot for robot in _spread(there) if fresh(heard, robot, now)]
         room = min(room, _size(target, fleet) - len(rollout.assigned))

@@ -1,0 +1,85 @@
+"""What a centre needs for so many robots: bytes of a digest and of an order, processor time of each, and of a rollout.
+
+    python benchmarks/fleet_centre.py --robots 20,200,10000
+
+Presences as robots tell them go into a centre on a bus in this process; no broker takes part. Ten robots are a house.
+"""
+
+import argparse
+import json
+import tempfile
+import time
+from pathlib import Path
+
+from lumen.app.fleet.centre import Centre
+from lumen.app.fleet.centre_journal import CentreJournal
+from lumen.app.fleet.kept_bundles import BundleFolder
+from lumen.app.fleet.keys import desired_key, presence_key
+from lumen.app.fleet.signing import Signer, generate
+from lumen.buses.memory import MemoryBus
+from lumen.interpreters.fleet.presence import RobotPresence
+from lumen.interpreters.fleet.rollout import begin
+from lumen.interpreters.fleet.state import CentreState
+from lumen.language.fleet import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
+
+HOUSE = 10
+PERIOD = 10.0
+OLD, NEW = "a" * 64, "b" * 64
+MEASURES = {name: FleetMeasure(name) for name in ("falls", "errors", "visits")}
+
+
+def measured(count: int, folder: Path) -> dict[str, float]:
+    """Figures of a fleet of so many robots, in a rollout to a tenth of them and then to all."""
+    houses = max(1, count // HOUSE)
+    rows = {f"h{i}": FleetHouse("amqps://x/", tuple(f"nao{j}" for j in range(HOUSE))) for i in range(houses)}
+    plan = RolloutPlan((StepTarget(share=0.1), StepTarget(share=1.0)), 20.0, "falls > 0 || errors > 1.5 * before")
+    fleet = Fleet("amqps://c/", houses=rows, measures=MEASURES, rollout=plan)
+    generate(folder / f"key{count}")
+    bus, now = MemoryBus(), [1_000_000.0]
+    sizes: list[int] = []
+    bus.subscribe(desired_key("h0"), lambda message: sizes.append(len(json.dumps(message.body))))
+    journal = CentreJournal(folder / str(count))
+    signer = Signer(folder / f"key{count}")
+    bundles = BundleFolder(folder / f"{count}/bundles")
+    centre = Centre(fleet, CentreState("one"), journal, bundles, signer, bus, clock=lambda: now[0])
+    digest = 0
+    centre.change(begin(centre.state, fleet, NEW, plan, now[0]), "begins")
+    began, looks = time.process_time(), 0
+    while not (centre.state.rollout and centre.state.rollout.state == "finished"):
+        for name in fleet.robots:
+            bundle = centre.state.wanted.get(name, OLD)
+            counts = {"hours": 12.5, "falls": 0.0, "errors": 3.0, "visits": 120.0}
+            said = RobotPresence(
+                name, bundle, "proved", bundle, "", "", "one", 1, centre.state.version, counts, counts, now[0], now[0]
+            ).to_json()
+            digest = digest or len(json.dumps(said))
+            bus.publish(presence_key(*name.split("/")), said)
+        for _ in range(int(PERIOD)):
+            now[0] += 1.0
+            centre.tick()
+        looks += 1
+    spent = time.process_time() - began
+    return {
+        "robots": HOUSE * houses,
+        "bytes a digest": digest,
+        "digests a second": HOUSE * houses / PERIOD,
+        "kB/s up": HOUSE * houses * digest / PERIOD / 1e3,
+        "bytes an order": max(sizes),
+        "kB/s down": houses * max(sizes) / PERIOD / 1e3,
+        "% of a core": 100.0 * spent / (looks * PERIOD),
+        "kB of journal a rollout": journal.file.stat().st_size / 1e3,
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--robots", default="20,200,2000,10000", help="fleets of so many, by commas")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        rows = [measured(int(count), Path(folder)) for count in options.robots.split(",")]
+    for name in rows[0]:
+        print(f"{name:26}" + "".join(f"{row[name]:12,.1f}" for row in rows))
+
+
+if __name__ == "__main__":
+    main()
