@@ -10,10 +10,14 @@ import pytest
 
 from lumen.app.fleet.bundle import messages_of, packed
 from lumen.app.fleet.house_keys import at_home
+from lumen.app.fleet.installing import all_have, finish
+from lumen.app.fleet.kept_bundles import BundleFolder
+from lumen.app.fleet.memory import AgentMemory, keep, remember
 from lumen.app.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
 from lumen.errors import UsageError
 from lumen.loading.files import FLEET_FILE, fingerprint, read_files
-from tests.fleet.houses import House, changed, ordered
+from lumen.runtime.home import Home, home_of
+from tests.fleet.houses import House, changed, ordered, project
 
 
 @pytest.fixture(scope="session")
@@ -49,7 +53,7 @@ def test_a_bundle_is_fetched_checked_taken_proved_and_installed(house: House) ->
     house.taker.take(house.agent)
     said = house.agent.presence(10.0, {"falls": 0})
     assert (said.bundle, said.state, said.version, said.played, said.same) == (hash, "proved", 1, 9, 7)
-    assert house.taker.installed == [house.taker.running]
+    assert {*house.taker.installed} == {house.taker.running}
     assert FLEET_FILE not in house.taker.offered[-1][0]
 
 
@@ -210,6 +214,50 @@ def test_after_three_weeks_the_last_order_counts(house: House) -> None:
     house.agent.tick()
     house.taker.take(house.agent)
     assert house.agent.running == fingerprint(last)
+
+
+def test_after_a_restart_on_the_files_before_it_is_taken_again(house: House) -> None:
+    before = house.taker.running
+    house.send(changed(house.root))
+    house.taker.take(house.agent)
+    house.taker.running = before
+    house.begin()
+    house.agent.tick()
+    assert house.agent.state == "checking"
+
+
+def test_what_a_run_has_chosen_besides_stays_chosen(house: House) -> None:
+    files = house.taker.known[house.taker.running]
+    files["models/.chosen"] = b"greeter"
+    house.send(changed(house.root))
+    offered, _ = house.taker.offered[-1]
+    assert offered["models/.chosen"] == b"greeter"
+
+
+def test_files_of_several_robots_are_written_when_all_have_them(tmp_path: Path, signer: Signer) -> None:
+    root = project(tmp_path / "house", signer.public)
+    files = changed(root)
+    homes = {name: Home(home_of(root) / name) for name in ("nao1", "nao2")}
+    memories = {name: AgentMemory(counted="x") for name in homes}
+    for name, home in homes.items():
+        home.hold()
+        keep(home, name, memories[name])
+    BundleFolder(home_of(root) / "fleet").keep(files)
+    memories["nao1"].counted = memories["nao1"].writing = fingerprint(files)
+    keep(homes["nao1"], "nao1", memories["nao1"])
+    assert not all_have(root, fingerprint(files), homes)
+    finish(root)
+    assert read_files(root)["behaviors/hello.yaml"] != files["behaviors/hello.yaml"]
+    memories["nao2"].counted = fingerprint(files)
+    keep(homes["nao2"], "nao2", memories["nao2"])
+    assert all_have(root, fingerprint(files), homes)
+    (root / "motions" / "old.yaml").write_text("x: 1\n")
+    finish(root)
+    assert fingerprint(read_files(root)) == fingerprint(files)
+    assert (root / FLEET_FILE).exists()
+    assert remember(homes["nao1"], "nao1").writing == ""
+    for home in homes.values():
+        home.release()
 
 
 def test_counts_begin_anew_with_other_files_and_those_before_are_kept(house: House) -> None:

@@ -1,9 +1,11 @@
 """Three RabbitMQ as `lumen fleet init` describes them: what crosses between them, what does not, and what waits."""
 
 import json
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pika
 import pytest
@@ -46,7 +48,10 @@ class Museums:
         fleet = {
             "key": self.signer.public,
             "centre": {"broker": brokers.fleet.centre},
-            "houses": {name: {"broker": brokers.brokers[name].url, "robots": [*ROBOTS[name]]} for name in HOUSES},
+            "houses": {
+                name: {"broker": f"amqp://127.0.0.1:{brokers.brokers[name].port}/", "robots": [*ROBOTS[name]]}
+                for name in HOUSES
+            },
             "rollout": {"steps": [{"to": "40%"}, {"to": "all"}], "pause": "2s"},
         }
         (self.root / "fleet.yaml").write_text(json.dumps(fleet))
@@ -213,6 +218,54 @@ def test_the_command_says_what_a_broker_has_and_lacks(
     museums.served._desk.close()
     assert main(["fleet", "status", "--project", root, "--bus", own_broker.url(CENTRE)]) == 2
     assert "no centre answers on 127.0.0.1" in capsys.readouterr().err
+
+
+def test_the_commands_publish_roll_out_tell_and_abort(
+    museums: Museums, own_broker: FleetBrokers, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ending = threading.Event()
+
+    def live() -> None:
+        while not ending.wait(0.05):
+            museums.served._desk.tick(time.time())
+            museums.look()
+
+    thread = threading.Thread(target=live)
+    thread.start()
+    where = ["--project", str(museums.root), "--bus", own_broker.url(CENTRE)]
+
+    def told(*words: str) -> Any:
+        assert main(["fleet", *words, *where, "--format", "json"]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    try:
+        key = ["--key", str(museums.folder / "key")]
+        first = told("publish", *key)["bundle"]
+        behavior = museums.root / "behaviors/hello.yaml"
+        behavior.write_bytes(changed(museums.root)["behaviors/hello.yaml"])
+        hash = told("publish", *key)["bundle"]
+        assert hash != first
+        found = told("diff", hash, "--against", first)
+        assert any("greeting" in change or "text" in change for change in found["changes"])
+        told("pin", "museum/nao3")
+        told("rollout", hash, "--first", "40%", "--then", "all", "--pause", "1h", "--abort-if", "")
+        until(lambda: museums.have(hash) == 2, 60.0)
+        status = told("status")
+        assert {"houses", "robots", "rollout"} <= status.keys()
+        assert status["rollout"]["state"] == "going"
+        assert [row["state"] for row in status["robots"]] == ["proved"] * 5
+        assert main(["fleet", "status", *where]) == 0
+        assert "-> 40%: at most 2 robots" in capsys.readouterr().out
+        assert main(["fleet", "rollout", hash, *where]) == 2
+        assert "is going: abort it, or let it end" in capsys.readouterr().err
+        told("abort")
+        until(lambda: museums.have(hash) == 0, 60.0)
+        behavior.write_text("states: {")
+        assert main(["fleet", "publish", *key, *where]) == 2
+        assert "has errors: behaviors/hello.yaml" in capsys.readouterr().err
+    finally:
+        ending.set()
+        thread.join()
 
 
 def test_passwords_stay_when_the_files_are_written_again(own_broker: FleetBrokers, tmp_path: Path) -> None:

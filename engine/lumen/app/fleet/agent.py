@@ -29,7 +29,7 @@ from lumen.interpreters.fleet.presence import (
     WAITING,
     RobotPresence,
 )
-from lumen.loading.files import fingerprint
+from lumen.loading.files import belongs, fingerprint
 from lumen.loading.packaged import MAIN_FILE
 
 MOST_TRIES = 2
@@ -54,7 +54,7 @@ class FileTaker(Protocol):
         """Have files taken between two visits; `answer` hears each verdict."""
 
     def install(self, files: Mapping[str, bytes]) -> None:
-        """Bring the files that run into the project's folder."""
+        """Bring the files that run into the project's folder, as soon as all of the house's robots there have them."""
 
 
 class FleetAgent:
@@ -151,7 +151,7 @@ class FleetAgent:
                 self._save(memory)
         elif (failed := memory.failed.get(goal)) and failed[0] == memory.order:
             self.state, self.trouble = str(failed[1]), str(failed[2])
-        elif memory.done == memory.order:
+        elif memory.done == memory.order and self._taker.running != memory.before:
             self.state, self.trouble = BROKEN, "its files were changed here after it had the bundle"
         else:
             self._go(goal, own=back)
@@ -165,6 +165,7 @@ class FleetAgent:
         for name, count in {HOURS: seconds / 3600.0, **counted}.items():
             memory.now[name] = memory.now.get(name, 0.0) + count
         self._save(memory)
+        self._install()
         at = memory.followed
         name = f"{self._house}/{self._robot}"
         trouble = (self.trouble or next(iter(self._told), ""))[:MAX_TEXT]
@@ -180,13 +181,14 @@ class FleetAgent:
         if self.memory.trying == goal and self.memory.tries >= MOST_TRIES:
             self._fail(ROLLED_BACK, f"the exhibition ended {self.memory.tries} times before it had proved itself")
             return
-        kept = self._folder.files(goal)
-        if kept is None:
+        kept = (own and self._taker.files(goal)) or self._folder.files(goal)
+        if not kept:
             self.state, self.wants = FETCHING, goal
             return
         files = dict(kept)
         try:
             here = self._taker.files(self._taker.running)
+            files |= {path: mark for path, mark in (here or {}).items() if not belongs(path)}  # as --model was said
             if not own:
                 files[MAIN_FILE] = at_home(files.get(MAIN_FILE, b""), (here or {}).get(MAIN_FILE, b""))
         except UsageError as error:
@@ -232,12 +234,17 @@ class FleetAgent:
         memory.writing = self._offered
         self.state = PROVED
         self._save(memory)
-        if (files := self._taker.files(self._offered)) is not None and not self._folder.keep(files):
-            self._taker.install(files)
+        self._install()
         wanted = memory.followed.wanted
         kept = {memory.before, self._offered, self._goal, *memory.names.values(), wanted.removeprefix(NOT)}
         self._folder.prune(kept)
         self._tell(f"bundle {self._goal[:12]} has proved itself")
+
+    def _install(self) -> None:
+        """Have proved files brought into the project's folder, until that is done."""
+        writing = self.memory.writing
+        if writing and (files := self._taker.files(writing)) is not None and not self._folder.keep(files):
+            self._taker.install(files)
 
     def _fail(self, state: str, why: str, goal: str = "") -> None:
         """The robot goes without a bundle until another order comes."""

@@ -27,11 +27,11 @@ class BadBundleError(UsageError):
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """The files as a zip; fleet.yaml is left out."""
+    """The files as a zip; fleet.yaml, and what a run has chosen besides, are left out."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for path, content in sorted(files.items()):
-            if path != FLEET_FILE:
+            if path != FLEET_FILE and belongs(path):
                 entry = zipfile.ZipInfo(path, EPOCH)
                 entry.compress_type = zipfile.ZIP_DEFLATED
                 archive.writestr(entry, content)

@@ -1,13 +1,13 @@
 """The files of a proved bundle, brought into the project's folder as a whole: a crash between is made good."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory, keep, memory_file, remember
-from lumen.loading.files import FLEET_FILE, read_files
+from lumen.loading.files import FLEET_FILE, belongs, read_files
 from lumen.runtime.home import Home, home_of
 
 FOLDER = "fleet"
@@ -20,32 +20,50 @@ def bundle_folder(root: Path) -> BundleFolder:
 
 def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
     """Make the project's files these; those that lie there then. Links and fleet.yaml stay as they are."""
-    there = read_files(root)
-    for path, content in files.items():
-        if path != FLEET_FILE and there.get(path) != content:
+    there, wanted = _own(read_files(root)), _own(files)
+    for path, content in wanted.items():
+        if there.get(path) != content:
             _write(root / path, content)
-    for path in {*there} - {*files, FLEET_FILE}:
+    for path in {*there} - {*wanted}:
         with suppress(OSError):
             (root / path).unlink()
     return read_files(root)
 
 
+def all_have(root: Path, hash: str, robots: Iterable[str]) -> bool:
+    """Whether all of these robots, whose exhibitions share the folder, were last known to run these files."""
+    known = {robot: memory for _, robot, memory in _memories(root)}
+    return all(robot in known and known[robot].counted == hash for robot in robots)
+
+
 def finish(root: Path) -> None:
     """Bring files into the project's folder that were on their way there when the process ended."""
-    home = Home(home_of(root))
-    for file in sorted(home.folder.glob(memory_file("*"))):
-        robot = file.name.removeprefix("fleet-").removesuffix(".json")
-        memory = remember(home, robot)
-        if memory.writing and (files := bundle_folder(root).files(memory.writing)) is not None:
+    found = list(_memories(root))
+    for home, robot, memory in found:
+        hash = memory.writing
+        if not hash or any(other.writing != hash and other.counted != hash for _, _, other in found):
+            continue
+        if (files := bundle_folder(root).files(hash)) is not None:
             install(root, files)
-        if memory.writing:
-            written(home, robot, memory)
+        written(home, robot, memory)
 
 
 def written(home: Home, robot: str, memory: AgentMemory) -> None:
     """The files are where they belong."""
     memory.writing = ""
     keep(home, robot, memory)
+
+
+def _memories(root: Path) -> Iterator[tuple[Home, str, AgentMemory]]:
+    """What the agents of a folder's robots keep, each with its home and its robot's name."""
+    for file in sorted(home_of(root).rglob(memory_file("*"))):
+        home, robot = Home(file.parent), file.name.removeprefix("fleet-").removesuffix(".json")
+        yield home, robot, remember(home, robot)
+
+
+def _own(files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Those that a bundle may change."""
+    return {path: content for path, content in files.items() if path != FLEET_FILE and belongs(path)}
 
 
 def _write(path: Path, content: bytes) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from lumen.app.fleet.agent import FleetAgent
 from lumen.app.fleet.counter import MeasureCounter
-from lumen.app.fleet.installing import bundle_folder, install, written
+from lumen.app.fleet.installing import all_have, bundle_folder, install, written
 from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, presence_key
 from lumen.app.fleet.memory import keep, remember
 from lumen.app.live_behavior import LiveBehavior
@@ -59,6 +59,10 @@ class ReloadTaker:
         self._reloader.offer(files, answer)
 
     def install(self, files: Mapping[str, bytes]) -> None:
+        project, hash = self._behavior.loop.project, fingerprint(files)
+        if project.told_apart and not all_have(self._root, hash, project.robots):
+            return
+
         def change() -> Mapping[str, bytes]:
             there = install(self._root, files)
             self.installed()
@@ -139,7 +143,7 @@ def fleet_part(
 ) -> FleetPart | None:
     """The agent of the robot whose behaviour that is; None where it belongs to no fleet, or files are left alone."""
     project = behavior.project
-    found = fleet_of(root, getattr(project, "house", ""), project.robot)
+    found = fleet_of(root, project.house, project.robot)
     if found is None or home is None:
         return None
     if reloader.mode == "off":
