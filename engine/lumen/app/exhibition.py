@@ -124,14 +124,16 @@ class Exhibition:
                     self.node.robot.foreign.record = directory.records.write
                     keep_hold(self.node.robot.server.hold, directory.home.folder)
             if shared:
-                log = DeduplicationLog(home_of(directory.root) / DEDUPLICATION_FILE)
+                log = DeduplicationLog(home_of(directory.root, project.one_of_several) / DEDUPLICATION_FILE)
                 self.node.robot.server.recall(log)
 
     def _alert(self, desk: AlertDesk, bus: ValidatedBus, records: RunRecords) -> AlertPart:
         """Have people told of what goes wrong."""
         root = Path(self.node.project.root)
         parts, presence = (ROBOT_PART, BRAIN), self.node.presence
-        watch = AlertPart(desk, bus, home_of(root), parts, presence, lambda: records.trouble)
+        watch = AlertPart(
+            desk, bus, home_of(root, self.node.project.one_of_several), parts, presence, lambda: records.trouble
+        )
         self.node.loop.observers.append(watch)
         self.node.add(watch, *([RefusalPart(self.reloader, desk)] if self.reloader else []))
         return watch

@@ -36,7 +36,7 @@ def forked(journal: JournalWriter, running: Project, body: Mapping[str, Any]) ->
 
 
 def _forked(journal: JournalWriter, running: Project, body: Mapping[str, Any]) -> dict[str, Any]:
-    deadline, kept = monotonic() + PATIENCE, KeptBundles(Path(running.root))
+    deadline, kept = monotonic() + PATIENCE, KeptBundles(Path(running.root), running.one_of_several)
 
     def hurry() -> None:
         if monotonic() > deadline:

@@ -96,10 +96,16 @@ class Node:
     def claim(self) -> None:
         """Be what it is to be. Raises UsageError where another process is that already."""
         self._asked = time.monotonic()
-        while self.presence and not self.presence.settled:
-            self.presence.tick()
-            self._claim(self.presence)
+        while self.claims():
             time.sleep(CLAIM_INTERVAL)
+
+    def claims(self) -> bool:
+        """Whether it still waits for others to say that they are what it is to be; raises what `claim` raises."""
+        if self.presence is None or self.presence.settled:
+            return False
+        self.presence.tick()
+        self._claim(self.presence)
+        return not self.presence.settled
 
     def begin(self) -> None:
         """Begin the parts that need nobody else, once it has claimed what it is. Raises what `claim` raises."""

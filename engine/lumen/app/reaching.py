@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from lumen.app.one_robot import one_robot, robots_of
 from lumen.bus import connect
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
@@ -14,47 +15,66 @@ from lumen.loading.project import main_settings
 from lumen.loading.settings import Settings
 from lumen.ports import Bus
 from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
-from lumen.runtime.home import ADDRESS_FILE, Home, home_of, homes
+from lumen.runtime.home import ADDRESS_FILE, Home, homes, homes_of
 
 
 class Reached(NamedTuple):
-    """A running exhibition's bus, its robot, the keys under which that takes commands, and its broker's address."""
+    """A running exhibition's bus, its robot, the keys under which that takes commands, and its broker's address.
+
+    `home` is what the robot's own folder is called where the project has `robots:`.
+    """
 
     bus: Bus
     robot: str
     command: str
     stop: str
     broker: str = ""
+    home: str = ""
 
 
-def reach_exhibition(project: str | None, bus: str | None) -> Reached:
+def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> Reached:
     """The bus of the exhibition of a project (default: the one here or above), which `bus` may be the address of.
+
+    Of several robots it is that of `robot`; without a name of the first that runs here, else of the first.
 
     Raises BusError, saying what to do, where none is found.
     """
     root = find_project(project)
-    found = _running(root)
+    wanted = one_robot(root, robot)
+    found = _running(root, wanted if robot else "")
+    home = _home(found) or wanted
     url = bus or os.environ.get("LUMEN_BUS") or ("" if found is None else str(found.get("bus", "")))
     if url and not url.startswith("memory:"):
-        return Reached(connect(url, sender=TERMINAL), _robot(root, found), *_keys(root, found), url)
+        return Reached(connect(url, sender=TERMINAL), _robot(root, found, home), *_keys(root, found, home), url, home)
     if found is None:
-        settings = main_settings(root)
+        settings = main_settings(root, home)
         if settings and not settings.bus.startswith("memory:"):
-            return Reached(connect(settings.bus, sender=TERMINAL), settings.robot, *_keys(root, None), settings.bus)
+            keys = _keys(root, None, home)
+            return Reached(connect(settings.bus, sender=TERMINAL), settings.robot, *keys, settings.bus, home)
         raise BusUnreachableError(
             f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or say --bus URL"
         )
-    return Reached(LocalBusClient(LocalAddress.of(found), TERMINAL), _robot(root, found), *_keys(root, found))
+    opened = LocalBusClient(LocalAddress.of(found), TERMINAL)
+    return Reached(opened, _robot(root, found, home), *_keys(root, found, home), home=home)
 
 
-def _running(root: Path) -> dict[str, Any] | None:
+def robots_meant(project: str | None) -> list[str]:
+    """The robots of `robots:` that run on this machine, all of them where none does; none for one `robot:`."""
+    root = find_project(project)
+    robots = robots_of(root, None)
+    return [name for name in robots if _running(root, name)] or list(robots)
+
+
+def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
     """What the exhibition of this project that runs on this machine has said of itself; None where none runs.
+
+    Of several robots it is that of `robot`, where one is named.
 
     An address that a killed run has left behind counts for nothing: nobody holds its home any more.
     """
-    for home in (Home(home_of(root)), *homes()):
+    for home in (*homes_of(root), *homes()):
         found = _said(home)
-        if found and _same_folder(found.get("root"), root) and home.held():
+        if found and robot in ("", found.get("robot")) and _same_folder(found.get("root"), root) and home.held():
             return found
     return None
 
@@ -76,19 +96,24 @@ def _same_folder(one: object, other: Path) -> bool:
         return False
 
 
-def _robot(root: Path, found: dict[str, Any] | None) -> str:
+def _home(found: dict[str, Any] | None) -> str:
+    """What the folder of the robot that runs is called, empty where it has none of its own."""
+    return str(found.get("home", "")) if found else ""
+
+
+def _robot(root: Path, found: dict[str, Any] | None, home: str) -> str:
     """The robot's name, as the exhibition says, else as lumen.yaml does despite its errors."""
     if found and isinstance(found.get("robot"), str):
         return str(found["robot"])
-    settings = main_settings(root)
+    settings = main_settings(root, home)
     return settings.robot if settings else Settings.robot
 
 
-def _keys(root: Path, found: dict[str, Any] | None) -> tuple[str, str]:
+def _keys(root: Path, found: dict[str, Any] | None, home: str) -> tuple[str, str]:
     """The keys for commands and for what stops, as the exhibition says, else as lumen.yaml does despite its errors."""
     if found and isinstance(found.get("command"), str) and isinstance(found.get("stop"), str):
         return found["command"], found["stop"]
-    settings = main_settings(root)
+    settings = main_settings(root, home)
     robot = settings.robot if settings else "NAO"
     rows = settings.routes if settings else {}
     command, stop = (

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.answering import WHY, WHY_NOT, answer
+from lumen.app.one_robot import one_robot
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.errors import JournalError, UsageError
 from lumen.interpreters.explaining import RecordedStep
@@ -23,15 +24,20 @@ MAX_FILES = 8
 """Of a run that many files before the moment asked about are read, some hours each."""
 
 
-def answer_from_journal(project: str | None, question: str, what: str, at: str | None, why: str) -> dict[str, Any]:
+def answer_from_journal(
+    project: str | None, question: str, what: str, at: str | None, why: str, robot: str = ""
+) -> dict[str, Any]:
     """The answer of the run that was begun last before `at` (ISO 8601).
 
     Raises UsageError, saying what to do, where there is none; `why` says why no running exhibition was asked.
     """
     root = find_project(project)
-    steps = list(recalled(root, datetime.fromisoformat(at).timestamp() if at else None))
+    robot = one_robot(root, robot)
+    steps = list(recalled(root, datetime.fromisoformat(at).timestamp() if at else None, robot))
     if not steps:
-        raise UsageError(f"{why}; and its journal in {home_of(root) / JOURNAL_FOLDER} holds nothing of that time")
+        raise UsageError(
+            f"{why}; and its journal in {home_of(root, robot) / JOURNAL_FOLDER} holds nothing of that time"
+        )
     return answer(steps, question, what, at)
 
 
@@ -49,18 +55,18 @@ def why_not(what: str, path: str | None = None, at: str | None = None) -> dict[s
     return answer_from_journal(path, WHY_NOT, what, at, NOT_ASKED)
 
 
-def recalled(root: Path, until: float | None = None) -> Iterator[RecordedStep]:
+def recalled(root: Path, until: float | None = None, robot: str = "") -> Iterator[RecordedStep]:
     """The steps of the project's last run that began before `until` [s since 1970, in UTC], as far as they are kept.
 
     A story lives at a time of its own: it is meant where nothing is asked of a time, or nobody's visit was before that.
     """
-    found = sorted(headers(home_of(root) / JOURNAL_FOLDER), key=lambda row: row[1].began)
+    found = sorted(headers(home_of(root, robot) / JOURNAL_FOLDER), key=lambda row: row[1].began)
     visits = [row for row in found if until is not None and not row[1].story and row[1].began <= until]
     played = [row for row in found[-1:] if until is None or row[1].story]
     chosen = visits or (played and found)
     run = chosen[-1][1].run if chosen else ""
     files = sorted((row for row in chosen if row[1].run == run), key=lambda row: row[1].first)
-    kept = KeptBundles(root)
+    kept = KeptBundles(root, robot)
     replayer, standing = Replayer(kept.machine), _Standing(kept)
     for file, _ in files[-MAX_FILES:]:
         try:

@@ -5,9 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from lumen.app.one_robot import one_robot
 from lumen.errors import ProjectError, UsageError
 from lumen.interpreters.statechart import Snapshot, deserialize
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
 from lumen.loading.own_project import own_project
 from lumen.loading.revisions import files_at
@@ -27,29 +29,31 @@ class Version(NamedTuple):
     snapshot: Snapshot | None = None
 
 
-def version(name: str | None, here: Path | None = None) -> Version:
+def version(name: str | None, here: Path | None = None, robot: str = "") -> Version:
     """The version of that name: `live`, a folder, or a revision of the project `here` (default: this one, or above).
 
-    Without a name it is that project as it stands. Raises UsageError where there is none, and where its files have
+    Without a name it is that project as it stands. Of several robots it is what `robot` has, the first where none is
+    named. Raises UsageError where there is none, and where its files have
     errors.
     """
     folder = name is not None and name != LIVE and os.path.exists(name)
     root = own_project(name) if folder else here or own_project()
+    robot = one_robot(root, robot)
     kept: StoredSnapshot | None = None
     if name is None or folder:
         files: Mapping[str, bytes] = read_files(root)
     elif name == LIVE:
-        kept, files = _running(root)
+        kept, files = _running(root, robot)
     else:
         files = _revision(root, name)
-    project, diagnostics = check_files(root, files)
+    project, diagnostics = check_files(root, as_robot(files, robot))
     if project is None:
         raise UsageError(f"{name or root} has errors: {ProjectError(diagnostics)}")
     return Version(name or str(root), project, files, deserialize(project.machine, kept.frozen) if kept else None)
 
 
-def _running(root: Path) -> tuple[StoredSnapshot, Mapping[str, bytes]]:
-    home = Home(home_of(root))
+def _running(root: Path, robot: str) -> tuple[StoredSnapshot, Mapping[str, bytes]]:
+    home = Home(home_of(root, robot))
     keeper = SnapshotStore(home)
     kept = keeper.kept()
     if kept is None or not home.held():

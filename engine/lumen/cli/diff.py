@@ -53,7 +53,8 @@ def run(options: argparse.Namespace) -> int:
 def _visits(new: Version) -> ReplayReport:
     """What the new files would have done in the visits of the project here."""
     root = Path(new.project.root)
-    return against(chosen(root, None, all=True).entries(), KeptBundles(root), new.project)
+    robot = new.project.one_of_several
+    return against(chosen(root, None, all=True, robot=robot).entries(), KeptBundles(root, robot), new.project)
 
 
 def _fates(old: Version, new: Version, bound: int) -> MigrationPreview:

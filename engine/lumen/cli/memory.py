@@ -10,7 +10,8 @@ from pathlib import Path
 from lumen.app.asking import OPERATOR_ANSWERS, ask
 from lumen.app.forgetting.files import forget_in
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
-from lumen.cli.reach import reach
+from lumen.app.one_robot import one_robot
+from lumen.cli.reach import configure_robot_name, reach
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
@@ -34,13 +35,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("name", nargs="?", metavar="NAME", help="forget: whom; journal: only what is about them")
     add("--project", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
     add("--bus", metavar="URL", help="forget: where the exhibition runs; default: LUMEN_BUS, then this machine")
+    configure_robot_name(parser)
     add("--limit", metavar="N", type=int, default=50, help="journal: the newest so many entries (default: 50)")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
     root = find_project(options.project)
-    folder = home_of(root)
+    folder = home_of(root, one_robot(root, options.robot_name))
     if options.what == "forget":
         return _forget(options, root, folder)
     file = folder / DATABASE_FILE
@@ -73,7 +75,7 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
     """0 where somebody was forgotten and nothing is left that is in reach; raises UsageError without a name."""
     if not name_key(options.name or ""):
         raise UsageError("say whom: `lumen memory forget NAME`")
-    found, settings = Forgetting(), main_settings(root)
+    found, settings = Forgetting(), main_settings(root, one_robot(root, options.robot_name))
     routes = settings.routes if settings else {}
     broker = _tell_running(options, settings, found)
     forget_in(folder, options.name, found)

@@ -43,12 +43,12 @@ def _asked(options: argparse.Namespace, question: str, at: str | None) -> dict[s
     try:
         reached = reach(options)
     except BusUnreachableError as error:
-        return answer_from_journal(options.project, question, what, at, str(error))
+        return answer_from_journal(options.project, question, what, at, str(error), options.robot_name)
     try:
         body = {"ask": question, "what": what, **({"at": at} if at else {})}
         found: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), body, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     if found.get("kept") == "later":
-        return answer_from_journal(options.project, question, what, at, found["reason"])
+        return answer_from_journal(options.project, question, what, at, found["reason"], options.robot_name)
     return found

@@ -2,7 +2,7 @@
 
 import argparse
 
-from lumen.app.reaching import Reached, reach_exhibition
+from lumen.app.reaching import Reached, reach_exhibition, robots_meant
 
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:
@@ -10,8 +10,19 @@ def configure_reach(parser: argparse.ArgumentParser) -> None:
         "project", nargs="?", metavar="PROJECT", help="whose exhibition; default: the one here or above"
     )
     parser.add_argument("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
+    configure_robot_name(parser)
+
+
+def configure_robot_name(parser: argparse.ArgumentParser) -> None:
+    what = "which of `robots:`; default: all for status, stop and resume, else the first that runs"
+    parser.add_argument("--robot-name", metavar="NAME", default="", help=what)
+
+
+def names_meant(options: argparse.Namespace) -> list[str]:
+    """The robot that is named, else all of the house; one empty name where lumen.yaml has one `robot:`."""
+    return [options.robot_name] if options.robot_name else robots_meant(options.project) or [""]
 
 
 def reach(options: argparse.Namespace) -> Reached:
     """The bus of the exhibition that is meant. Raises BusError, saying what to do, where none is found."""
-    return reach_exhibition(options.project, options.bus)
+    return reach_exhibition(options.project, options.bus, getattr(options, "robot_name", ""))

@@ -23,6 +23,7 @@ from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import writable
 from lumen.formats.recordings.rewriting import recover
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
@@ -83,14 +84,20 @@ def _mark(options: argparse.Namespace, reached: Reached) -> int:
 def _record(options: argparse.Namespace, reached: Reached, span: float | None) -> int:
     root = find_project(options.project)
     bus = reached.bus
-    project, folder = _running_project(root, reached), RecordingsFolder(home_of(root))
+    project, folder = _running_project(root, reached), RecordingsFolder(home_of(root, reached.home))
     view = RobotView(project, lambda text: print(text, file=sys.stderr))
     path = options.file or folder.path / time.strftime(f"%Y-%m-%dT%H-%M-%SZ-recorded{SUFFIX}", time.gmtime())
     try:
         if options.file is None:
             folder.make()
-        first: list[Recorded] = [notes_of(project), *bundle_files(root, [project.hash]), *view.look(time.time())]
-        tape = FileTape(writable(path), folder, first, lambda began: journal_files(root, began, time.time()))
+        first: list[Recorded] = [
+            notes_of(project),
+            *bundle_files(root, [project.hash], reached.home),
+            *view.look(time.time()),
+        ]
+        tape = FileTape(
+            writable(path), folder, first, lambda began: journal_files(root, began, time.time(), reached.home)
+        )
     except OSError as error:
         raise UsageError(f"{path} can't be written: {error.strerror}") from None
     recorder = Recorder(bus, project, [tape], camera=project.record.camera and not options.no_camera, extra=view)
@@ -122,8 +129,8 @@ def _running_project(root: Path, reached: Reached) -> Project:
     kept: dict[str, bytes] | None = None
     with suppress(BusError, TypeError, KeyError):
         status = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
-        kept = SnapshotStore(Home(home_of(root))).files(str(status["bundle"]))
-    project = check_files(root, kept or read_files(root))[0]
+        kept = SnapshotStore(Home(home_of(root, reached.home))).files(str(status["bundle"]))
+    project = check_files(root, as_robot(kept or read_files(root), reached.home))[0]
     if project is None:
         raise UsageError(f"the files of {root} have errors, so it is not known what its messages are: `lumen lint`")
     return project

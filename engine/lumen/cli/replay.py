@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 import lumen
+from lumen.app.one_robot import one_robot
 from lumen.app.replaying.journals import chosen, listed, until
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
@@ -15,6 +16,7 @@ from lumen.app.setup import SPEEDS, set_up
 from lumen.app.versions import version
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
+from lumen.cli.reach import configure_robot_name
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.transcript import Transcript
 from lumen.interpreters.replay.entries import RecordedEntry
@@ -36,25 +38,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--bundle", metavar="DIR", help="with these files: a folder, or a revision such as HEAD~1")
     add("--robot", choices=("recording", "simulation"), help="show it again, by this robot")
     add("--speed", choices=SPEEDS, default="1", help="with --robot: times real time (default: 1)")
+    configure_robot_name(parser)
     configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """1 where anything differs."""
     root = find_project(options.project)
+    robot = one_robot(root, options.robot_name)
     if options.list:
-        return _list(root)
-    journal = chosen(root, options.what, all=options.all)
+        return _list(root, robot)
+    journal = chosen(root, options.what, all=options.all, robot=robot)
     entries = journal.entries()
     if options.until:
         entries = until(entries, options.until)
-    bundles = KeptBundles(root)
+    bundles = KeptBundles(root, robot)
     if options.robot:
         return _show(root, entries, bundles, options)
     if options.bundle is None:
         report = replayed(entries, bundles.machine)
     else:
-        new = version(options.bundle, root).project
+        new = version(options.bundle, root, robot).project
         with progress() as tell:
             report = against(entries, bundles, new, tell=lambda done: tell(done, 0.0, f"{done} visits played"))
     if options.format == "json":
@@ -66,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, options: argparse.Namespace) -> int:
     """A robot does again what was done."""
-    project = lumen.load(root)
+    project = lumen.load(root, robot=one_robot(root, options.robot_name))
     setup = set_up(options.robot, project, options.speed)
     try:
         show(entries, bundles, setup, Transcript(setup.clock.now, lambda: project.machine))
@@ -75,8 +79,8 @@ def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, op
     return 0
 
 
-def _list(root: Path) -> int:
-    for file, header in listed(root):
+def _list(root: Path, robot: str) -> int:
+    for file, header in listed(root, robot):
         when = datetime.fromtimestamp(header.began).strftime("%Y-%m-%d %H:%M:%S")
         what = (
             f"the story {header.story}"

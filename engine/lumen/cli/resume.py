@@ -9,7 +9,7 @@ from lumen.cli.agreeing import agrees
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
-from lumen.cli.reach import configure_reach, reach
+from lumen.cli.reach import configure_reach, names_meant, reach
 from lumen.errors import UsageError
 
 RESUME_TIMEOUT = 10.0
@@ -25,17 +25,25 @@ def run(options: argparse.Namespace) -> int:
     """0 once it may move, 1 where it could not or nobody wants it."""
     if options.format == "json" and not options.yes:
         raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
+    codes = []
+    for name in names_meant(options):
+        options.robot_name = name
+        codes.append(_resume(options))
+    return max(codes)
+
+
+def _resume(options: argparse.Namespace) -> int:
     reached = reach(options)
     try:
         ask = {"type": "motion", "method": "stopped"}
         stopped = answered(reached.bus, reached.stop, ask, RESUME_TIMEOUT)
-        if not options.yes and not _sure(stopped):
+        if not options.yes and not _sure(stopped, options.robot_name or "the robot"):
             print("it stays as it is")
             return 1
         answer = answered(reached.bus, reached.stop, resume_body(person()), RESUME_TIMEOUT)
     finally:
         reached.bus.close()
-    return told(options, answer, "the robot may move again")
+    return told(options, answer, f"{options.robot_name or 'the robot'} may move again")
 
 
 def _here(since: object) -> str:
@@ -46,9 +54,9 @@ def _here(since: object) -> str:
         return str(since)
 
 
-def _sure(stopped: Any) -> bool:
+def _sure(stopped: Any, robot: str) -> bool:
     """Whether whoever is asked says yes; who stopped it is said before."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
-    print(f"{by} stopped the robot at {_here(since)}." if by else "Nobody has stopped the robot.")
+    print(f"{by} stopped {robot} at {_here(since)}." if by else f"Nobody has stopped {robot}.")
     otherwise = "resume asks first, but this is not a terminal: say --yes if there is room around the robot"
     return agrees("It may stand up at once. Is there room around it?", otherwise)

@@ -8,13 +8,11 @@ from contextlib import contextmanager, nullcontext, suppress
 from functools import partial
 from pathlib import Path
 
-from lumen.app.alerts.alert import Origin
-from lumen.app.alerts.desk import AlertDesk
 from lumen.app.exhibition import Exhibition
 from lumen.app.fleet.installing import finish as finish_installing
 from lumen.app.loudspeaker import Loudspeaker
-from lumen.app.narrator import Narrator
 from lumen.app.node import Node
+from lumen.app.one_robot import robots_of
 from lumen.app.parts.console import ConsolePart
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.processes.assembling import ProcessOptions, assemble
@@ -24,7 +22,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.reload.reloader import MODES
 from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
-from lumen.app.stories import home_of, stories_of
+from lumen.app.stories import home_of
 from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
@@ -34,17 +32,16 @@ from lumen.cli.main import ready
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import Performance
 from lumen.cli.printing import clock_time
+from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, WELL, RunVerdict
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
 from lumen.errors import BusError, ModuleError, RobotError, UsageError
-from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.packaged import find_project
-from lumen.loading.units import seconds
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
@@ -64,6 +61,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
     add("--story", metavar="STORY", help="a scripted visitor of behaviors/stories/; without one, you type what you say")
     configure_model(parser)
+    add("--robot-name", metavar="NAMES", help="which of the robots of `robots:`, a list; default: all of them")
     add("--robot", choices=ROBOTS, default="simulation", help="who performs it (default: simulation)")
     add(
         "--only",
@@ -92,8 +90,10 @@ def run(options: argparse.Namespace) -> int:
     named = () if options.story is None else (options.story,)
     root = find_project(options.project or home_of(named))
     use_model(options.model, [root])
-    parts = parts_of(options.only, options.robot)
-    run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
+    parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)
+    if len(robots) > 1:
+        return _house(options, root, robots, parts)
+    run_directory = RunDirectory(root, next(iter(robots), ""), guest=bool(parts) and "brain" not in parts)
     told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, complain)
     try:
         with told, one_object(options.format) as say, nullcontext() if options.speed == "max" else _going_first():
@@ -107,15 +107,29 @@ def run(options: argparse.Namespace) -> int:
         run_directory.close(forget=False)
 
 
+def _house(options: argparse.Namespace, root: Path, robots: Sequence[str], parts: tuple[str, ...]) -> int:
+    """Run several robots in this process."""
+    from lumen.cli.house_run import HouseRun  # nobody else needs it
+
+    with one_object(options.format) as say, nullcontext() if options.speed == "max" else _going_first():
+        house = HouseRun(options, root, robots, parts)
+        try:
+            verdict = house.run()
+        finally:
+            house.close()
+        say(verdict.to_json(str(root.absolute()), options.story))
+        return verdict.code
+
+
 def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> RunVerdict:
     finish_installing(root)
     project = startup_project(root, run_directory, last_good=options.last_good, warn=complain)
-    story = _story(project, options.story)
+    story = chosen_story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
     if story and options.robot == "none":
         raise UsageError("a story needs a robot in a hall: leave out --robot none")
-    period, language = _period(options.period), _language(project, options.language)
+    period, language = period_of(options.period), language_of(project, options.language)
     url = options.bus or os.environ.get("LUMEN_BUS") or project.bus
     if parts:
         return _processes(options, project, story, parts, url, run_directory, period, language)
@@ -142,7 +156,7 @@ def _whole(
         exhibition = Exhibition(
             project, setup, url, story, performance.transcript,
             run_directory=run_directory, reload=options.reload, language=language, fresh=options.fresh,
-            alerts=_alerts(project, WHOLE, performance.transcript, story), record=options.record,
+            alerts=alert_desk(project, WHOLE, performance.transcript, story), record=options.record,
         )  # fmt: skip
         node = exhibition.node
         performance.transcript.unread = lambda: node.interrupt(2, leave=True)
@@ -154,7 +168,7 @@ def _whole(
                 node.add(ConsolePart(run_directory.root, url, partial(performance.transcript.line, "console")))
             node.claim()
             performance.introduce(exhibition, run_directory, options.speed)
-            folder = None if story else home_of_run(run_directory.root)
+            folder = None if story else home_of_run(run_directory.root, run_directory.robot)
             node.add_modules(folder, awaited=options.speed == "max")
             exhibition.start()
             performance.run(exhibition, period)
@@ -186,7 +200,7 @@ def _processes(
     transcript = Transcript(clock.now, lambda: node.project.machine)
     how = ProcessOptions(url, speed, options.reload, language, options.fresh)
     bus = validated(connect(url, sender="+".join(parts)), project)
-    alerts = _alerts(project, parts, transcript, story)
+    alerts = alert_desk(project, parts, transcript, story)
     node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
     transcript.unread = lambda: node.interrupt(2, leave=True)
     if project.console.wanted and BRAIN in parts:
@@ -214,14 +228,6 @@ def _processes(
         run_directory.close(forget=not node.leaving)
     ended = INTERRUPTED if node.interrupted else FAILED if node.failed else WELL
     return RunVerdict(ended, lived, summary=summary)
-
-
-def _alerts(project: Project, parts: Sequence[str], narrator: Narrator, story: Story | None) -> AlertDesk | None:
-    """Who is told of what goes wrong; what a story plays is no trouble."""
-    if story:
-        return None
-    origin = Origin(project.name, project.robot, tuple(parts))
-    return AlertDesk(project.alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
 
 
 @contextmanager
@@ -277,28 +283,3 @@ def _voice(
     from lumen.app.voice import voiced  # nobody else needs espeak-ng
 
     return voiced(setup, options.voice, options.sound, language, track)
-
-
-def _story(project: Project, name: str | None) -> Story | None:
-    if name is None:
-        return None
-    found = list(stories_of(project, name))
-    if len(found) > 1:
-        raise UsageError(f"one story at a time: `{name}` means `{found[0].name}`, `{found[1].name}` and more")
-    return found[0]
-
-
-def _period(text: str | None) -> float | None:
-    if text is None:
-        return None
-    period = seconds(text)
-    if period is None:
-        raise UsageError(f"--for takes a duration such as 60s or 2min, not `{text}`")
-    return period
-
-
-def _language(project: Project, language: str | None) -> str:
-    if language is not None and language not in project.languages:
-        hint = did_you_mean(language, project.languages, "it speaks")
-        raise UsageError(f"the project does not speak `{language}`: {hint}")
-    return language or ""

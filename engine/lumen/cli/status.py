@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.cli.printing import clock_time
-from lumen.cli.reach import configure_reach, reach
+from lumen.cli.reach import configure_reach, names_meant, reach
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -18,18 +18,29 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 where one runs and says how it is."""
+    names = names_meant(options)
+    found = [_status(options, name) for name in names]
+    if options.format == "json":
+        print(json.dumps(found[0] if len(names) == 1 else {"robots": found}, ensure_ascii=False))
+        return 0
+    for i, status in enumerate(found):
+        if i:
+            print()
+        for name, text in _lines(status, datetime.now(UTC)):
+            text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
+            print(f"{name:<9} {text}")
+    return 0
+
+
+def _status(options: argparse.Namespace, name: str) -> dict[str, Any]:
+    """What the exhibition of that robot says of itself."""
+    options.robot_name = name
     reached = reach(options)
     try:
-        status = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
+        found: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
+        return found
     finally:
         reached.bus.close()
-    if options.format == "json":
-        print(json.dumps(status, ensure_ascii=False))
-        return 0
-    for name, text in _lines(status, datetime.now(UTC)):
-        text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
-        print(f"{name:<9} {text}")
-    return 0
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:

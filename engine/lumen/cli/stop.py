@@ -6,7 +6,7 @@ from lumen.app.resting import STOP_TIMEOUT, no_robot, rest_body, stop_behavior
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
-from lumen.cli.reach import configure_reach, reach
+from lumen.cli.reach import configure_reach, names_meant, reach
 from lumen.errors import BusError, BusUnreachableError
 
 
@@ -16,7 +16,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it rests, 1 where it could not. It has a way of its own, and the robot tells the behaviour."""
+    """0 once all that are meant rest, 1 where one could not; the others rest all the same."""
+    troubles, codes = list[BusError](), list[int]()
+    for name in names_meant(options):
+        options.robot_name = name
+        try:
+            codes.append(_stop(options))
+        except BusError as error:
+            troubles.append(error)
+    if troubles:
+        raise troubles[0]
+    return max(codes)
+
+
+def _stop(options: argparse.Namespace) -> int:
+    """It has a way of its own, and the robot tells the behaviour. Raises BusError where no robot answers."""
     reached = reach(options)
     try:
         answer = answered(reached.bus, reached.stop, rest_body(person()), STOP_TIMEOUT)
@@ -25,4 +39,6 @@ def run(options: argparse.Namespace) -> int:
         raise BusUnreachableError(no_robot(reached.stop)) from None
     finally:
         reached.bus.close()
-    return told(options, answer, "the robot rests; hold its head, or `lumen resume`, to let it go on")
+    return told(
+        options, answer, f"{options.robot_name or 'the robot'} rests; hold its head, or `lumen resume`, to let it go on"
+    )

@@ -4,12 +4,14 @@ import argparse
 from pathlib import Path
 
 import lumen
+from lumen.app.one_robot import one_robot
 from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.storytelling.chosen_visit import chosen_visit
 from lumen.app.storytelling.story_text import story_text
 from lumen.app.storytelling.visit_story import renaming, visit_story
 from lumen.cli.formats import configure_format, print_object
+from lumen.cli.reach import configure_robot_name
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.loading.packaged import find_project
@@ -29,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--title", help="what the story is called")
     add("--force", action="store_true", help="replace a file that is there")
     add("--project", metavar="DIR", help="whose journal; default: that of the project here or above")
+    configure_robot_name(parser)
     configure_format(parser)
 
 
@@ -38,10 +41,12 @@ def run(options: argparse.Namespace) -> int:
     if output and output.exists() and not options.force:
         raise UsageError(f"{output} is there already: name another file, or add --force")
     names = dict(_name(pair) for pair in options.name)
-    project = lumen.load(find_project(options.project))
+    root = find_project(options.project)
+    robot = one_robot(root, options.robot_name)
+    project = lumen.load(root, robot=robot)
     root = Path(project.root)
-    bundles = KeptBundles(root)
-    one = chosen_visit(chosen(root, options.what), bundles, options.at)
+    bundles = KeptBundles(root, robot)
+    one = chosen_visit(chosen(root, options.what, robot=robot), bundles, options.at)
     home = one.visit.home
     old = bundles.project(home.bundle, home.behavior) if home else None
     if old is None:

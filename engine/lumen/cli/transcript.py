@@ -17,15 +17,20 @@ WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magent
 
 
 class Transcript(Narrator):
-    """Prints what happens, a line each, with simulated time."""
+    """Prints what happens, a line each, with simulated time; and whose it is, where a `robot` is named."""
 
     explains = True
 
     def __init__(
-        self, now: Callable[[], float], machine: Callable[[], MachineDefinition], stream: TextIO | None = None
+        self,
+        now: Callable[[], float],
+        machine: Callable[[], MachineDefinition],
+        stream: TextIO | None = None,
+        robot: str = "",
     ) -> None:
         super().__init__(now, machine)
         self._stream = stream or sys.stdout
+        self._robot = f"{robot} " if robot else ""
         self.unread: Callable[[], None] = lambda: None
         """What is done once nobody reads it any more."""
         self._colour = coloured(self._stream)
@@ -35,7 +40,7 @@ class Transcript(Narrator):
         minutes, tenths = divmod(int(self._now() * 10 + 1e-6), 600)
         time = paint(f"{minutes:2d}:{tenths / 10:04.1f}", "dim", on=self._colour)
         name = paint(f"{who:<8}", WHO.get(who, "dim"), on=self._colour)
-        self.note(f"{time}  {name} {_wrapped(text)}")
+        self.note(f"{time}  {self._robot}{name} {_wrapped(text, INDENT + len(self._robot))}")
 
     def note(self, text: str) -> None:
         try:
@@ -46,9 +51,9 @@ class Transcript(Narrator):
                 self.unread()
 
 
-def _wrapped(text: str) -> str:
+def _wrapped(text: str, indent: int) -> str:
     """The text in lines that fit beside time and name; signs that would steer the terminal are replaced."""
     text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
-    width = max(shutil.get_terminal_size((120, 24)).columns - INDENT, 30)
+    width = max(shutil.get_terminal_size((120, 24)).columns - indent, 30)
     lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
-    return ("\n" + " " * INDENT).join(lines)
+    return ("\n" + " " * indent).join(lines)

@@ -58,8 +58,8 @@ def replay(root: Path) -> Iterator[bytes]:
         yield NOTHING
         return
     try:
-        entries = chosen(root, None, all=True).entries()
-        found = against(entries, KeptBundles(root), project, deadline=monotonic() + REPLAY_TIME)
+        entries = chosen(root, None, all=True, robot=project.one_of_several).entries()
+        found = against(entries, KeptBundles(root, project.one_of_several), project, deadline=monotonic() + REPLAY_TIME)
         yield orjson.dumps(found.to_json(), default=str)
     except LumenError:
         yield NOTHING

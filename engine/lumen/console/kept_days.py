@@ -5,6 +5,7 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
+from lumen.app.one_robot import one_robot
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.console.day import Day, day_of
 from lumen.errors import JournalError
@@ -25,7 +26,8 @@ class KeptDays:
     """Days of the project in `root`."""
 
     def __init__(self, root: Path) -> None:
-        self._root, self._kept = root, KeptBundles(root)
+        self._robot = one_robot(root)
+        self._root, self._kept = root, KeptBundles(root, self._robot)
         self._here = list[Project | None]()
 
     def day(self, wanted: date | None) -> Day | None:
@@ -50,12 +52,12 @@ class KeptDays:
         if kept := self._kept.machine(hash, behavior):
             return kept
         if not self._here:
-            self._here = [check_files(self._root, read_files(self._root))[0]]
+            self._here = [check_files(self._root, read_files(self._root, self._robot))[0]]
         project = self._here[0]
         return project.behaviors.get(behavior) if project else None
 
     def _files(self) -> Iterator[tuple[Path, int, float]]:
-        folder = home_of(self._root) / JOURNAL_FOLDER
+        folder = home_of(self._root, self._robot) / JOURNAL_FOLDER
         for file, header in headers(folder) if folder.is_dir() else ():
             if file.parent == folder:
                 yield file, header.first, header.began

@@ -36,11 +36,14 @@ class KeyBook:
         self._routes: Mapping[str, str] = {}
         self._reached: Reached | None = None
         self._root = root
+        self.robots: Sequence[str] = ()
+        """Those that are there in any case: of the project, else who was reached."""
 
     def use(self, reached: Reached) -> Sequence[str]:
         """A bus was reached; the patterns to subscribe to there."""
         self._reached, self._own = reached, reached.robot
         settings = main_settings(self._root)
+        self.robots = tuple(settings.robots) if settings and reached.robot in settings.robots else (reached.robot,)
         rows = settings.routes if settings else {}
         self._routes = {name: rows[name].key_for(reached.robot) for name in (*HEARD, IMAGE) if name in rows}
         usual = [DEFAULT_KEYS[name].replace("{robot}", "*") for name in HEARD]

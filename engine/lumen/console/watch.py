@@ -70,7 +70,8 @@ class Watch:
 
     def _patterns(self, reached: Reached) -> Any:
         patterns = self.keys.use(reached)
-        self._later(self._know, reached.robot)
+        for robot in self.keys.robots:
+            self._later(self._know, robot)
         return patterns
 
     def _answered(self, message: Message) -> None:

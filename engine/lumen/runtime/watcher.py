@@ -59,7 +59,8 @@ class FileWatcher(Generic[T]):
     once a second. `files` are those before, `hash` that of the bundle that runs where it is another. `results` yields
     what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
     says whether there is something more urgent. `noticed` is called when a change shows, before it has settled,
-    `early` once, EARLY after the beginning, with the files that run. Without `hints` only who asks is served.
+    `early` once, EARLY after the beginning, with the files that run. Without `hints` only who asks is served. The
+    files are read as that `robot` of several does.
 
     With `good` one file that ends as it did before is judged at once: where that is said of what came of it, a part of
     the quiet period is enough (docs/decisions/080).
@@ -78,7 +79,9 @@ class FileWatcher(Generic[T]):
         noticed: Callable[[], None] = lambda: None,
         early: Callable[[WatchedFiles], None] = lambda files: None,
         good: Callable[[T], bool] | None = None,
+        robot: str = "",
     ) -> None:
+        self._robot = robot
         self._root, self._files, self._hash, self._good = root, files, hash or fingerprint(files), good
         self._judge, self._leisure, self._noticed, self._quiet, self._watching = judge, leisure, noticed, quiet, hints
         self._early = early
@@ -145,7 +148,7 @@ class FileWatcher(Generic[T]):
             self._look(asked)
 
     def _look(self, asked: object = None) -> None:
-        saved = SavedFiles(read_files(self._root), (), time.monotonic(), 0.0, asked)
+        saved = SavedFiles(read_files(self._root, self._robot), (), time.monotonic(), 0.0, asked)
         judged: T | None = None
         if new := fingerprint(saved.files) != self._hash:
             self._noticed()
@@ -177,7 +180,7 @@ class FileWatcher(Generic[T]):
         since, judged = time.monotonic(), self._judged_at_once(saved)
         while not self._stop.is_set():
             self._hint.clear()
-            again = read_files(self._root)
+            again = read_files(self._root, self._robot)
             if again != saved.files:
                 saved = saved._replace(files=again)
                 since, judged = time.monotonic(), self._judged_at_once(saved)

@@ -40,7 +40,7 @@ class HostedRobotPart(RobotPart):
         self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given, foreign.refused, setup.hurry)
         super().__init__(project, bus, setup, foreign, presence, server=self._host.server)
         self._narrator, self._others, self._setup = narrator, presence, setup
-        self._root = Path(project.root)
+        self._home = home_of(Path(project.root), project.one_of_several)
         self._guard: BrainGuard | None = None
         self._interrupted = False
         self.server.follow(self._is_brains)
@@ -67,10 +67,10 @@ class HostedRobotPart(RobotPart):
         WatchedThread("lumen-forgetting", lambda: self._journal.forget(person)).start()
 
     def begin(self, now: float) -> None:
-        self.server.recall(DeduplicationLog(home_of(self._root) / DEDUPLICATION_FILE))
-        self._journal = Journal(home_of(self._root))
+        self.server.recall(DeduplicationLog(self._home / DEDUPLICATION_FILE))
+        self._journal = Journal(self._home)
         self.foreign.record = self._journal.write
-        keep_hold(self.server.hold, home_of(self._root))
+        keep_hold(self.server.hold, self._home)
         self._guard = BrainGuard(self.robot, self._others, self._host.notice, self._say, time.monotonic)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
@@ -102,7 +102,7 @@ class HostedRobotPart(RobotPart):
 
     def close(self) -> None:
         if self._interrupted:
-            forget_hold(home_of(self._root))
+            forget_hold(self._home)
         try:
             self._host.close()
         finally:

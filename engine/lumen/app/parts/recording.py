@@ -43,7 +43,8 @@ class RecordingPart(Part):
         patient: bool = False,
     ) -> None:
         self._project, self._tell, self._root = project, tell, Path(project.root)
-        self._folder = RecordingsFolder(home_of(self._root))
+        self._robot = project.one_of_several
+        self._folder = RecordingsFolder(home_of(self._root, self._robot))
         self._view = RobotView(project, tell) if file or (ring and project.record.ring) else None
         self._rescue = RecordingRescue(self._folder, tell, self._rescued) if ring else None
         self._file = self._begin(file) if file else None
@@ -84,9 +85,14 @@ class RecordingPart(Part):
     def _begin(self, file: Path) -> FileTape:
         try:
             path = writable(file)
-            first: list[Recorded] = [notes_of(self._project), *bundle_files(self._root, [self._project.hash])]
+            first: list[Recorded] = [
+                notes_of(self._project),
+                *bundle_files(self._root, [self._project.hash], self._robot),
+            ]
             first += self._view.look(time.time()) if self._view else ()
-            return FileTape(path, self._folder, first, lambda began: journal_files(self._root, began, time.time()))
+            return FileTape(
+                path, self._folder, first, lambda began: journal_files(self._root, began, time.time(), self._robot)
+            )
         except MissingExtraError:
             raise
         except (OSError, LumenError) as error:
@@ -110,7 +116,7 @@ class RecordingPart(Part):
     def _kept(self, began: float, ended: float, pieces: Sequence[Path]) -> Iterable[Recorded]:
         """What makes a recording of these pieces explain itself: the files, the journal, and the robot's looks."""
         look = self._view.look(began) if self._view else ()
-        return [*self._explaining(pieces), *journal_files(self._root, began, ended), *look]
+        return [*self._explaining(pieces), *journal_files(self._root, began, ended, self._robot), *look]
 
     def _rescued(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
         """The same of pieces that were left, with the journal of their time."""
@@ -126,4 +132,4 @@ class RecordingPart(Part):
                     item for item in read_recording(piece) if isinstance(item, RecordedNotes) and item.name == NOTES
                 )
                 hashes += [dict(found.words).get("bundle", "") for found in notes]
-        return bundle_files(self._root, hashes)
+        return bundle_files(self._root, hashes, self._robot)

@@ -77,7 +77,7 @@ def assemble(
 
     presence = presence_of(project, bus, tuple(names), said)
     node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
-    folder, records = home_of(run_directory.root), run_directory.records
+    folder, records = home_of(run_directory.root, project.one_of_several), run_directory.records
     watch = AlertPart(alerts, bus, folder, names, presence, lambda: records.trouble) if alerts else None
     ring = run_directory.home is not None and story is None
     recording = RecordingPart(project, bus, partial(narrator.line, "recording"), record, ring=ring)
@@ -145,7 +145,7 @@ def assemble(
     node.parts += [ModulePart(name, project, bus, narrator.line, folder) for name in names if name in MODULES]
     if BRAIN not in names:
         root = Path(project.root)
-        follower = BundleFollower(root, project.robot, bus, node.use, lambda line: narrator.line("reload", line))
+        follower = BundleFollower(root, project, bus, node.use, lambda line: narrator.line("reload", line))
         node.before.append(follower.tick)
         node.closing.append(follower.close)
     return node

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from lumen.app.reload.requests import status_key
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import fingerprint, read_files
 from lumen.ports import Bus, Message
 from lumen.runtime.home import Home, home_of
@@ -18,19 +19,19 @@ MOVED = ("applied", "rolled back")
 
 
 class BundleFollower:
-    """Hears what becomes of the saved files of that robot's brain, and loads them on a thread of its own.
+    """Hears what becomes of the saved files of the brain of that project's robot, and loads them on its own thread.
 
     `tick` hands on what was loaded. `tell` hears where the files here are not those that the brain runs on: another
     machine may have others.
     """
 
     def __init__(
-        self, root: Path, robot: str, bus: Bus, use: Callable[[Project], None], tell: Callable[[str], None]
+        self, root: Path, project: Project, bus: Bus, use: Callable[[Project], None], tell: Callable[[str], None]
     ) -> None:
-        self._root, self._use, self._tell = root, use, tell
+        self._root, self._robot, self._use, self._tell = root, project.one_of_several, use, tell
         self._wanted: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._loaded: queue.SimpleQueue[Project | str] = queue.SimpleQueue()
-        self._undo = bus.subscribe(status_key(robot), self._hear)
+        self._undo = bus.subscribe(status_key(project.robot), self._hear)
         self._thread = WatchedThread("lumen-bundles", self._run)
         self._thread.start()
 
@@ -74,8 +75,11 @@ class BundleFollower:
 
     def _files(self, wanted: str) -> Mapping[str, bytes] | None:
         """The files of that hash: in the project's folder, or among those that a brain on this machine keeps."""
-        files = read_files(self._root)
-        return files if fingerprint(files) == wanted else SnapshotStore(Home(home_of(self._root))).files(wanted)
+        files = read_files(self._root, self._robot)
+        if fingerprint(files) == wanted:
+            return files
+        kept = SnapshotStore(Home(home_of(self._root, self._robot))).files(wanted)
+        return as_robot(kept, self._robot) if kept else None
 
     def _latest(self) -> str | None:
         """The newest hash that is wanted, None at the end; waits for one."""

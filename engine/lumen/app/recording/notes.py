@@ -39,9 +39,9 @@ def notes_of(project: Project) -> RecordedNotes:
     return RecordedNotes(NOTES, tuple(said.items()))
 
 
-def bundle_files(root: Path, hashes: Sequence[str]) -> Iterator[RecordedFile]:
+def bundle_files(root: Path, hashes: Sequence[str], robot: str = "") -> Iterator[RecordedFile]:
     """The files of these bundles, each as a ZIP, as far as they are kept or are there now."""
-    store = SnapshotStore(Home(home_of(root)))
+    store = SnapshotStore(Home(home_of(root, robot)))
     for hash in dict.fromkeys(hashes):
         files = store.files(hash)
         if files is None:
@@ -56,9 +56,9 @@ def bundle_files(root: Path, hashes: Sequence[str]) -> Iterator[RecordedFile]:
             yield RecordedFile(f"bundle-{hash[:16]}.zip", "application/zip", packed.getvalue(), int(time.time() * NANO))
 
 
-def journal_files(root: Path, began: float, ended: float) -> Iterator[RecordedFile]:
+def journal_files(root: Path, began: float, ended: float, robot: str = "") -> Iterator[RecordedFile]:
     """The files of the journal that say what happened between two times [s since 1970]."""
-    for file, header in headers(home_of(root) / JOURNAL_FOLDER):
+    for file, header in headers(home_of(root, robot) / JOURNAL_FOLDER):
         with suppress(OSError):
             changed = file.stat().st_mtime
             if header.began <= ended and changed >= began:

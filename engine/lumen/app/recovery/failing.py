@@ -37,7 +37,7 @@ def failures_told(
 def _tell(
     error: Exception, root: Path, run_directory: RunDirectory, parts: Sequence[str], tell: Callable[[str], None]
 ) -> None:
-    settings = main_settings(root)
+    settings = main_settings(root, run_directory.robot)
     desk = AlertDesk(_alerts(settings, run_directory), _origin(settings, root, parts), root, tell)
     if isinstance(error, LumenError):
         desk("start", f"it could not start, or go on: {_why(error)}")

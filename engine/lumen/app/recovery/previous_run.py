@@ -13,6 +13,7 @@ from lumen.interpreters.changes import changes
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.runtime.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnapshot
@@ -86,7 +87,7 @@ def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Pr
     old: Project | None = project
     if kept.bundle != project.hash:
         files = keeper.files(kept.bundle)
-        old, found = load_apart(root, files) if files else (None, ())
+        old, found = load_apart(root, as_robot(files, project.one_of_several)) if files else (None, ())
         if old is None and found:
             raise ProjectError(found)
     if old is None or kept.behavior not in old.behaviors:

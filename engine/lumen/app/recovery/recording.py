@@ -37,7 +37,7 @@ def record_inputs(
 
 def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
     """Where it is written, None where nothing is to be kept."""
-    folder, retention = home_of(Path(project.root)) / JOURNAL_FOLDER, project.journal
+    folder, retention = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER, project.journal
     if rehearsed:
         folder, retention = folder / REHEARSED_FOLDER, REHEARSED
     files = JournalFolder(folder, retention.keep, retention.size)
@@ -45,17 +45,18 @@ def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
         files.clear()
         return None
     if rehearsed:
-        _keep_files(project.root, project.hash)
+        _keep_files(project)
     return files
 
 
-def _keep_files(root: str, hash: str) -> None:
+def _keep_files(project: Project) -> None:
     """Keep the files that run, where those that are there now are still the same."""
-    home = Home(home_of(Path(root)))
+    root = Path(project.root)
+    home = Home(home_of(root, project.one_of_several))
     try:
-        files = read_files(Path(root))
+        files = read_files(root, project.one_of_several)
         private_folder(home.folder)
     except (OSError, LumenError):
         return  # then it can't be replayed; the run itself goes on
-    if fingerprint(files) == hash:
+    if fingerprint(files) == project.hash:
         SnapshotStore(home).store(files)

@@ -17,6 +17,7 @@ from lumen.app.reload.validation_worker import load_apart
 from lumen.buses.local import LocalBusServer
 from lumen.errors import UsageError
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.ports import Bus
 from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE, key_of
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of
@@ -26,16 +27,16 @@ _log = logging.getLogger(__name__)
 
 
 class RunDirectory:
-    """Takes the home of the project in `root` for this run; `home` is None where another run has it, or none can be.
+    """Takes the home of the project in `root`, or of its `robot`, for this run.
 
-    A process without a brain is a guest: it leaves the home to the one that has it. `news` are the reloads that this
-    start was, to be told as soon as somebody can hear it.
+    `home` is None where another run has it, or none can be. A process without a brain is a guest: it leaves the home to
+    the one that has it. `news` are the reloads that this start was, to be told as soon as somebody can hear it.
     """
 
-    def __init__(self, root: Path, *, guest: bool = False) -> None:
-        self.root, self.taken = root, False
+    def __init__(self, root: Path, robot: str = "", *, guest: bool = False) -> None:
+        self.root, self.robot, self.taken = root, robot, False
         self.home: Home | None = None
-        home = Home(home_of(root))
+        home = Home(home_of(root, robot))
         try:
             if guest:
                 pass
@@ -108,6 +109,7 @@ class RunDirectory:
             "process": os.getpid(),
             "bus": self._bus,
             "robot": project.robot,
+            "home": self.robot,
             "command": key_of(project, COMMAND_ROUTE),
             "stop": key_of(project, STOP_ROUTE),
             "path": address.path if address else "",
@@ -137,7 +139,7 @@ class RunDirectory:
         """
         keeper = self.records.keeper
         files = keeper.files(keeper.good()) if keeper else None
-        return load_apart(self.root, files)[0] if files else None
+        return load_apart(self.root, as_robot(files, self.robot))[0] if files else None
 
     def resumption(self, project: Project) -> Resumption | FreshStart:
         """How the run before is gone on with under this project, or why it is not."""

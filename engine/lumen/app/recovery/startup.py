@@ -24,7 +24,7 @@ def startup_project(
     `warn` hears of what a person has to know. Files are read in another process, which they may end. Raises
     ProjectError or FatalFilesError where there is none to begin with.
     """
-    files = read_files(root)
+    files = read_files(root, run_directory.robot)
     try:
         project, diagnostics = load_apart(root, files)
         if project is None:

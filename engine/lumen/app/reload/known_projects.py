@@ -16,6 +16,7 @@ from pathlib import Path
 
 from lumen.app.reload.delta import Delta, DeltaDecoder
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import chosen_robot
 from lumen.loading.files import fingerprint
 from lumen.loading.packaged import schema_folder, shipped_root
 from lumen.upkeep.cache_folder import CacheFolder
@@ -46,7 +47,7 @@ def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
     """A name for all that the project depends on; of a file that is not read it counts which one is there."""
-    digest = hashlib.sha256(f"{fingerprint(files)} {engine()} {sys.version}".encode())
+    digest = hashlib.sha256(f"{fingerprint(files)} {chosen_robot(files)} {engine()} {sys.version}".encode())
     for path, line in sorted(_listed(root / MODELS)):
         if f"{MODELS}/{path}" not in files:
             digest.update(line)

@@ -25,6 +25,7 @@ from lumen.interpreters.changes import changes, live
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
 from lumen.ports import Message
 from lumen.runtime.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
@@ -67,10 +68,11 @@ class Reloader:
         self._validator = BundleValidator(self._worker, lambda: self._running, budget)
         self._watcher: FileWatcher[Validation | list[Rehearsal]] = FileWatcher(
             Path(project.root),
-            read_files(Path(project.root)),
+            read_files(Path(project.root), project.one_of_several),
             self._judge,
             hash=seen or project.hash,
             quiet=quiet,
+            robot=project.one_of_several,
             hints=mode != "off",
             leisure=self._advise,
             noticed=self._worker.begin,
@@ -109,7 +111,7 @@ class Reloader:
 
     def reload(self, now: float) -> ReloadReport:
         """Take the files as they are on the disk, between two ticks, while everything waits for it; what came of it."""
-        files = read_files(Path(self._running.root))
+        files = read_files(Path(self._running.root), self._running.one_of_several)
         request = ReloadRequest("reload", now=False, answer=lambda _: None)
         began = time.monotonic()
         self._take(self._judge(SavedFiles(files, tuple(files), began, began, request)))
@@ -129,7 +131,10 @@ class Reloader:
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         """Have files taken that do not lie in the project's folder, between two visits; `answer` hears each verdict."""
-        self._watcher.give(files, ReloadRequest("reload", now=False, answer=answer, between=True))
+        self._watcher.give(
+            as_robot(files, self._running.one_of_several),
+            ReloadRequest("reload", now=False, answer=answer, between=True),
+        )
 
     def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
         """Let `change` bring the files that run into the project's folder; it gives back what lies there then."""

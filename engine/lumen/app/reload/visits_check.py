@@ -91,9 +91,9 @@ def check_visits(root: Path, new: Project, running: str, budget: float) -> Visit
         if time.monotonic() > until:
             raise BudgetSpentError
 
-    report, bundles = ReplayReport(), KeptBundles(root)
+    report, bundles = ReplayReport(), KeptBundles(root, new.one_of_several)
     player = VisitPlayer(bundles, new, running=running, hurry=hurry)
-    files = JournalFolder(home_of(root) / JOURNAL_FOLDER, 0.0, 0.0).files()
+    files = JournalFolder(home_of(root, new.one_of_several) / JOURNAL_FOLDER, 0.0, 0.0).files()
     try:
         for visit in latest_first(files, bundles):
             hurry()

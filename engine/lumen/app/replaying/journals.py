@@ -27,13 +27,13 @@ class ChosenJournal(NamedTuple):
             yield from read_journal(file).entries
 
 
-def chosen(root: Path, word: str | None, *, all: bool = False) -> ChosenJournal:
+def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") -> ChosenJournal:
     """The journal of the project in `root` that a word means: a file, `today`, `yesterday`, or a day as `2026-11-23`.
 
     Without a word it is the run that was begun last, also one of a story; `all` is every visit that is kept. Raises
     UsageError where there is none.
     """
-    folder = home_of(root) / JOURNAL_FOLDER
+    folder = home_of(root, robot) / JOURNAL_FOLDER
     if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):
         file = Path(word)
         if not file.is_file():
@@ -57,9 +57,9 @@ def chosen(root: Path, word: str | None, *, all: bool = False) -> ChosenJournal:
     return ChosenJournal(root, tuple(file for file, _ in wanted))
 
 
-def listed(root: Path) -> list[tuple[Path, JournalHeader]]:
+def listed(root: Path, robot: str = "") -> list[tuple[Path, JournalHeader]]:
     """The files of the project's journal, those of stories too, the oldest first."""
-    return sorted(headers(home_of(root) / JOURNAL_FOLDER), key=lambda row: row[1].began)
+    return sorted(headers(home_of(root, robot) / JOURNAL_FOLDER), key=lambda row: row[1].began)
 
 
 def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:

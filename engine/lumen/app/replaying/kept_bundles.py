@@ -5,23 +5,27 @@ from pathlib import Path
 
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
+from lumen.loading.chosen_robot import as_robot
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 
 
 class KeptBundles:
-    """The bundles in the home of the project in `root`, each read when it is first asked for."""
+    """The bundles in the home of the project in `root`, each read when it is first asked for.
 
-    def __init__(self, root: Path) -> None:
-        self._root, self._store = root, SnapshotStore(Home(home_of(root)))
+    `robot` is one of its `robots:`.
+    """
+
+    def __init__(self, root: Path, robot: str = "") -> None:
+        self._root, self._robot, self._store = root, robot, SnapshotStore(Home(home_of(root, robot)))
         self._read: dict[str, Project | None] = {}
 
     def project(self, hash: str, behavior: str) -> Project | None:
         """The project of that hash with that behaviour, None where it was not kept, or this Lumen can't read it."""
         if hash not in self._read:
             files = self._store.files(hash)
-            self._read[hash] = check_files(self._root, files)[0] if files else None
+            self._read[hash] = check_files(self._root, as_robot(files, self._robot))[0] if files else None
         project = self._read[hash]
         if project is None or behavior not in project.behaviors:
             return None

@@ -1,0 +1,95 @@
+"""Several robots of a house in one process: their nodes, ticked in turn."""
+
+import sys
+import time
+from collections.abc import Callable, Mapping
+
+from lumen.app.claiming import CLAIM_INTERVAL
+from lumen.app.node import ROUNDING, Node
+from lumen.errors import LumenError
+from lumen.runtime.watcher import SWITCH_INTERVAL
+from lumen.upkeep.garbage import GcScheduler
+
+
+class House:
+    """Nodes by the names of their robots; each has its own time, keys, journal, files and stop.
+
+    They live tick by tick, in the order given: where their worlds have one clock in common, they are in step. One that
+    is over is closed, and the others go on; so do they where a robot is lost, which `tell` hears of (name, why). With
+    `together` the house is over as soon as one of them is, as when a story has ended.
+    """
+
+    def __init__(
+        self,
+        nodes: Mapping[str, Node],
+        tell: Callable[[str, str], None] = lambda _robot, _why: None,
+        *,
+        together: bool = False,
+    ) -> None:
+        self.nodes = dict(nodes)
+        self._going, self._tell, self._together = dict(nodes), tell, together
+        self._now = 0.0
+
+    @property
+    def going(self) -> tuple[str, ...]:
+        """The robots whose nodes are not over."""
+        return tuple(self._going)
+
+    @property
+    def over(self) -> bool:
+        return not self._going or (self._together and len(self._going) < len(self.nodes))
+
+    def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
+        """Ctrl-C: once rests all robots, twice ends; safe in a signal handler."""
+        for node in self.nodes.values():
+            node.interrupt(times, leave=leave)
+
+    def start(self) -> None:
+        """Begin all of them. Raises UsageError where another process on the bus is one of these robots already."""
+        claiming = list(self.nodes.values())
+        while claiming := [node for node in claiming if node.claims()]:
+            time.sleep(CLAIM_INTERVAL)
+        for node in self.nodes.values():
+            node.begin()
+
+    def tick(self) -> float:
+        """Let each live through a tick; the time of the first that goes on [s]."""
+        for name, node in list(self._going.items()):
+            try:
+                now = node.tick()
+            except LumenError as error:
+                self._tell(name, str(error))
+                self._end(name)
+                continue
+            if name == next(iter(self._going)):
+                self._now = now
+            if node.over:
+                self._end(name)
+        return self._now
+
+    def run(self, seconds: float | None = None) -> float:
+        """Live for so long [s], or until it is over; how long it lived [s]."""
+        scheduler, usual = GcScheduler(), sys.getswitchinterval()
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        began = self._now
+        try:
+            while not self.over and (seconds is None or self._now - began < seconds - ROUNDING):
+                self.tick()
+                scheduler()
+        finally:
+            sys.setswitchinterval(usual)
+            scheduler.close()
+        return self._now - began
+
+    def close(self) -> None:
+        """End all that go on."""
+        for name in self.going:
+            self._end(name)
+
+    def _end(self, name: str) -> None:
+        try:
+            self._going[name].close()
+        except LumenError as error:
+            self._tell(name, str(error))
+        finally:
+            del self._going[name]

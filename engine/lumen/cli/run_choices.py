@@ -1,0 +1,47 @@
+"""What the options of `lumen run` choose: its story, its language, how long it lasts, and who is told of trouble."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from lumen.app.alerts.alert import Origin
+from lumen.app.alerts.desk import AlertDesk
+from lumen.app.narrator import Narrator
+from lumen.app.stories import stories_of
+from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.loading.units import seconds
+
+
+def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator, story: Story | None) -> AlertDesk | None:
+    """Who is told of what goes wrong; what a story plays is no trouble."""
+    if story:
+        return None
+    origin = Origin(project.name, project.robot, tuple(parts))
+    return AlertDesk(project.alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
+
+
+def chosen_story(project: Project, name: str | None) -> Story | None:
+    if name is None:
+        return None
+    found = list(stories_of(project, name))
+    if len(found) > 1:
+        raise UsageError(f"one story at a time: `{name}` means `{found[0].name}`, `{found[1].name}` and more")
+    return found[0]
+
+
+def period_of(text: str | None) -> float | None:
+    if text is None:
+        return None
+    period = seconds(text)
+    if period is None:
+        raise UsageError(f"--for takes a duration such as 60s or 2min, not `{text}`")
+    return period
+
+
+def language_of(project: Project, language: str | None) -> str:
+    if language is not None and language not in project.languages:
+        hint = did_you_mean(language, project.languages, "it speaks")
+        raise UsageError(f"the project does not speak `{language}`: {hint}")
+    return language or ""
