@@ -18,6 +18,11 @@ STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
 STEP_HEIGHT = 0.03
 """How high a foot is lifted that steps forward or aside [m], on such legs."""
 
+TOES_PRESS, NEAR_TOES = 0.2, 0.05
+"""How far the bearing ankle presses its toes down on the way [rad]: all of it where the DCM comes to the feet's front
+edge, nothing where it stays farther behind it than this [m]: else that sole tips, and the body with it, while the foot
+is in the air. Nothing, too, where it is as far beyond the edge: pressed toes make a fall harder that must be."""
+
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
 """How far the knee of a foot that steps back bends on the way [rad], and how early: below 1 before half of it."""
 
@@ -53,7 +58,8 @@ class CatchStep:
         self.side, self.bears = side, other(side)
         self._swings, self._rests = SIDES.index(side), SIDES.index(self.bears)
         self._begin, self._back = now, falling.beyond[1] > falling.beyond[0]
-        self._height = STEP_HEIGHT * scale_of(legs)
+        scale = scale_of(legs)
+        self._height, self._near, self._presses = STEP_HEIGHT * scale, NEAR_TOES * scale, 0.0
         self._seconds = (STEP_BACK_TIME if self._back else STEP_TIME) * time_scale_of(legs)
         self._sent = dict(sent)
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
@@ -69,7 +75,11 @@ class CatchStep:
         done = smooth(part / _LANDS)
         place = self._start[:2] + (goal - self._start[:2]) * done
         height = self._start[2] * (1 - done) + self._height * sin(pi * part) ** 2
-        return {**self._sent, **self._level(np.array([*place, height]))}
+        joints = {**self._sent, **self._level(np.array([*place, height]))}
+        ahead = falling.beyond[0] / self._near
+        self._presses = max(self._presses, min(1.0, 1.0 + ahead)) if ahead < 1.0 else 0.0
+        self._turn(joints, self.bears, _ANKLE, TOES_PRESS * self._presses)
+        return joints
 
     def over(self, now: float) -> bool:
         """Whether the foot should have landed."""
