@@ -6,6 +6,7 @@ LumenError
  ├── UsageError        a flag, a name or a path given to Lumen is wrong; MissingExtraError: packages are not installed
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
+ ├── WorkersError      who does tasks can't be reached, runs another engine, or was lost
  ├── JournalError      a journal, or an entry of it, can't be read
  ├── RecordingError    a recording can't be read, or can't be written
  ├── RobotError        the robot can't be used, or can't do what it should
@@ -64,6 +65,10 @@ class FatalFilesError(LumenError):
 
 class UsageError(LumenError):
     """The request can't be carried out: a missing folder, an unknown name, options that exclude each other."""
+
+
+class WorkersError(LumenError):
+    """Tasks can't be done: a cluster does not answer or runs other software, or workers were lost twice."""
 
 
 class ExpressionError(LumenError):

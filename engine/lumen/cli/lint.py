@@ -11,6 +11,7 @@ from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
+from lumen.cli.workers_option import configure_workers
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.rules.selection import selected
@@ -30,6 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--physics", action="store_true", help="also play every motion in simulation (minutes; what is known is kept)")
     add("--robots", metavar="N", help="with --physics: how many robots that differ a little play it too (default: 20)")
+    configure_workers(parser, "with --physics: ")
     configure_imperfections(parser)
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="repair what can be repaired without asking")
@@ -65,12 +67,13 @@ def run(options: argparse.Namespace) -> int:
 def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
     """The findings with those of the motions in simulation; how they went is told beside what is for people."""
     from lumen.app.lint.physics import ROBOTS, number_of_robots, played, summary
+    from lumen.app.work.workers import workers_of
     from lumen.cli.progress import progress
 
     robots = ROBOTS if options.robots is None else number_of_robots(options.robots)
-    lacking = imperfections_of(options.imperfections)
+    workers, lacking = workers_of(options.workers), imperfections_of(options.imperfections)
     with progress() as tell:
-        both = [played(each, wanted, robots, tell, imperfections=lacking) for each in found]
+        both = [played(each, wanted, robots, tell, imperfections=lacking, workers=workers) for each in found]
     for _, rehearsals in both if options.format == "text" else ():
         print(summary(rehearsals) or "no motion was played: there are none, or the files have errors", file=sys.stderr)
     return [each for each, _ in both]
@@ -109,6 +112,8 @@ def _consistent(options: argparse.Namespace) -> None:
         raise UsageError("--diff shows what --fix would change, and no reload is repaired: leave out --against")
     if options.robots is not None and not options.physics:
         raise UsageError("--robots goes with --physics")
+    if options.workers is not None and not options.physics:
+        raise UsageError("--workers goes with --physics")
     if options.imperfections is not None and not options.physics:
         raise UsageError("--imperfections goes with --physics")
     if options.physics and (options.watch or options.fix or options.diff or "-" in options.paths):

@@ -1,19 +1,23 @@
 """`lumen lint --physics`: every motion played by the simulated robot, and by others that differ a little."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import replace
 from math import inf
 from pathlib import Path
 
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.outcome_cache import OutcomeCache
+from lumen.app.work.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.app.work.workers import Workers
 from lumen.errors import UsageError
+from lumen.extras import demand
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.loading.lending import model_files
 from lumen.rules import check_files
-from lumen.rules.physics import Case, CaseResult, Outcome, SubjectFactory, attempt
+from lumen.rules.physics import CaseResult, Outcome, attempt
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings
 
@@ -32,42 +36,73 @@ def played(
     *,
     keep: bool = True,
     imperfections: Imperfections | None = None,
+    workers: Workers | None = None,
 ) -> tuple[Findings, list[CaseResult]]:
     """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
 
     `imperfections` are other than the project's. Only motions in files that somebody asked about are played, and with
-    `keep` only where they were not before. Raises MissingExtraError where there is no simulation.
+    `keep` only where they were not before; without `workers` in this process. Raises MissingExtraError where there is
+    no simulation, and WorkersError.
     """
     root = Path(found.root)
     project = check_files(root, found.files)[0]
     if project is None:
         return found, []
+    demand("simulation", "--physics", "mujoco", "dm_control")
     project = replace(project, imperfections=imperfections or project.imperfections)
-    make = _maker(project)
-    chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
+    every = cases(project)
+    chosen = [number for number, case in enumerate(every) if not found.asked or case.file in found.asked]
     memory = OutcomeCache(project, found.files) if keep else None
-    rehearsals = play_cases(chosen, make, robots, memory, tell)
+    known = {number: memory.recall(every[number]) if memory else {} for number in chosen}
+    kit = WorkKit({"": found.files}, models_in(root))
+    for number, robot, outcome in _play(workers or Workers(), kit, project, known, robots, tell):
+        known[number][robot] = outcome
+        if memory:
+            memory.keep(every[number], known[number])
+    rehearsals = [CaseResult(every[n], [known[n][robot] for robot in range(robots + 1)]) for n in chosen]
     more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file], project.body) if wanted(d)]
     everything = sorted([*found.diagnostics, *dict.fromkeys(more)], key=lambda d: (d.place.file, d.place.line))
     return replace(found, diagnostics=everything), rehearsals
 
 
-def play_cases(
-    chosen: Sequence[Case], make: SubjectFactory, robots: int, memory: OutcomeCache | None, tell: ProgressHook
-) -> list[CaseResult]:
-    """What comes of each case with the robot of the model and `robots` others; what is remembered is not played."""
-    done, whole, rehearsals = 0, len(chosen) * (robots + 1), []
-    for case in chosen:
-        outcomes = memory.recall(case) if memory else {}
-        for number in range(robots + 1):
-            tell(done, whole, case.motion.name)
-            done += 1
-            if number not in outcomes:
-                outcomes[number] = _attempt(case, make, number)
-                if memory:
-                    memory.keep(case, outcomes)
-        rehearsals.append(CaseResult(case, [outcomes[number] for number in range(robots + 1)]))
-    return rehearsals
+def play_case(kit: UnpackedKit, case: int, robot: int, imperfections: Imperfections) -> Outcome:
+    """A task: what comes of a case, by its place among the project's, with that robot."""
+    from lumen.robots.simulation.subject import subject
+
+    project = kit.project()
+    assert project is not None  # who sent the task has loaded it
+    models, hall = model_files(project)
+    simulated = subject(project.body, models, hall, robot, imperfections)
+    try:
+        return attempt(cases(project)[case], simulated)
+    finally:
+        simulated.close()
+
+
+def _play(
+    workers: Workers,
+    kit: WorkKit,
+    project: Project,
+    known: Mapping[int, Mapping[int, Outcome]],
+    robots: int,
+    tell: ProgressHook,
+) -> Iterator[tuple[int, int, Outcome]]:
+    """Case, robot and outcome of what is not known, as they come; robot by robot, since each has a model to compile."""
+    every = cases(project)
+    tasks = [
+        (case, robot, project.imperfections)
+        for robot in range(robots + 1)
+        for case, outcomes in known.items()
+        if robot not in outcomes
+    ]
+    if not tasks:
+        return
+    tell(0, len(tasks), every[tasks[0][0]].motion.name)
+    with closing(workers.results(play_case, kit, tasks)) as results:
+        for done, (number, outcome) in enumerate(results, 1):
+            case, robot, _ = tasks[number]
+            tell(done, len(tasks), every[case].motion.name)
+            yield case, robot, outcome
 
 
 def summary(rehearsals: Sequence[CaseResult]) -> str:
@@ -90,18 +125,3 @@ def number_of_robots(text: str) -> int:
     if number > 1000:
         raise UsageError(f"--robots is a number from 0 to 1000, not `{text[:40]}`")
     return int(number)
-
-
-def _attempt(case: Case, make: SubjectFactory, number: int) -> Outcome:
-    robot = make(number)
-    try:
-        return attempt(case, robot)
-    finally:
-        robot.close()
-
-
-def _maker(project: Project) -> SubjectFactory:
-    from lumen.robots.simulation.subject import subject
-
-    models, hall = model_files(project)
-    return lambda number: subject(project.body, models, hall, number, project.imperfections)

@@ -1,17 +1,13 @@
 """Motions in simulation: what the robot, and others much like it, come to when they play them.
 
-Who calls hands over the simulator: `Make` gives a robot that stands and waits. Nothing here knows how it is simulated.
+Who calls hands over a robot that stands and waits. Nothing here knows how it is simulated.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from lumen.ports import Subject
 from lumen.rules.physics.cases import Case
 from lumen.rules.physics.trial import DONE, FELL, Outcome, attempt
-
-SubjectFactory = Callable[[int], Subject]
-"""A robot in `Stand`: 0 is the one that the model describes, every other number a brother of it."""
 
 
 @dataclass(frozen=True)
@@ -35,4 +31,4 @@ class CaseResult:
 RETRIED_AFTER = 1.5
 """A passage that takes so much longer than its motion was tried again [s]."""
 
-__all__ = ["DONE", "FELL", "RETRIED_AFTER", "Case", "CaseResult", "Outcome", "SubjectFactory", "attempt"]
+__all__ = ["DONE", "FELL", "RETRIED_AFTER", "Case", "CaseResult", "Outcome", "attempt"]

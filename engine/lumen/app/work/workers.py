@@ -1,0 +1,114 @@
+"""Tasks for workers: in this process, in others of this machine, or on a cluster; what comes of them is the same."""
+
+import logging
+import os
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import Executor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from lumen.app.work.cluster import SCHEME, cluster, cluster_address, lost_in_cluster
+from lumen.app.work.local_pool import local_pool, working_folder
+from lumen.app.work.tasks import TaskHead, do_task, engine
+from lumen.app.work.work_kit import UnpackedKit, WorkKit, name_of
+from lumen.errors import UsageError, WorkersError
+
+Result = TypeVar("Result")
+MAX_WORKERS = 1024
+_log = logging.getLogger(__name__)
+
+
+class Workers:
+    """Who does tasks: `count` processes of this machine (1: this one itself), or the cluster at `address`."""
+
+    def __init__(self, count: int = 1, address: str = "") -> None:
+        self.count, self.address = count, address
+
+    def results(
+        self, function: Callable[..., Result], kit: WorkKit, tasks: Sequence[tuple[Any, ...]]
+    ) -> Generator[tuple[int, Result], None, None]:
+        """The number of each task and what `function(kit, *task)` returns, as they come; close it to end the work.
+
+        `function` stands in a module, and depends on nothing else. What a lost worker was at is done once more, by new
+        ones. Raises WorkersError where they are lost again, or can't be reached, and whatever a task raises.
+        """
+        with working_folder() as folder:
+            if not self.address and min(self.count, len(tasks)) <= 1:
+                own = UnpackedKit(kit, "kit", folder)
+                yield from ((number, function(own, *task)) for number, task in enumerate(tasks))
+                return
+            packed = kit.packed()
+            name = name_of(packed)
+            left = dict(enumerate(tasks))
+            for again in (False, True):
+                with self._opened(packed, len(left), folder) as (executor, blob, where, lost):
+                    head = TaskHead(function, engine(), name, where)
+                    for number, result in _done(executor, head, blob, left, lost):
+                        del left[number]
+                        yield number, result
+                if not left:
+                    return
+                if not again:
+                    _log.warning("%s: %d tasks are done again", self._trouble(), len(left))
+            raise WorkersError(f"{self._trouble()} a second time: {self._remedy()}")
+
+    @contextmanager
+    def _opened(self, packed: bytes, tasks: int, folder: Any) -> Iterator[tuple[Executor, Any, str, Any]]:
+        """An executor, the kit as its tasks get it, where they unpack it, and what they raise who are lost."""
+        if self.address:
+            with cluster(self.address, packed) as (executor, blob):
+                yield executor, blob, "", lost_in_cluster()
+        else:
+            file = folder / "kit.pickle"
+            file.write_bytes(packed)
+            with local_pool(min(self.count, tasks), folder) as executor:
+                yield executor, str(file), str(folder), (BrokenProcessPool,)
+
+    def _trouble(self) -> str:
+        if self.address:
+            return f"the cluster at {self.address.replace('tcp://', SCHEME)} has lost workers, or its scheduler"
+        return "a worker process ended before its time (was there too little memory?)"
+
+    def _remedy(self) -> str:
+        return "look into the logs of its workers" if self.address else "take fewer of them with --workers 1"
+
+
+def _done(
+    executor: Executor, head: TaskHead, blob: Any, tasks: dict[int, tuple[Any, ...]], lost: Any
+) -> Iterator[tuple[int, Any]]:
+    """What came of the tasks, as it comes; those are missing whose worker was lost."""
+    futures = {}
+    try:
+        for number, task in tasks.items():
+            futures[executor.submit(do_task, head, blob, task)] = number
+    except lost:
+        pass
+    for future in as_completed(futures):
+        try:
+            result = future.result()
+        except lost:
+            continue
+        yield futures[future], result
+
+
+def workers_of(text: str | None) -> Workers:
+    """What `--workers` says: a number, or `dask://HOST:PORT`; all cores of this machine where nobody says anything.
+
+    Raises UsageError for anything else.
+    """
+    if text is None:
+        return Workers(cores())
+    if text.startswith(SCHEME):
+        return Workers(address=cluster_address(text))
+    count = int(text) if text.isdecimal() and text.isascii() and len(text) < 6 else 0
+    if not 1 <= count <= MAX_WORKERS:
+        raise UsageError(
+            f"--workers is a number from 1 to {MAX_WORKERS}, or a cluster such as {SCHEME}HOST:8786, not `{text[:40]}`"
+        )
+    return Workers(count)
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

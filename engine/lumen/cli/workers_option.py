@@ -1,0 +1,8 @@
+"""`--workers`: who does what takes long."""
+
+import argparse
+
+
+def configure_workers(parser: argparse.ArgumentParser, goes_with: str = "") -> None:
+    what = f"{goes_with}processes, or a cluster: dask://HOST:8786 (default: one for each core)"
+    parser.add_argument("--workers", metavar="N", help=what)

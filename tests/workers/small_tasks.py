@@ -1,0 +1,48 @@
+"""Tasks that workers do in tests: they stand in a module, as all tasks do."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from lumen.app.lint.physics import play_case
+from lumen.app.work.work_kit import UnpackedKit
+from lumen.language.imperfections import Imperfections
+from lumen.rules.physics import Outcome
+
+
+def square(kit: UnpackedKit, number: int) -> tuple[int, bytes]:
+    return number**2, (kit.root / "models" / "mesh.stl").read_bytes()
+
+
+def process(kit: UnpackedKit, number: int) -> int:
+    return os.getpid()
+
+
+def die(kit: UnpackedKit, number: int) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def square_or_die(kit: UnpackedKit, number: int, marker: str) -> int:
+    """The worker that does the third task first is killed by it."""
+    if number == 3:
+        die_once(marker)
+    return number**2
+
+
+def play_or_die(kit: UnpackedKit, case: int, robot: int, lacking: Imperfections, marker: str) -> Outcome:
+    if robot == 1:
+        die_once(marker)
+    return play_case(kit, case, robot, lacking)
+
+
+def die_once(marker: str) -> None:
+    if not Path(marker).exists():
+        Path(marker).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def wait_for_ever(kit: UnpackedKit, number: int, folder: str) -> None:
+    Path(folder, f"began-{number}").touch()
+    while True:
+        time.sleep(1000)

@@ -1,0 +1,133 @@
+"""Tasks for several processes: the same comes of them, a worker that dies is told, and nothing is left behind."""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from lumen.app.work.local_pool import TERMINATED
+from lumen.app.work.tasks import TaskHead, do_task, engine
+from lumen.app.work.work_kit import WorkKit, name_of
+from lumen.app.work.workers import Workers, cores, workers_of
+from lumen.cli.main import main
+from lumen.errors import UsageError, WorkersError
+from tests.guarded import PIPE, Guarded
+from tests.house.test_guarded import left
+from tests.waiting import until
+from tests.workers.small_tasks import die, process, square, square_or_die
+
+ROOT = Path(__file__).parents[2]
+KIT = WorkKit({}, {"models/mesh.stl": b"solid"})
+TASKS = [(number,) for number in range(6)]
+GONE_TIMEOUT = 60.0
+
+
+@pytest.mark.slow
+def test_two_processes_do_what_one_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    alone = list(Workers(1).results(square, KIT, TASKS))
+    assert alone == [(number, (number**2, b"solid")) for number in range(6)]
+    assert sorted(Workers(2).results(square, KIT, TASKS)) == alone
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_one_task_or_one_worker_takes_no_other_process() -> None:
+    assert {found for _, found in Workers(1).results(process, KIT, TASKS)} == {os.getpid()}
+    assert {found for _, found in Workers(8).results(process, KIT, TASKS[:1])} == {os.getpid()}
+    assert list(Workers(8).results(process, KIT, [])) == []
+
+
+@pytest.mark.slow
+def test_what_a_dead_worker_was_at_is_done_again_and_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    tasks = [(number, str(tmp_path / "died")) for number in range(6)]
+    assert sorted(Workers(2).results(square_or_die, KIT, tasks)) == [(number, number**2) for number in range(6)]
+    (told,) = caplog.messages
+    assert told.startswith("a worker process ended before its time (was there too little memory?): ")
+    assert told.endswith(" tasks are done again")
+
+
+@pytest.mark.slow
+def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(WorkersError, match=r"a second time: take fewer of them with --workers 1$"):
+        list(Workers(2).results(die, KIT, TASKS))
+    assert list(tmp_path.iterdir()) == []
+
+
+WAITING = """
+import sys
+from lumen.app.work.work_kit import WorkKit
+from lumen.app.work.workers import Workers
+from tests.workers.small_tasks import wait_for_ever
+
+if __name__ == "__main__":
+    try:
+        list(Workers(2).results(wait_for_ever, WorkKit({}, {}), [(n, sys.argv[1]) for n in range(4)]))
+    except KeyboardInterrupt:
+        sys.exit(130)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "everybody", "code"),
+    [
+        (signal.SIGINT, True, 130),
+        (signal.SIGINT, False, 130),
+        (signal.SIGTERM, False, TERMINATED),
+        (signal.SIGKILL, False, -signal.SIGKILL),
+    ],
+    ids=["Ctrl-C", "SIGINT", "SIGTERM", "SIGKILL"],
+)
+def test_whatever_ends_it_leaves_no_process_and_no_folder(
+    number: int, everybody: bool, code: int, tmp_path: Path
+) -> None:
+    """Four real programs with two workers each: signals can't be tried otherwise."""
+    program, began = tmp_path / "program.py", tmp_path / "began"
+    program.write_text(WAITING)
+    began.mkdir()
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
+    command = [sys.executable, str(program), str(began)]
+    with Guarded(command, env=environment, cwd=tmp_path, stderr=PIPE, text=True) as running:
+        until(lambda: len(list(began.iterdir())) >= 2, GONE_TIMEOUT)
+        assert list(tmp_path.glob("lumen-work-*"))
+        (os.killpg if everybody else os.kill)(running.pid, number)
+        _, said = running.communicate(timeout=GONE_TIMEOUT)
+        assert running.returncode == code
+        assert not said or number == signal.SIGKILL  # then multiprocessing's own tracker tells what it cleans up
+    until(lambda: not left(tmp_path), GONE_TIMEOUT)
+    assert left(tmp_path) == []
+
+
+def test_a_worker_with_other_software_refuses() -> None:
+    packed = KIT.packed()
+    with pytest.raises(WorkersError, match="Install the same Lumen"):
+        do_task(TaskHead(square, "Lumen of yesterday", name_of(packed)), packed, (1,))
+    assert "lumen-robot 0" in engine()
+
+
+def test_the_same_files_travel_as_the_same_bytes() -> None:
+    one = WorkKit({"": {"a": b"1", "b": b"2"}}, {"x": b"", "y": b""})
+    other = WorkKit({"": {"b": b"2", "a": b"1"}}, {"y": b"", "x": b""})
+    assert one.packed() == other.packed()
+    assert name_of(one.packed()) != name_of(KIT.packed())
+
+
+def test_workers_are_a_number_or_a_cluster() -> None:
+    assert workers_of(None).count == cores()
+    assert workers_of("3").count == 3
+    assert workers_of("dask://[::1]:8786").address == "tcp://[::1]:8786"
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "1025", "9" * 5000, "two", "", "dask://", "dask://here", "dask://here:0"])
+def test_what_is_neither_is_refused(text: str) -> None:
+    with pytest.raises(UsageError):
+        workers_of(text)
+
+
+@pytest.mark.parametrize("words", [["--workers", "2"], ["--physics", "--workers", "many"]])
+def test_lint_refuses_workers_that_make_no_sense(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lint", str(ROOT), *words]) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
