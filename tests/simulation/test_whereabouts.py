@@ -80,7 +80,7 @@ def believed(robot: SimulatedRobot) -> Pose:
     return middle(robot.base.odometry.feet)
 
 
-@pytest.mark.parametrize("seed", [0, 2])
+@pytest.mark.parametrize("seed", [pytest.param(0, marks=pytest.mark.soak), 2])
 def test_a_robot_that_fell_on_its_way_knows_where_it_faces(body: Body, seed: int) -> None:
     robot = any_robot(body, seed)
     robot.start("w", Walk(0.0, 0.0, pi / 2))
