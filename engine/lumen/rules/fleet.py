@@ -2,7 +2,7 @@
 
 import base64
 import binascii
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from urllib.parse import urlsplit
 
 from lumen.interpreters.fleet.conditions import condition_faults
@@ -31,6 +31,24 @@ def check(draft: ProjectDraft) -> None:
     fleet, report = draft.fleet, draft.reports.get(FLEET_FILE)
     if fleet is not None and report is not None:
         check_fleet(fleet, report)
+        _at_home(draft, fleet)
+
+
+def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
+    """The house that lumen.yaml names, and its robots there, are in the fleet."""
+    settings, main = draft.settings, draft.main
+    data = main.document.data if main else None
+    if settings is None or main is None or not isinstance(data, Mapping) or "house" not in data:
+        return
+    house = fleet.houses.get(settings.house)
+    if house is None:
+        hint = did_you_mean(settings.house, fleet.houses, "there are")
+        main(UNKNOWN_HOUSE, ("house",), f"fleet.yaml has no house `{settings.house}`", hint)
+        return
+    for name in settings.robots:
+        if name not in house.robots:
+            hint = did_you_mean(name, house.robots, "it has")
+            main(UNKNOWN_HOUSE, ("house",), f"the house has no robot `{name}` in fleet.yaml", hint)
 
 
 def check_fleet(fleet: Fleet, report: DocumentReport) -> None:
