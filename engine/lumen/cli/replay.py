@@ -1,26 +1,33 @@
 """`lumen replay`: what happened, taken again with the files that ran then, or with others."""
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from datetime import datetime
 from pathlib import Path
 
 import lumen
 from lumen.app.one_robot import one_robot
-from lumen.app.replaying.journals import chosen, listed, until
+from lumen.app.replaying.journals import ChosenJournal, chosen, listed, until
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
-from lumen.app.replaying.replay_report import replayed
+from lumen.app.replaying.replay_report import ReplayReport, replayed
+from lumen.app.replaying.shared_replay import replay_kit, shared_against, shared_replay
 from lumen.app.replaying.show import show
 from lumen.app.setup import SPEEDS, set_up
 from lumen.app.versions import version
+from lumen.app.work.workers import workers_of
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
 from lumen.cli.reach import configure_robot_name
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.transcript import Transcript
+from lumen.cli.workers_option import configure_workers
 from lumen.interpreters.replay.entries import RecordedEntry
+from lumen.loading.chosen_robot import as_robot
 from lumen.loading.packaged import find_project
+
+SMALL = 1_000_000
+"""A journal of fewer bytes is replayed before other processes have begun."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -39,6 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--robot", choices=("recording", "simulation"), help="show it again, by this robot")
     add("--speed", choices=SPEEDS, default="1", help="with --robot: times real time (default: 1)")
     configure_robot_name(parser)
+    configure_workers(parser)
     configure_format(parser)
 
 
@@ -55,17 +63,30 @@ def run(options: argparse.Namespace) -> int:
     bundles = KeptBundles(root, robot)
     if options.robot:
         return _show(root, entries, bundles, options)
-    if options.bundle is None:
-        report = replayed(entries, bundles.machine)
-    else:
-        new = version(options.bundle, root, robot).project
-        with progress() as tell:
-            report = against(entries, bundles, new, tell=lambda done: tell(done, 0.0, f"{done} visits played"))
+    with progress() as tell:
+        report = _report(journal, entries, bundles, options, lambda done: tell(done, 0.0, f"{done} visits played"))
     if options.format == "json":
         print_object(report.to_json())
     else:
         print("\n".join(replay_lines(report, other=options.bundle is not None)))
     return int(bool(report.differ))
+
+
+def _report(
+    journal: ChosenJournal,
+    entries: Iterable[RecordedEntry],
+    bundles: KeptBundles,
+    options: argparse.Namespace,
+    tell: Callable[[int], None],
+) -> ReplayReport:
+    """What came of the entries with the files that ran then, or with others; of many by several workers."""
+    new = version(options.bundle, journal.root, bundles.robot) if options.bundle is not None else None
+    workers = workers_of(options.workers)
+    size = sum(file.stat().st_size for file in journal.files)
+    if workers.alone or (options.workers is None and size < SMALL):
+        return against(entries, bundles, new.project, tell=tell) if new else replayed(entries, bundles.machine)
+    kit = replay_kit(journal, bundles, as_robot(new.files, bundles.robot) if new else None)
+    return (shared_against if new else shared_replay)(entries, bundles, kit, workers, tell)
 
 
 def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, options: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from lumen.interpreters.replay.against import SAME, VisitVerdict
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, replay
 from lumen.interpreters.replay.visits import RecordedVisit, VisitWatch
+from lumen.language.machines import MachineDefinition
 
 
 class ReplayDifference(NamedTuple):
@@ -67,9 +68,37 @@ class ReplayReport:
         place = str(verdict.place or "")
         self.differ.append(ReplayDifference(self.visits, at, verdict.was, verdict.now, verdict.how, place))
 
+    def join(self, more: "ReplayReport") -> None:
+        """What came of visits that were played after these with other files."""
+        self.differ += [row._replace(visit=row.visit + self.visits) for row in more.differ]
+        self.visits += more.visits
+        self.steps += more.steps
+        self.same += more.same
+        self.redacted += more.redacted
+        for why, count in more.unknown.items():
+            self.unknown[why] = self.unknown.get(why, 0) + count
+
     def leave_out(self, why: str) -> None:
         """One more can't be compared."""
         self.unknown[why] = self.unknown.get(why, 0) + 1
+
+
+class TakenAgain(NamedTuple):
+    """What counts of a replayed step, small enough to be sent: whether it was taken, and what it was and is now.
+
+    Both are empty where it is the same.
+    """
+
+    stepped: bool
+    unknown: str = ""
+    differs: bool = False
+    was: str = ""
+    now: str = ""
+
+    @classmethod
+    def of(cls, row: ReplayedStep) -> "TakenAgain":
+        words = (str(row.was), str(row.now)) if row.differs else ()
+        return cls(row.step is not None, row.unknown, row.differs, *words)
 
 
 class ReplayCount:
@@ -80,24 +109,24 @@ class ReplayCount:
         self._watch, self._inside, self._differs, self._redacted = VisitWatch(), False, False, False
         self._outside = False
 
-    def take(self, row: ReplayedStep) -> None:
-        """The next step."""
-        report, entry = self.report, row.entry
-        part = self._watch.take(entry, row.machine)
+    def take(self, entry: RecordedEntry, machine: MachineDefinition | None, row: TakenAgain) -> None:
+        """The next step, and the machine that ran then."""
+        report = self.report
+        part = self._watch.take(entry, machine)
         begins = isinstance(entry, JournalJump) and entry.kind == "start"
         if self._inside and (not part or begins):
             self.end()
         if part and not self._inside:
             report.visits += 1
             self._inside, self._differs, self._redacted = True, False, False
-        report.steps += row.step is not None
+        report.steps += row.stepped
         self._redacted |= entry.redacted
         if isinstance(entry, JournalJump):
             report.lost += int(entry.said.get("lost", 0))
         if row.unknown and not entry.redacted:
             report.unknown[row.unknown] = report.unknown.get(row.unknown, 0) + 1
         if row.differs and not (self._differs if self._inside else self._outside):
-            self._tell(row)
+            self._tell(entry, row)
         if self._inside and not self._watch.away:
             self.end()
 
@@ -108,8 +137,7 @@ class ReplayCount:
             self.report.redacted += self._redacted
             self.report.same += not self._redacted and not self._differs
 
-    def _tell(self, row: ReplayedStep) -> None:
-        entry = row.entry
+    def _tell(self, entry: RecordedEntry, row: TakenAgain) -> None:
         at = self._watch.at
         number = self.report.visits if self._inside else 0
         what = entry.event.name if isinstance(entry, JournalInput) else entry.kind
@@ -124,7 +152,7 @@ def replayed(entries: Iterable[RecordedEntry], machines: MachineSource) -> Repla
     """What comes of taking all steps again with the files that ran then."""
     count = ReplayCount()
     for row in replay(entries, machines):
-        count.take(row)
+        count.take(row.entry, row.machine, TakenAgain.of(row))
     count.end()
     return count.report
 

@@ -2,10 +2,11 @@
 
 import logging
 import os
-from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import Executor, as_completed
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from itertools import chain, islice
 from typing import Any, TypeVar
 
 from lumen.app.work.cluster import SCHEME, cluster, cluster_address, lost_in_cluster
@@ -16,6 +17,8 @@ from lumen.errors import UsageError, WorkersError
 
 Result = TypeVar("Result")
 MAX_WORKERS = 1024
+IN_FLIGHT = 256
+"""How many tasks are given away at once: what they carry is in memory, and a cluster may have as many workers."""
 _log = logging.getLogger(__name__)
 
 
@@ -25,32 +28,40 @@ class Workers:
     def __init__(self, count: int = 1, address: str = "") -> None:
         self.count, self.address = count, address
 
+    @property
+    def alone(self) -> bool:
+        """Whether it is this process itself."""
+        return not self.address and self.count == 1
+
     def results(
-        self, function: Callable[..., Result], kit: WorkKit, tasks: Sequence[tuple[Any, ...]]
+        self, function: Callable[..., Result], kit: WorkKit, tasks: Iterable[tuple[Any, ...]]
     ) -> Generator[tuple[int, Result], None, None]:
         """The number of each task and what `function(kit, *task)` returns, as they come; close it to end the work.
 
-        `function` stands in a module, and depends on nothing else. What a lost worker was at is done once more, by new
-        ones. Raises WorkersError where they are lost again, or can't be reached, and whatever a task raises.
+        `function` stands in a module, and depends on nothing else. Tasks are taken from where they come when there is
+        somebody to do them. What a lost worker was at is done once more, by new ones. Raises WorkersError where they
+        are lost again, or can't be reached, and whatever a task raises.
         """
+        waiting = iter(tasks)
+        first = list(islice(waiting, self.count if not self.address else 1))
+        waiting = chain(first, waiting)
         with working_folder() as folder:
-            if not self.address and min(self.count, len(tasks)) <= 1:
+            if not self.address and len(first) <= 1:
                 own = UnpackedKit(kit, "kit", folder)
-                yield from ((number, function(own, *task)) for number, task in enumerate(tasks))
+                yield from ((number, function(own, *task)) for number, task in enumerate(waiting))
                 return
             packed = kit.packed()
             name = name_of(packed)
-            left = dict(enumerate(tasks))
+            numbered: Iterator[tuple[int, tuple[Any, ...]]] = enumerate(waiting)
             for again in (False, True):
-                with self._opened(packed, len(left), folder) as (executor, blob, where, lost):
-                    head = TaskHead(function, engine(), name, where)
-                    for number, result in _done(executor, head, blob, left, lost):
-                        del left[number]
-                        yield number, result
-                if not left:
+                with self._opened(packed, len(first), folder) as (executor, blob, where, lost):
+                    work = _Work(executor, TaskHead(function, engine(), name, where), blob, lost)
+                    yield from work.done(numbered)
+                if not work.left:
                     return
                 if not again:
-                    _log.warning("%s: %d tasks are done again", self._trouble(), len(left))
+                    _log.warning("%s: %d tasks are done again", self._trouble(), len(work.left))
+                numbered = chain(work.left.items(), numbered)
             raise WorkersError(f"{self._trouble()} a second time: {self._remedy()}")
 
     @contextmanager
@@ -74,22 +85,39 @@ class Workers:
         return "look into the logs of its workers" if self.address else "take fewer of them with --workers 1"
 
 
-def _done(
-    executor: Executor, head: TaskHead, blob: Any, tasks: dict[int, tuple[Any, ...]], lost: Any
-) -> Iterator[tuple[int, Any]]:
-    """What came of the tasks, as it comes; those are missing whose worker was lost."""
-    futures = {}
-    try:
-        for number, task in tasks.items():
-            futures[executor.submit(do_task, head, blob, task)] = number
-    except lost:
-        pass
-    for future in as_completed(futures):
-        try:
-            result = future.result()
-        except lost:
-            continue
-        yield futures[future], result
+class _Work:
+    """Tasks that are given to an executor, some at a time; `left` are those of which nothing came back."""
+
+    def __init__(self, executor: Executor, head: TaskHead, blob: Any, lost: Any) -> None:
+        self._executor, self._head, self._blob, self._lost = executor, head, blob, lost
+        self._futures: dict[Future[Any], int] = {}
+        self._broken = False
+        self.left: dict[int, tuple[Any, ...]] = {}
+
+    def done(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> Iterator[tuple[int, Any]]:
+        """What came of the tasks, as it comes; none is taken any more as soon as workers are lost."""
+        while True:
+            self._give(islice(tasks, 0 if self._broken else IN_FLIGHT - len(self._futures)))
+            if not self._futures:
+                return
+            for future in wait(self._futures, return_when=FIRST_COMPLETED).done:
+                number = self._futures.pop(future)
+                try:
+                    result = future.result()
+                except self._lost:
+                    self._broken = True
+                else:
+                    del self.left[number]
+                    yield number, result
+
+    def _give(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> None:
+        for number, task in tasks:
+            self.left[number] = task
+            try:
+                self._futures[self._executor.submit(do_task, self._head, self._blob, task)] = number
+            except self._lost:
+                self._broken = True
+                return
 
 
 def workers_of(text: str | None) -> Workers:

@@ -1,0 +1,125 @@
+"""A long journal replayed by several workers, who share its steps or its visits; the report is that of one."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing
+from itertools import islice
+
+from lumen.app.replaying.journals import ChosenJournal
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import VisitPlayer, with_machines
+from lumen.app.replaying.replay_report import ReplayCount, ReplayReport, TakenAgain
+from lumen.app.work.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.app.work.workers import Workers
+from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
+from lumen.interpreters.replay.replaying import replay
+from lumen.interpreters.replay.visits import RecordedVisit, visits
+from lumen.language.machines import MachineDefinition
+from lumen.language.projects import Project
+from lumen.runtime.inputs.journal_file import header_of
+
+VISITS = 20
+"""How many visits are a task."""
+ENTRIES = 5_000
+"""A task of steps ends with the first keyframe after so many."""
+NEW = "new"
+"""The name of the other files among the bundles."""
+
+Row = tuple[RecordedEntry, MachineDefinition | None]
+
+
+def replay_kit(journal: ChosenJournal, bundles: KeptBundles, new: Mapping[str, bytes] | None = None) -> WorkKit:
+    """What workers need of a journal: the files that ran then, and others that are to be tried."""
+    hashes = {header_of(file).bundle for file in journal.files}
+    kept = {hash: files for hash in hashes if (files := bundles.files(hash))}
+    return WorkKit({**kept, **({NEW: new} if new else {})}, models_in(journal.root))
+
+
+def shared_replay(
+    entries: Iterable[RecordedEntry],
+    bundles: KeptBundles,
+    kit: WorkKit,
+    workers: Workers,
+    tell: Callable[[int], None] = lambda _: None,
+) -> ReplayReport:
+    """What `replayed` returns; `tell` hears how many visits were counted."""
+    count, parts, ready = ReplayCount(), dict[int, list[Row]](), dict[int, list[TakenAgain]]()
+    following = 0
+
+    def tasks() -> Iterator[tuple[tuple[RecordedEntry, ...], bool]]:
+        for number, (lead, rows) in enumerate(_parts(with_machines(entries, bundles))):
+            parts[number] = rows
+            yield (*lead, *(entry for entry, _ in rows)), bool(lead)
+
+    with closing(workers.results(take_again, kit, tasks())) as results:
+        for number, taken in results:
+            ready[number] = taken
+            while following in ready:
+                for (entry, machine), again in zip(parts.pop(following), ready.pop(following), strict=True):
+                    count.take(entry, machine, again)
+                following += 1
+            tell(count.report.visits)
+    count.end()
+    return count.report
+
+
+def shared_against(
+    entries: Iterable[RecordedEntry],
+    bundles: KeptBundles,
+    kit: WorkKit,
+    workers: Workers,
+    tell: Callable[[int], None] = lambda _: None,
+) -> ReplayReport:
+    """What `against` returns for the kit's new files; `tell` hears how many visits were played."""
+    reports, report, played = dict[int, ReplayReport](), ReplayReport(), 0
+    every = visits(with_machines(entries, bundles))
+    tasks = iter(lambda: (tuple(islice(every, VISITS)),), ((),))
+    with closing(workers.results(play_visits, kit, tasks)) as results:
+        for number, part in results:
+            reports[number] = part
+            played += part.visits
+            tell(played)
+    for number in sorted(reports):
+        report.join(reports[number])
+    return report
+
+
+def take_again(kit: UnpackedKit, entries: tuple[RecordedEntry, ...], led: bool) -> list[TakenAgain]:
+    """A task: steps taken again. Where it is `led`, the first entry says only where the behaviour stood."""
+    taken = [TakenAgain.of(row) for row in replay(entries, _KitBundles(kit).machine)]
+    return taken[1:] if led else taken
+
+
+def play_visits(kit: UnpackedKit, visits: tuple[RecordedVisit, ...]) -> ReplayReport:
+    """A task: visits played with the new files."""
+    new = kit.project(NEW)
+    assert new is not None  # who sent the task has loaded it
+    report, player = ReplayReport(), VisitPlayer(_KitBundles(kit), new)
+    for visit in visits:
+        player.play(visit, report)
+    return report
+
+
+class _KitBundles(KeptBundles):
+    """The bundles of a journal where a worker has them."""
+
+    def __init__(self, kit: UnpackedKit) -> None:
+        super().__init__(kit.root)
+        self._kit = kit
+
+    def load(self, hash: str) -> Project | None:
+        return self._kit.project(hash)
+
+
+def _parts(rows: Iterable[Row]) -> Iterator[tuple[list[RecordedEntry], list[Row]]]:
+    """The journal cut at jumps, which say where the behaviour stands: a part is compared up to the jump that ends it.
+
+    Before each part but the first comes that jump once more, from which its steps go on.
+    """
+    lead, part = list[RecordedEntry](), list[Row]()
+    for row in rows:
+        part.append(row)
+        if len(part) >= ENTRIES and isinstance(row[0], JournalJump):
+            yield lead, part
+            lead, part = [row[0]], []
+    if part:
+        yield lead, part
