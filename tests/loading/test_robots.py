@@ -46,7 +46,7 @@ def test_each_robot_has_what_is_its_own_and_what_is_of_all(two: Path) -> None:
     assert (ana.robot, ana.behavior, ana.languages, ana.body.name) == ("Ana", "hello", ("en",), "NAO")
     assert (ben.robot, ben.behavior, ben.languages, ben.body.name) == ("Ben", "other", ("id", "en"), "NAO V6")
     assert ana.robots["Ana"].at == StartPose(0.1, -0.4, radians(90))
-    assert ana.robots["Ben"].at == StartPose(0.0, 0.8, 0.0)
+    assert ana.robots["Ben"].at == StartPose(0.0, 0.3, 0.0)
     assert ana.house == "two-of-us"
     assert ana.hash == ben.hash
     assert ben.key_of("command") == "avatar.Ben.command"

@@ -6,7 +6,7 @@ from lumen.app.causes import innermost, reason_of, why
 from lumen.app.ignoring import IgnoredEvents
 from lumen.interpreters.statechart import Step, finished
 from lumen.interpreters.statechart.nesting import flattened_steps
-from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
+from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start, Tell
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import (
@@ -75,6 +75,8 @@ class Narrator(Observer):
                 self._started(id, wanted)
             case Publish(route):
                 self.line("robot", f"publishes on {route}")
+            case Tell(robot, event):
+                self.line("robot", f"tells {robot} `{event}`")
             case Log(text):
                 self.line("log", text)
 

@@ -19,6 +19,7 @@ from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import Setup
 from lumen.bus import connect
 from lumen.buses.validated import validated
+from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
@@ -108,7 +109,8 @@ class HouseRun:
     def _set_up(self) -> dict[str, Setup]:
         if self._parts and ROBOT_PART not in self._parts:
             return {}
-        return set_up_house(self._options.robot, self.projects, self._options.speed, self.stories)
+        lacking = imperfections_of(self._options.imperfections)
+        return set_up_house(self._options.robot, self.projects, self._options.speed, self.stories, lacking)
 
     def _transcript(self, name: str) -> Transcript:
         width = max(map(len, self.projects))

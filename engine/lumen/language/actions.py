@@ -93,7 +93,7 @@ class Send:
     """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back.
 
     A delay that is a template says when the action is done how long it is: `{{ context.patience }}s`. `to` is the id
-    of a behaviour that this one has invoked, or PARENT for the one that invoked this.
+    of a behaviour that this one has invoked, PARENT for the one that invoked this, or a robot of the house.
     """
 
     event: str

@@ -150,6 +150,15 @@ class Publish:
 
 
 @dataclass(frozen=True, slots=True)
+class Tell:
+    """Let another robot of the house hear an event."""
+
+    robot: str
+    event: str
+    data: Any = None
+
+
+@dataclass(frozen=True, slots=True)
 class Log:
     """Write a line into the exhibition's log."""
 
@@ -181,5 +190,5 @@ class Cancel:
     id: str
 
 
-Command = Start | Cancel | Publish | Log
+Command = Start | Cancel | Publish | Tell | Log
 """Everything a step can ask for."""

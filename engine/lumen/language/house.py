@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-DEFAULT_SPACING = 0.8
-"""How far to the left of the robot before it the next one stands where lumen.yaml does not say [m]."""
+DEFAULT_SPACING = 0.6
+"""How far robots are from each other, in a row, where lumen.yaml does not say where they stand [m]."""
 
 
 @dataclass(frozen=True, slots=True)

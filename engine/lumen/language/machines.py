@@ -154,7 +154,7 @@ class MachineDefinition:
 
     `phrases`, `answers` and `lists` are its own and those of its `words` files; `borrowed` says of those from which
     file each comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the
-    names of their behaviours.
+    names of their behaviours. `robots` are those of the house, where it has several: events can be sent to them.
     """
 
     id: str
@@ -171,6 +171,7 @@ class MachineDefinition:
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
+    robots: tuple[str, ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
         """What it says, for another process: what was made of it here is none of its fields."""

@@ -68,13 +68,15 @@ CONFIG_COMMAND, CONFIG_STATUS = "lumen.{robot}.config.command", "lumen.{robot}.c
 """Keys of ours that have no route: orders to reload, and what comes of them."""
 OPERATOR_REQUEST, OPERATOR_ANSWER = "lumen.{robot}.operator.request", "lumen.operator.answer"
 """What operators ask, and the answers, which are told apart by their `correlation_id`."""
+TOLD = "lumen.{robot}.event"
+"""Where a robot hears what others of its house tell it."""
 INTERNAL_ALIASES: Mapping[str, str] = {
     CONFIG_COMMAND: "lumen.config.command",
     CONFIG_STATUS: "lumen.config.status",
     OPERATOR_REQUEST: "lumen.operator.request",
 }
 """What these are called where there is one robot."""
-INTERNAL_KEYS = (*INTERNAL_ALIASES.values(), *INTERNAL_ALIASES, OPERATOR_ANSWER)
+INTERNAL_KEYS = (*INTERNAL_ALIASES.values(), *INTERNAL_ALIASES, OPERATOR_ANSWER, TOLD)
 
 
 def key_of_robot(key: str, robot: str) -> str:

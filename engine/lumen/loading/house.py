@@ -59,8 +59,8 @@ def _spec(name: str, row: Mapping[str, Any], data: Mapping[str, Any], at: StartP
 def _pose(data: Mapping[str, Any], where: NodePath, index: int, report: DocumentReport) -> StartPose:
     row, units = data["robots"][where[1]].get("at"), data.get("units", {})
     if row is None:
-        return StartPose(y=DEFAULT_SPACING * index)
+        return StartPose(y=DEFAULT_SPACING * (index - (len(data["robots"]) - 1) / 2))
     if not all(finite(value, report, (*where, key)) for key, value in row.items()):
-        return StartPose(y=DEFAULT_SPACING * index)
+        return StartPose(y=DEFAULT_SPACING * (index - (len(data["robots"]) - 1) / 2))
     length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
     return StartPose(row.get("x", 0.0) * length, row.get("y", 0.0) * length, row.get("facing", 0.0) * angle)

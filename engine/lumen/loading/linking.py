@@ -30,6 +30,12 @@ def link(
     return {name: linker.machine(name) for name in machines}
 
 
+def with_robots(machine: MachineDefinition, robots: tuple[str, ...]) -> MachineDefinition:
+    """The machine, and those that it invokes, in a house where these robots hear what is sent to them."""
+    invoked = {name: with_robots(each, robots) for name, each in machine.invoked.items()}
+    return replace(machine, robots=robots, invoked=invoked)
+
+
 class _Linker:
     """Goes down from each behaviour to what it invokes; `way` are those above the one that is being linked."""
 

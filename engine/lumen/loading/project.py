@@ -32,7 +32,7 @@ from lumen.loading.fleet import build_fleet
 from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend, shipped_models
 from lumen.loading.life import LIFE_FOLDER, build_life
-from lumen.loading.linking import link
+from lumen.loading.linking import link, with_robots
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
@@ -85,6 +85,9 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     found.bodies = build_likes(_built(models), sources, found.names[MODELS])
     reports = {name: file.report for name, file in behaviors.items()}
     found.behaviors = link(_built(behaviors), reports, found.names["behaviors"])
+    if found.settings and found.settings.told_apart:
+        robots = tuple(found.settings.robots)
+        found.behaviors = {name: with_robots(machine, robots) for name, machine in found.behaviors.items()}
     found.stories = _built(_each(found, "behaviors/stories", build_story))
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     if body := found.body:

@@ -1,4 +1,4 @@
-"""What behaviours send to one another: to those that they invoke, and to the one that invoked them."""
+"""What behaviours send to one another: those that they invoke, the one that invoked them, and other robots'."""
 
 from collections.abc import Iterator
 
@@ -28,6 +28,8 @@ def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefini
     if send.to == PARENT:
         return [machine for machine in draft.behaviors.values() if name in set(_invoked(machine).values())]
     behavior = _invoked(draft.behaviors[name]).get(send.to)
+    if behavior is None and draft.settings and send.to in draft.behaviors[name].robots:
+        behavior = draft.settings.robots[send.to].behavior
     return [draft.behaviors[behavior]] if behavior in draft.behaviors else []
 
 
@@ -48,8 +50,8 @@ def _invoked(machine: MachineDefinition) -> dict[str, str]:
 
 def _known(machine: MachineDefinition, report: DocumentReport, site: ActionSite, send: Send) -> None:
     ids = _invoked(machine).keys()
-    if send.to not in ids:
-        hint = did_you_mean(send.to, {*ids, PARENT}, "it can go to")
+    if send.to not in ids and send.to not in machine.robots:
+        hint = did_you_mean(send.to, {*ids, *machine.robots, PARENT}, "it can go to")
         report(UNKNOWN_RECIPIENT, (*site.step.where, "send", "to"), f"nothing is invoked here as `{send.to}`", hint)
 
 

@@ -8,6 +8,7 @@ from time import time
 from lumen.language.causes import PEOPLE, Cause, CauseKind
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.routing_keys import TOLD, key_of_robot
 from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 
@@ -24,6 +25,8 @@ class Inbox:
         self._waiting: deque[tuple[str, object, Cause]] = deque(maxlen=MAX_WAITING_EVENTS)
         self._drops = DropLog(_log, "events")
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
+        self._told: Callable[[], None] | None = None
+        self._known, self._robots = set[str](), set[str]()
 
     def listen(self, project: Project) -> None:
         """Listen to the routes of this project: new ones first, then no longer to those that are gone."""
@@ -32,6 +35,7 @@ class Inbox:
             self._undo[key, event] = self._bus.subscribe(key, self._receiver(event))
         for gone in sorted(self._undo.keys() - wanted):
             self._undo.pop(gone)()
+        self.hear_robots(project)
 
     @property
     def empty(self) -> bool:
@@ -40,6 +44,28 @@ class Inbox:
 
     def __len__(self) -> int:
         return len(self._waiting)
+
+    def hear_robots(self, project: Project) -> None:
+        """Listen to what other robots of the house tell this one, where it has any."""
+        self._known = {t.event for state in project.machine.states.values() for t in state.transitions if t.event}
+        self._robots = set(project.robots)
+        key = key_of_robot(TOLD, project.robot)
+        if project.told_apart and self._told is None:
+            self._told = self._bus.subscribe(key, self._hear_robot)
+        elif not project.told_apart and self._told is not None:
+            self._told()
+            self._told = None
+
+    def _hear_robot(self, message: Message) -> None:
+        """Only what the behaviour waits for by that very name, from a robot of the house: nobody fakes an answer."""
+        match message.body:
+            case {"event": str(event), "data": data, "from": str(robot)} if (
+                event in self._known and robot in self._robots
+            ):
+                cause = Cause("message", message.id, message.key, robot, time())
+                self._push(event, data, cause)
+            case _:
+                _log.warning("what came on %s is no event that this robot waits for", message.key)
 
     def drain(self, now: float) -> list[Event]:
         """Everything that has arrived, as events at `now` [s]; each is caused by its message."""
@@ -54,8 +80,9 @@ class Inbox:
         def receive(message: Message) -> None:
             kind: CauseKind = "person" if message.sender in PEOPLE else "message"
             cause = Cause(kind, message.id, message.key, message.sender, time())
-            self._drops.push(
-                self._waiting, (event, message.body, cause), lambda waiting: waiting[0], "the behaviour is too slow"
-            )
+            self._push(event, message.body, cause)
 
         return receive
+
+    def _push(self, event: str, body: object, cause: Cause) -> None:
+        self._drops.push(self._waiting, (event, body, cause), lambda waiting: waiting[0], "the behaviour is too slow")

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
+from lumen.errors import BusError
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import (
     BodyCommand,
@@ -18,10 +19,13 @@ from lumen.language.commands import (
     Rest,
     Start,
     Stop,
+    Tell,
     Track,
 )
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.routes import DEFAULT_COMMAND_TTL
+from lumen.language.routing_keys import TOLD, key_of_robot
 from lumen.language.skills import lack_of, tracked, tracking_lack
 from lumen.loading.sounds import sound_duration
 from lumen.ports import Bus, Perform, Robot, RobotCommand
@@ -60,8 +64,17 @@ class Performer:
             case Publish(name, body):
                 if reason := send(self._bus, project, name, body, MessageOrigin(cause=f"step {step}" if step else "")):
                     self.events.append(Event("error.communication", {"route": name, "reason": reason}, now))
+            case Tell(robot, event, data):
+                self._tell(project, robot, event, data, MessageOrigin(cause=f"step {step}" if step else ""), now)
             case Log(text):
                 _log.info(text)
+
+    def _tell(self, project: Project, robot: str, event: str, data: object, origin: MessageOrigin, now: float) -> None:
+        body = {"event": event, "data": {} if data is None else data, "from": project.robot}
+        try:
+            self._bus.publish(key_of_robot(TOLD, robot), body, ttl=DEFAULT_COMMAND_TTL, origin=origin)
+        except BusError as error:
+            self.events.append(Event("error.communication", {"to": robot, "reason": str(error)}, now))
 
     def _start(self, project: Project, id: str, wanted: BodyCommand, now: float) -> None:
         controller, body = project.controllers.get(tracked(wanted)), project.body

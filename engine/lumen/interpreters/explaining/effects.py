@@ -8,7 +8,7 @@ from lumen.interpreters.explaining.history import StepHistory
 from lumen.interpreters.explaining.names import KnownNames, same_text, state_named
 from lumen.interpreters.explaining.words import of_command
 from lumen.interpreters.statechart.nesting import entered_names
-from lumen.language.commands import Command, Publish, Say, Start
+from lumen.language.commands import Command, Publish, Say, Start, Tell
 
 
 class Effect(NamedTuple):
@@ -58,6 +58,8 @@ def is_meant(command: Command, what: str) -> bool:
             return what in (getattr(wanted, name) for name in wanted.__dataclass_fields__)
         case Publish(route):
             return what in ("", route)
+        case Tell(_, event):
+            return what in ("", event)
     return False
 
 

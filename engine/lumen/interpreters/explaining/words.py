@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.commands import Cancel, Command, Log, Publish, Say, Start
+from lumen.language.commands import Cancel, Command, Log, Publish, Say, Start, Tell
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.verbs import verb_of
@@ -24,6 +24,8 @@ def of_command(command: Command) -> str:
             return f"says “{wanted.text}”" if isinstance(wanted, Say) else verb_of(wanted).transcript(wanted)
         case Publish(route):
             return f"publishes on `{route}`"
+        case Tell(robot, event):
+            return f"tells {robot} `{event}`"
         case Log(text):
             return f"logs “{text}”"
         case Cancel(id):

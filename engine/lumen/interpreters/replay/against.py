@@ -107,6 +107,8 @@ def noticed(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str, int
             yield at, told, number
         elif "Publish" in command:
             yield at, f"Publish {_words(command['Publish'])}", number
+        elif "Tell" in command:
+            yield at, f"Tell {_words(command['Tell'])}", number
 
 
 def _words(said: Mapping[str, Any]) -> str:

@@ -17,6 +17,7 @@ class CompiledMachine(NamedTuple):
     planner: MicrostepPlanner
     fast_paths: FastPaths
     invoked: "Mapping[str, CompiledMachine]"
+    robots: tuple[str, ...] = ()
 
 
 def compiled(definition: MachineDefinition) -> CompiledMachine:
@@ -27,6 +28,6 @@ def compiled(definition: MachineDefinition) -> CompiledMachine:
             chart = Chart(definition)
             planner = MicrostepPlanner(chart)
             invoked = {name: compiled(other) for name, other in definition.invoked.items()}
-            machine = CompiledMachine(chart, planner, FastPaths(planner), invoked)
+            machine = CompiledMachine(chart, planner, FastPaths(planner), invoked, definition.robots)
         object.__setattr__(definition, "_compiled", machine)  # frozen, and the same for all who hold it
     return machine

@@ -229,7 +229,7 @@ class ExecutionContext:
         self.timers = (*self.timers, timer)
 
     def hand_over(self, to: str, event: Event) -> None:
-        """Have the behaviour that invoked this one, or one that it invokes, hear an event."""
+        """Have the behaviour that invoked this one, one that it invokes, or another robot hear an event."""
         if to == PARENT and self.is_invoked:
             self.for_parent = (*self.for_parent, event)
         else:

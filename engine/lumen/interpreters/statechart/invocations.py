@@ -16,6 +16,7 @@ from lumen.interpreters.statechart.macrostep import enter_machine, exit_machine
 from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
 from lumen.interpreters.statechart.type_checks import checked
 from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
+from lumen.language.commands import Tell
 from lumen.language.events import Event
 
 INVOKED_MICROSTEP_SHARE = 0.9
@@ -63,11 +64,13 @@ class Invocations:
             self.deliver(context, id, event)
 
     def post(self, context: ExecutionContext) -> None:
-        """Hand over what the machine sends to them; what is for none of them is an error (SCXML 6.2.5)."""
+        """Hand over what it sends to them and to other robots; what is for nobody is an error (SCXML 6.2.5)."""
         sent, context.outbox = context.outbox, ()
         for id, event in sent:
             if id in self.children:
                 self.deliver(context, id, event)
+            elif id in context.machine.robots:
+                context.emit(Tell(id, event.name, event.data))
             else:
                 context.returned(id, event)
 

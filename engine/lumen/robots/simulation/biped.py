@@ -40,11 +40,12 @@ class Biped:
         free: Callable[[str], bool],
         hot: Callable[[], bool],
         stage: Stage | None,
+        prefix: str = ROBOT_PREFIX,
     ) -> None:
         legs, roles = read_legs(mass_model.model, body), body.roles
         paces = paces_of(legs, body.gait)
         self._sensors = sensors
-        self._soles = [f"{ROBOT_PREFIX}/{name}" for name in roles.soles.values()]
+        self._soles = [f"{prefix}/{name}" for name in roles.soles.values()]
         self.falling = FallingSense(sensors, mass_model, legs)
         self.balance = BalanceController(motors, self.falling, legs, roles, paces.usual.ahead)
         self.odometry = Odometry(legs, stage)

@@ -4,7 +4,6 @@ from lumen.interpreters.projection import project
 from lumen.language.robots import Camera
 from lumen.language.routes import Size
 from lumen.ports import Image
-from lumen.robots.simulation.model import ROBOT_PREFIX
 from lumen.robots.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.world import World
 
@@ -14,7 +13,7 @@ class RobotCamera:
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
-        self._name = f"{ROBOT_PREFIX}/{world.body.roles.eyes.camera}"
+        self._name = f"{world.prefix}/{world.body.roles.eyes.camera}"
         self._renderer = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
 
     def image(self, now: float) -> Image | None:

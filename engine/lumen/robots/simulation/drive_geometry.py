@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.interpreters.gait.pendulum import GRAVITY
-from lumen.robots.simulation.model import ROBOT_PREFIX
 from lumen.robots.simulation.world import World
 
 TIPPING_SHARE = 0.25
@@ -47,7 +46,7 @@ def read_drive(world: World) -> DriveGeometry:
     model, data, base = world.model, world.data, world.body.roles.base
     torso = data.body(world.torso)
     axes, names = torso.xmat.reshape(3, 3), (base.left, base.right)
-    joints = [model.joint(f"{ROBOT_PREFIX}/{name}") for name in names]
+    joints = [model.joint(f"{world.prefix}/{name}") for name in names]
     motors = [_motor(model, joint.id) for joint in joints]
     places = [axes.T @ (data.joint(joint.id).xanchor - torso.xpos) for joint in joints]
     ways = [axes.T @ data.joint(joint.id).xaxis for joint in joints]

@@ -18,13 +18,13 @@ SENSED_FEET = {"left": "LFoot", "right": "RFoot"}
 class ForceSensors:
     """Weighs what presses against each quarter of the soles, where the model has a touch sensor at its site."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, roles: Roles) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, roles: Roles, prefix: str = ROBOT_PREFIX) -> None:
         touch = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_TOUCH)
         places = {int(model.sensor_objid[sensor]): int(model.sensor_adr[sensor]) for sensor in touch}
         self._places = {
             f"{SENSED_FEET[side]}/FSR/{corner}": places[site]
             for side, names in roles.sensors.force.items()
-            for corner, site in _corners(model, names)
+            for corner, site in _corners(model, names, prefix)
             if site in places
         }
         self._data = data
@@ -41,9 +41,9 @@ class ForceSensors:
         return {name: round(weight, 3) for name, weight in (felt | total).items()}
 
 
-def _corners(model: mujoco.MjModel, names: Iterable[str]) -> list[tuple[str, int]]:
+def _corners(model: mujoco.MjModel, names: Iterable[str], prefix: str) -> list[tuple[str, int]]:
     """Where each of these sites is under its sole (`FrontLeft`), and its number."""
-    sites = [model.site(f"{ROBOT_PREFIX}/{name}").id for name in names]
+    sites = [model.site(f"{prefix}/{name}").id for name in names]
     middle = model.site_pos[sites].mean(axis=0)
     ahead = ["Front" if x > middle[0] else "Rear" for x in model.site_pos[sites, 0]]
     aside = ["Left" if y > middle[1] else "Right" for y in model.site_pos[sites, 1]]

@@ -29,10 +29,10 @@ class Lights:
     `groups` are the lights of this body: materials of its MJCF.
     """
 
-    def __init__(self, model: mujoco.MjModel, groups: Mapping[str, Iterable[str]]) -> None:
+    def __init__(self, model: mujoco.MjModel, groups: Mapping[str, Iterable[str]], prefix: str = ROBOT_PREFIX) -> None:
         self._groups = {group: tuple(names) for group, names in groups.items()}
         self._colours = model.mat_rgba
-        prefix = f"{ROBOT_PREFIX}/"
+        prefix = f"{prefix}/"
         names = {model.material(i).name: i for i in range(model.nmat)}
         self._ids = {name.removeprefix(prefix): i for name, i in names.items() if name.startswith(prefix)}
         self._first = self._colours.copy()

@@ -43,21 +43,42 @@ def load(
 
     Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
     """
-    robot, world = alone(body, models), _read(models / hall)
+    world = read_hall(models, hall)
+    place(world, hall, body, models, world.find("site", STAGE_SITE), backlash=backlash)
+    if variation:
+        _vary(world, variation)
+    return world
+
+
+def read_hall(models: Path, hall: str) -> mjcf.RootElement:
+    """The hall without a robot; raises RobotError as `load` does."""
+    world = _read(models / hall)
+    _complain(hall, lacks_of_hall(world))
+    return world
+
+
+def place(
+    world: mjcf.RootElement,
+    hall: str,
+    body: Body,
+    models: Path,
+    site: mjcf.Element,
+    *,
+    backlash: bool,
+    prefix: str = ROBOT_PREFIX,
+) -> None:
+    """Put a robot into a world, where the site is; raises RobotError as `load` does."""
+    robot = alone(body, models)
+    robot.model = prefix
     if backlash:
         loosen(robot, body)
-    _complain(hall, lacks_of_hall(world))
-    stage = world.find("site", STAGE_SITE)
     try:
-        frame = stage.attach(robot)
+        frame = site.attach(robot)
         if body.roles.base.kind is not BaseKind.FIXED:
             frame.add("freejoint")
     except ValueError as error:
         reason = " ".join(str(error).split())
         raise RobotModelError(f"{Path(hall).name} does not go with the robot's {body.mjcf}: {reason}") from error
-    if variation:
-        _vary(world, variation)
-    return world
 
 
 def alone(body: Body, models: Path) -> mjcf.RootElement:
@@ -86,7 +107,7 @@ def physics(
     compiled = memoize(
         ("simulation", hall, backlash),
         (body, files, variation),
-        lambda: _compiled(load(body, models, hall, variation, backlash=backlash)),
+        lambda: compile_world(load(body, models, hall, variation, backlash=backlash)),
     )
     return mjcf.Physics.from_model(wrapper.MjModel(copy.copy(compiled)))
 
@@ -97,7 +118,8 @@ def _version(path: Path) -> tuple[int, int, int]:
     return status.st_ino, status.st_size, status.st_mtime_ns
 
 
-def _compiled(world: mjcf.RootElement) -> mujoco.MjModel:
+def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
+    """The world as MuJoCo has it; raises RobotError where it can't be built."""
     try:
         return mjcf.Physics.from_mjcf_model(world).model.ptr
     except Exception as error:  # the compiler raises whatever it stumbles over

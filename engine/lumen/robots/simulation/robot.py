@@ -34,7 +34,7 @@ from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
+from lumen.robots.simulation.model import Variation
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.playback import SpeechActivity
 from lumen.robots.simulation.sensors import BodySensors
@@ -63,8 +63,9 @@ class SimulatedRobot:
     """A NAO that stands on its stage and lives when `advance` is called, by the thread that calls it.
 
     `models` is the folder of the MJCF files and `hall` the name of one. The same seed and the same calls give the same
-    run. `imperfections` are those of a NAO where none are given; `stage` bounds where its feet may go. Raises
-    RobotError where the models can't be used.
+    run. `imperfections` are those of a NAO where none are given; `stage` bounds where its feet may go. In a `world`
+    that it shares, with one `figure` of a visitor, whoever steps that calls `act` and `feel`. Raises RobotError where
+    the models can't be used.
     """
 
     def __init__(
@@ -78,13 +79,16 @@ class SimulatedRobot:
         variation: Variation | None = None,
         imperfections: Imperfections | None = None,
         stage: Stage | None = None,
+        world: World | None = None,
+        figure: VisitorFigure | None = None,
     ) -> None:
         self.body = body
         lacking = imperfections or Imperfections()
-        self.world = World(body, Path(models), hall, variation, backlash=lacking.backlash)
+        self.world = world or World(body, Path(models), hall, variation, backlash=lacking.backlash)
+        prefix = self.world.prefix
         self.world.set_up(body.postures[posture])
         self.motors = Motors(self.world, lacking)
-        self.lights = Lights(self.world.model, body.roles.lights)
+        self.lights = Lights(self.world.model, body.roles.lights, prefix)
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
         self._aiming = AimController(self.motors)
@@ -93,11 +97,11 @@ class SimulatedRobot:
         self._sensors = BodySensors(self.world, lacking, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
-        self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile)
-        self._force_sensors = ForceSensors(self.world.model, self.world.data, body.roles)
+        self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile, prefix)
+        self._force_sensors = ForceSensors(self.world.model, self.world.data, body.roles, prefix)
         ears = body.roles.sensors.sonar
         self._sonars = (
-            Sonars(self.world.model, self.world.data, body.sonar, ears, seed) if body.sonar and ears else None
+            Sonars(self.world.model, self.world.data, body.sonar, ears, seed, prefix) if body.sonar and ears else None
         )
         hazards = Hazards(self._sonars, self._pressed)
         self.base = self._based(Path(models), hazards, lacking, stage)
@@ -105,7 +109,7 @@ class SimulatedRobot:
             self.world, self.motors, self.lights, self.base, self._sensors, posture, self._notice
         )
         self._executor = Executor(self._begin, self._skills.parts)
-        self.figure = VisitorFigure(self.world.model, self.world.data)
+        self.figure = figure or VisitorFigure(self.world.model, self.world.data)
         self._camera = RobotCamera(self.world, body.camera) if body.camera and body.roles.eyes.camera else None
         self._events: list[Event] = []
         self._exhausted = False
@@ -122,7 +126,7 @@ class SimulatedRobot:
         match self.body.roles.base.kind:
             case BaseKind.BIPED:
                 mass_model = MassModel(self.body, models)
-                return Biped(self.body, self.motors, sensors, mass_model, hazards, self._free, hot, stage)
+                return Biped(self.body, self.motors, sensors, mass_model, hazards, self._free, hot, stage, world.prefix)
             case BaseKind.WHEELS:
                 return Wheels(world, sensors, lacking, hazards, hot, stage)
             case BaseKind.FIXED:
@@ -159,7 +163,9 @@ class SimulatedRobot:
         """
         self._until += dt
         while self.time + CONTROL_PERIOD <= self._until + 1e-9:
-            self._tick()
+            self.act()
+            self.world.step()
+            self.feel()
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
@@ -235,7 +241,7 @@ class SimulatedRobot:
     def sound(self) -> None:
         face = self.figure.face()
         if face is not None and self.body.camera:
-            torso = self.world.data.body(f"{ROBOT_PREFIX}/{self.body.roles.torso}")
+            torso = self.world.data.body(f"{self.world.prefix}/{self.body.roles.torso}")
             x, y, z = (torso.xmat.reshape(3, 3).T @ (np.array(face) - torso.xpos)).tolist()
             away = dict(zip(HEAD_ROLES, centring((x, y, z), self.body.camera), strict=True))
             for role, turn in self.body.roles.head.items():
@@ -256,7 +262,8 @@ class SimulatedRobot:
             self._life.say(command, activity.duration, now, activity.words)
         return activity
 
-    def _tick(self) -> None:
+    def act(self) -> None:
+        """Move the motors for one control period, before its world steps."""
         now = self.time
         self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
         self._aiming.advance(CONTROL_PERIOD, self._free)
@@ -269,7 +276,9 @@ class SimulatedRobot:
             self._live(now)
             trim = self.base.steady(now, standing=upright and not self.fallen, upright=upright)
             self.motors.drive(trim, CONTROL_PERIOD)
-        self.world.step()
+
+    def feel(self) -> None:
+        """Notice what has become of it in that period, after its world has stepped."""
         self._ticks += 1
         self._watch(self.time)
 

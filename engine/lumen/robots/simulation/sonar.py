@@ -22,10 +22,16 @@ class Sonars:
     """Measures the nearest echo on either side [m], with a little noise."""
 
     def __init__(
-        self, model: mujoco.MjModel, data: mujoco.MjData, sensor: Ultrasound, sites: Mapping[str, str], seed: int
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        sensor: Ultrasound,
+        sites: Mapping[str, str],
+        seed: int,
+        prefix: str = ROBOT_PREFIX,
     ) -> None:
         self._model, self._data, self._sensor = model, data, sensor
-        self._sites = [f"{ROBOT_PREFIX}/{sites[side]}" for side in SIDES if side in sites]
+        self._sites = [f"{prefix}/{sites[side]}" for side in SIDES if side in sites]
         self._rays = _cone(sensor.cone / 2)
         self._noise = np.random.default_rng(seed)
         self._distances = np.zeros(len(self._rays))

@@ -17,10 +17,12 @@ class TactileSensors:
     A sensor is the box that the model's site of its name spans; those of `sensors` without a site feel nothing.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, sensors: Iterable[str]) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, sensors: Iterable[str], prefix: str = ROBOT_PREFIX
+    ) -> None:
         self._model, self._data = model, data
         self._solid = set(np.flatnonzero(model.geom_contype == _SOLID).tolist())
-        sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{ROBOT_PREFIX}/{name}") for name in sensors}
+        sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{prefix}/{name}") for name in sensors}
         self._sites = {name: site for name, site in sites.items() if site >= 0}
 
     def pressed(self) -> set[str]:

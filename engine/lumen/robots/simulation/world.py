@@ -6,6 +6,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+from dm_control import mjcf
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
@@ -27,32 +28,41 @@ _UNSTABLE = [
 class World:
     """MuJoCo's model and state, by the body's own order of joints; whoever steps it owns it.
 
-    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory.
+    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory. A world that several robots have
+    in common is `shared`; what is this one's there has names that begin with its `prefix`.
     """
 
     def __init__(
-        self, body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
+        self,
+        body: Body,
+        models: Path,
+        hall: str,
+        variation: Variation | None = None,
+        *,
+        backlash: bool = False,
+        shared: mjcf.Physics | None = None,
+        prefix: str = ROBOT_PREFIX,
     ) -> None:
-        self.body = body
-        self.physics = physics(body, models, hall, variation, backlash=backlash)
+        self.body, self.prefix = body, prefix
+        self.physics = shared or physics(body, models, hall, variation, backlash=backlash)
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
-        joints = [self.model.joint(f"{ROBOT_PREFIX}/{name}") for name in body.joints]
+        joints = [self.model.joint(f"{prefix}/{name}") for name in body.joints]
         self._angles = np.array([j.qposadr[0] for j in joints])
         self._speeds = np.array([j.dofadr[0] for j in joints])
         loose = {i: name for i, name in enumerate(body.joints) if backlash and name not in body.hands}
-        plays = [self.model.joint(f"{ROBOT_PREFIX}/{name}{PLAY_SUFFIX}") for name in loose.values()]
+        plays = [self.model.joint(f"{prefix}/{name}{PLAY_SUFFIX}") for name in loose.values()]
         self._loose, self._plays = list(loose), [p.qposadr[0] for p in plays]
         driven = [i for i, name in enumerate(body.joints) if name not in body.shared]
         names = list(body.joints)
         self.driven = np.array(driven)
-        self.actuators = np.array([self.model.actuator(f"{ROBOT_PREFIX}/{names[i]}").id for i in driven])
+        self.actuators = np.array([self.model.actuator(f"{prefix}/{names[i]}").id for i in driven])
         roles = body.roles
-        self.torso = self.model.body(f"{ROBOT_PREFIX}/{roles.torso}").id
+        self.torso = self.model.body(f"{prefix}/{roles.torso}").id
         self.free = roles.base.kind is not BaseKind.FIXED
         """Whether the robot can be elsewhere than where it was built in."""
-        self._soles = [f"{ROBOT_PREFIX}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
-        self._root = self.model.joint(f"{ROBOT_PREFIX}/").qposadr[0] if self.free else 0
+        self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
+        self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0
         self._gyro, self._accelerometer = self._sensor(roles.sensors.gyro), self._sensor(roles.sensors.accelerometer)
         self._torso_axes = self.data.xmat[self.torso]
         self._substeps = round(CONTROL_PERIOD / self.model.opt.timestep)
@@ -126,7 +136,13 @@ class World:
             mujoco.mj_kinematics(self.model, data)
             if len(self._soles) == 2:
                 axes = [data.site(name).xmat.reshape(3, 3) for name in self._soles]
-                data.qpos[root + 3 : root + 7] = _upright(axes[0], axes[1])
+                start = np.zeros(9)
+                mujoco.mju_quat2Mat(start, self._start[3:])
+                mujoco.mju_mulQuat(
+                    data.qpos[root + 3 : root + 7],
+                    self._start[3:],
+                    _upright(start.reshape(3, 3).T @ axes[0], start.reshape(3, 3).T @ axes[1]),
+                )
                 mujoco.mj_kinematics(self.model, data)
                 soles = np.array([data.site(name).xpos for name in self._soles])
                 middle = np.array([*soles[:, :2].mean(axis=0), soles[:, 2].min()])
@@ -151,7 +167,7 @@ class World:
 
     def _sensor(self, name: str) -> int:
         """Where a sensor's readings begin, -1 where the body has none."""
-        return int(self.model.sensor(f"{ROBOT_PREFIX}/{name}").adr[0]) if name else -1
+        return int(self.model.sensor(f"{self.prefix}/{name}").adr[0]) if name else -1
 
     def _felt(self, sensor: int) -> tuple[float, float, float]:
         if sensor < 0:

@@ -1,0 +1,88 @@
+"""Several simulated robots in one hall: one physics, in which they stand beside, see and push each other."""
+
+from collections.abc import Mapping
+from math import cos, sin
+from pathlib import Path
+from typing import NamedTuple
+
+from dm_control import mjcf
+from dm_control.mujoco import wrapper
+
+from lumen.language.house import StartPose
+from lumen.language.imperfections import Imperfections
+from lumen.language.projects import Stage
+from lumen.language.robots import Body
+from lumen.robots.simulation.model import ROBOT_PREFIX, STAGE_SITE, compile_world, place, read_hall
+from lumen.robots.simulation.robot import SimulatedRobot
+from lumen.robots.simulation.visitor_figure import VisitorFigure
+from lumen.robots.simulation.world import CONTROL_PERIOD, World
+
+
+class HallRobot(NamedTuple):
+    """One of the robots: its body, the folder of its MJCF, and where it stands in the hall."""
+
+    body: Body
+    models: Path
+    at: StartPose = StartPose()
+    imperfections: Imperfections = Imperfections()
+    stage: Stage | None = None
+
+
+class SharedHall:
+    """Robots by name that live together when `advance` is called, by the thread that calls it.
+
+    `models` is the folder of the hall. There is one visitor in it, whom all robots can see; who moved them last counts.
+    Raises RobotError where the models can't be used.
+    """
+
+    def __init__(self, robots: Mapping[str, HallRobot], models: Path, hall: str, *, posture: str = "Stand") -> None:
+        prefixes = {name: f"{ROBOT_PREFIX}{i + 1 if i else ''}" for i, name in enumerate(robots)}
+        physics = _physics(robots, prefixes, models, hall)
+        worlds = {
+            name: World(
+                each.body, models, hall, backlash=each.imperfections.backlash, shared=physics, prefix=prefixes[name]
+            )
+            for name, each in robots.items()
+        }
+        for name, world in worlds.items():
+            world.set_up(robots[name].body.postures[posture])
+        first = next(iter(worlds.values()))
+        self.world, self.figure = first, VisitorFigure(first.model, first.data)
+        self.robots = {
+            name: SimulatedRobot(
+                each.body, each.models, hall, seed=seed, posture=posture, imperfections=each.imperfections,
+                stage=each.stage, world=worlds[name], figure=self.figure,
+            )
+            for seed, (name, each) in enumerate(robots.items())
+        }  # fmt: skip
+        self._ticks, self._until = 0, 0.0
+
+    def advance(self, dt: float) -> None:
+        """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time.
+
+        Raises RobotError where the models let the simulation become unstable.
+        """
+        self._until += dt
+        while (self._ticks + 1) * CONTROL_PERIOD <= self._until + 1e-9:
+            for robot in self.robots.values():
+                robot.act()
+            self.world.step()
+            for robot in self.robots.values():
+                robot.feel()
+            self._ticks += 1
+
+
+def _physics(robots: Mapping[str, HallRobot], prefixes: Mapping[str, str], models: Path, hall: str) -> mjcf.Physics:
+    world = read_hall(models, hall)
+    stage = world.find("site", STAGE_SITE)
+    x, y, z = stage.pos if stage.pos is not None else (0.0, 0.0, 0.0)
+    for name, each in robots.items():
+        half = each.at.facing / 2
+        site = world.worldbody.add(
+            "site",
+            name=f"{STAGE_SITE}-{prefixes[name]}",
+            pos=(x + each.at.x, y + each.at.y, z),
+            quat=(cos(half), 0.0, 0.0, sin(half)),
+        )
+        place(world, hall, each.body, each.models, site, backlash=each.imperfections.backlash, prefix=prefixes[name])
+    return mjcf.Physics.from_model(wrapper.MjModel(compile_world(world)))
