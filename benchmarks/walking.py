@@ -3,8 +3,9 @@
     python benchmarks/walking.py [--robots N] [--model NAME]
 
 Each robot differs from the model: every link up to 10 % lighter or heavier, friction 0.5 to 1.0, and noisy sensors.
-Speeds are asked for by `move`, for 8 s. `off` is how far from its goal a robot ends, `odometry` how far from where it
-believes to be, each the worst of those still upright. 2 robots for a look, 20 for the figures.
+Speeds are asked for by `move`, for 3 s to get there and 8 s more. `off` is how far from its goal a robot ends,
+`odometry` how far from where it believes to be, each the worst of those still upright. 2 robots for a look, 20 for the
+figures.
 """
 
 import argparse
@@ -38,7 +39,7 @@ def fast(name: str, start: Start, robots: int, command: Move, speed: Callable[[P
     for seed in range(robots):
         robot = start(seed)
         robot.start("it", command)
-        robot.advance(2.0)
+        robot.advance(3.0)
         before, turned, theta = truth(robot), 0.0, truth(robot).theta
         for _ in range(round(SECONDS / 0.1)):
             robot.advance(0.1)

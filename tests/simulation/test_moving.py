@@ -65,7 +65,7 @@ def full_speed(body: Body, seed: int, command: Move, seconds: float) -> tuple[bo
     """Whether it stayed up, and how fast it went ahead and aside [m/s] and turned [rad/s], asked for more."""
     robot = any_robot(body, seed)
     robot.start("m", command)
-    robot.advance(2.0)
+    robot.advance(3.0)
     begin, turned, heading = truth(robot), 0.0, truth(robot).theta
     for _ in range(round(seconds / 0.1)):
         robot.advance(0.1)
