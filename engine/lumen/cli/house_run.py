@@ -160,5 +160,7 @@ def _check(options: argparse.Namespace, parts: Sequence[str]) -> None:
         if getattr(options, name, None):
             flag = name.replace("_", "-")
             raise UsageError(f"--{flag} is about one robot: say which with --robot-name NAME")
+    if options.voice != "none":
+        raise UsageError("--voice is about one robot: say which with --robot-name NAME")
     if parts and options.speed == "max":
         raise UsageError("processes live in one time, which is real: --speed max needs everything in one of them")

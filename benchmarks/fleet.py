@@ -1,0 +1,114 @@
+"""What robots of one house cost in one process, in real time: `python benchmarks/fleet.py --robots 1,5,10,20`.
+
+Recording robots with the small example's behaviour and the senses of `lumen.yaml` wait for a visitor. Of each number of
+them: messages and bytes on the bus a second, processor time of a core, memory of the process that nobody shares (PSS)
+for each robot, and ticks that came more than a tick late. The line through them is drawn out to 200 robots. What saved
+files, journals and recordings cost besides is not in it.
+"""
+
+import argparse
+import json
+import re
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import numpy as np
+from tests.guarded import run_guarded
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.house import House
+from lumen.app.house_setup import set_up_house
+from lumen.ports import Message
+from lumen.runtime.loop import TICK_PERIOD
+
+ROOT = Path(__file__).parents[1]
+SENSES = ("joint", "sonar", "tactile", "battery")
+GREATEST = 200
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--robots", default="1,5,10,20")
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--one", type=int, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        print(json.dumps(measured(options.one, options.seconds)))
+        return
+    rows = []
+    for number in map(int, options.robots.split(",")):
+        command = [sys.executable, __file__, "--one", str(number), "--seconds", str(options.seconds)]
+        row = json.loads(run_guarded(command, check=True, capture_output=True, text=True).stdout.splitlines()[-1])
+        rows.append(row)
+        print(
+            f"{number:3} robots: {row['messages']:7.0f} messages/s {row['bytes'] / 1000:8.1f} kB/s"
+            f" {row['cpu']:6.1%} of a core ({row['cpu'] / number:.2%} each) {row['pss'] / number:6.1f} MB each"
+            f"  {row['late']} of {row['ticks']} ticks late",
+            flush=True,
+        )
+    if len(rows) > 1:
+        slope, base = np.polyfit([row["robots"] for row in rows], [row["cpu"] for row in rows], 1)
+        print(
+            f"{GREATEST} robots would take {base + slope * GREATEST:.1f} cores ({slope:.2%} each, {base:.1%} besides)"
+        )
+
+
+def measured(number: int, seconds: float) -> dict[str, float]:
+    """What so many robots take, in this process."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = project(Path(folder) / "house", number)
+        before = pss()
+        projects = {name: lumen.load(root, robot=name) for name in (f"r{i}" for i in range(number))}
+        setups = set_up_house("recording", projects, "1", dict.fromkeys(projects))
+        shows = {name: Exhibition(projects[name], setups[name], "memory://house") for name in projects}
+        house = House({name: show.node for name, show in shows.items()})
+        count = {"messages": 0, "bytes": 0}
+        bus = lumen.bus.connect("memory://house")
+        house.start()
+        house.run(1.0)
+
+        def hear(message: Message) -> None:
+            count["messages"] += 1
+            count["bytes"] += len(json.dumps(message.body))
+
+        undo = bus.subscribe("#", hear)  # what that costs is not the robots'
+        house.run(2.0)
+        undo()
+        rate = {name: value / 2.0 for name, value in count.items()}
+        late, ticks, began, cpu = 0, 0, time.monotonic(), time.process_time()
+        last = began
+        while time.monotonic() - began < seconds:
+            house.tick()
+            now = time.monotonic()
+            late, ticks, last = late + (now - last > 2 * TICK_PERIOD), ticks + 1, now
+        cpu = (time.process_time() - cpu) / (time.monotonic() - began)
+        memory = pss() - before
+        house.close()
+        bus.close()
+    return {"robots": number, "cpu": cpu, "pss": memory, "late": late, "ticks": ticks, **rate}
+
+
+def project(root: Path, number: int) -> Path:
+    """The small example with so many robots, and the senses of the shipped project."""
+    shutil.copytree(ROOT / "examples/minimal", root, ignore=shutil.ignore_patterns(".lumen"))
+    robots = "".join(f"\n  r{i}: {{model: nao}}" for i in range(number))
+    text = (root / "lumen.yaml").read_text("utf-8").replace("robot: {name: NAO, model: nao}", f"robots:{robots}")
+    rows = re.findall(rf"^  (?:{'|'.join(SENSES)}): .*\n", (ROOT / "lumen.yaml").read_text("utf-8"), re.MULTILINE)
+    (root / "lumen.yaml").write_text(text.rstrip("\n") + "\n" + "".join(rows), "utf-8")
+    return root
+
+
+def pss() -> float:
+    """The memory of this process, what it shares counted in part [MB]."""
+    said = re.search(r"^Pss:\s+(\d+)", Path("/proc/self/smaps_rollup").read_text(), re.MULTILINE)
+    return int(said[1]) / 1024 if said else 0.0
+
+
+if __name__ == "__main__":
+    main()
