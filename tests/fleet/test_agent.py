@@ -182,6 +182,22 @@ def test_aborted_it_goes_back_to_the_very_files_that_ran_before(house: House) ->
     assert house.agent.state == "proved"
 
 
+def test_an_abort_that_comes_during_the_probation_is_heeded_after_it(house: House) -> None:
+    before = house.taker.running
+    hash = house.send(changed(house.root))
+    files, answer = house.taker.offered[-1]
+    house.taker.running, house.taker.on_probation = fingerprint(files), True
+    answer({"verdict": "applied", "before": before})
+    house.agent.order(ordered(house.signer, f"!{hash}", 2))
+    house.agent.tick()
+    assert house.agent.state == "probation"
+    house.taker.on_probation = False
+    house.agent.tick()
+    assert fingerprint(house.taker.offered[-1][0]) == before
+    house.taker.take(house.agent)
+    assert house.agent.presence(1.0, {}).bundle == before
+
+
 def test_a_bundle_under_which_the_process_ends_twice_is_given_up(house: House) -> None:
     before = house.taker.running
     house.send(changed(house.root))

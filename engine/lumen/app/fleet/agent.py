@@ -83,6 +83,7 @@ class FleetAgent:
         self.state, self.trouble, self.wants = PROVED, "", ""
         self._told: set[str] = set()
         self._offered = self._goal = ""
+        self._asked = memory.order
         self.played = 0, 0
         self._parts = BundleParts()
         if memory.trying:
@@ -143,6 +144,7 @@ class FleetAgent:
         goal = (memory.before if back else "") if wanted.startswith(NOT) else wanted
         self._goal = goal
         if back and not goal:
+            self._asked = memory.order
             self._fail(REFUSED, "there are no files from before it to go back to", wanted)
         elif not goal or goal == self.running:
             self.state, self.wants = PROVED, ""
@@ -177,6 +179,7 @@ class FleetAgent:
 
     def _go(self, goal: str, *, own: bool) -> None:
         """Fetch a bundle, or have it taken; `own` files have run here."""
+        self._asked = self.memory.order
         self.trouble = ""
         if self.memory.trying == goal and self.memory.tries >= MOST_TRIES:
             self._fail(ROLLED_BACK, f"the exhibition ended {self.memory.tries} times before it had proved itself")
@@ -230,7 +233,7 @@ class FleetAgent:
 
     def _proved(self) -> None:
         memory = self.memory
-        memory.trying, memory.tries, memory.done = "", 0, memory.order
+        memory.trying, memory.tries, memory.done = "", 0, self._asked  # another order may have come meanwhile
         memory.writing = self._offered
         self.state = PROVED
         self._save(memory)
@@ -249,8 +252,8 @@ class FleetAgent:
     def _fail(self, state: str, why: str, goal: str = "") -> None:
         """The robot goes without a bundle until another order comes."""
         memory, about = self.memory, goal or self._goal
-        if memory.failed.get(about, [None])[0] != memory.order:
-            memory.failed[about] = [memory.order, state, why[:MAX_TEXT]]
+        if memory.failed.get(about, [None])[0] != self._asked:
+            memory.failed[about] = [self._asked, state, why[:MAX_TEXT]]
             memory.failed = dict(list(memory.failed.items())[-8:])
             self._tell(f"bundle {about.removeprefix(NOT)[:12]} {state}: {why}")
             self._incident(state, why[:MAX_TEXT])
