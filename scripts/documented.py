@@ -31,7 +31,7 @@ from types import MappingProxyType
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # for tests/rabbitmq.py
-PROJECT = ("lumen.yaml", "behaviors", "fuzzy", "motions", "models", "schemas", "examples")
+PROJECT = ("lumen.yaml", "behaviors", "knowledge", "fuzzy", "motions", "models", "schemas", "examples")
 BEFORE = r"(?:^<!-- \$ (?P<before>.+?) -->\n+)?(?:^<!-- run: (?P<words>.+?) -->\n+)?"
 BLOCK = re.compile(rf"(?m){BEFORE}^```(?P<language>\w+)[^\n]*\n(?P<text>[\s\S]*?)^```$")
 NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")

@@ -19,7 +19,7 @@ from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_fo
 from tests.waiting import Collector, until
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("behaviors", "fuzzy", "motions", "schemas", "models")
+PARTS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models")
 SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
 SPEED = "4"
 PATIENCE, BEGINNING = 20.0, 120.0

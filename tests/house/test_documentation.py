@@ -68,7 +68,7 @@ def test_the_reference_has_a_page_for_each_schema() -> None:
 
 
 @pytest.mark.parametrize(
-    "kind", ["behavior", "lumen", "motion", "story", "controller", "body", "words", "life", "gestures"]
+    "kind", ["behavior", "lumen", "motion", "story", "controller", "body", "words", "knowledge", "life", "gestures"]
 )
 def test_the_reference_names_describes_and_shows_each_property(kind: str) -> None:
     schema = json.loads((ROOT / f"schemas/{kind}.schema.json").read_text(encoding="utf-8"))

@@ -20,6 +20,7 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "behavior": ("behaviors/*.yaml",),
     "words": ("behaviors/words/*.yaml",),
     "story": ("behaviors/stories/*.yaml",),
+    "knowledge": ("knowledge/*.yaml",),
     "controller": ("fuzzy/*.yaml",),
     "motion": ("motions/*.yaml", "models/passages/*.yaml"),
     "life": ("motions/life/*.yaml",),

@@ -7,6 +7,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.document import TOO_LARGE
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.markdown import MARKDOWN_SUFFIX, parse_markdown
 from lumen.loading.memoization import memoize
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
@@ -42,7 +43,7 @@ def read_file(
 
 
 def _read(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
-    document, found = parse(file, content)
+    document, found = (parse_markdown if file.endswith(MARKDOWN_SUFFIX) else parse)(file, content)
     if document is None:
         return None, found
     report, name = DocumentReport(document), PurePosixPath(file).stem

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.fleet import Fleet
 from lumen.language.gestures import GestureLibrary
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
@@ -30,7 +32,7 @@ class ProjectDraft:
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
     and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
     `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
-    files that are not read.
+    files that are not read. `today` is the day on which somebody looks, None where that does not matter.
     """
 
     files: Mapping[str, bytes]
@@ -39,6 +41,7 @@ class ProjectDraft:
     bodies: dict[str, Body] = field(default_factory=dict)
     behaviors: dict[str, MachineDefinition] = field(default_factory=dict)
     words: dict[str, Words] = field(default_factory=dict)
+    knowledge: dict[str, Passage] = field(default_factory=dict)
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
     motions: dict[str, MotionDefinition] = field(default_factory=dict)
     life: dict[str, LifeStyle] = field(default_factory=dict)
@@ -53,6 +56,7 @@ class ProjectDraft:
     root: Path | None = None
     own_motions: frozenset[str] = frozenset()
     fleet: Fleet | None = None
+    today: date | None = None
 
     @property
     def main(self) -> DocumentReport | None:
@@ -74,6 +78,8 @@ class ProjectDraft:
         """The report of `FOLDER/NAME.yaml`; of a motion, of the file that holds it for this robot."""
         if folder == "motions" and name in self.own_motions and self.settings:
             folder = f"motions/{self.settings.model}"
+        elif folder == KNOWLEDGE_FOLDER:
+            return self.reports[self.knowledge[name].file]
         return self.reports[f"{folder}/{name}.yaml"]
 
     def say(self, code: Code, file: str, message: str, hint: str) -> None:

@@ -13,7 +13,7 @@ from lumen.loading.regular_files import MEGABYTE, read_regular
 FLEET_FILE = "fleet.yaml"
 """Says which houses there are, and whom a robot trusts: linted with a project, and of no bundle."""
 
-PROJECT_FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
+PROJECT_FOLDERS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models")
 """What belongs to a project beside lumen.yaml."""
 
 MAX_FILE_BYTES = 4_000_000
@@ -43,6 +43,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors": (".yaml", ".yml"),
     "behaviors/stories": (".yaml", ".yml"),
     "behaviors/words": (".yaml", ".yml"),
+    "knowledge": (".yaml", ".yml", ".md"),
     "fuzzy": (".yaml", ".yml"),
     "motions": (".yaml", ".yml"),
     "motions/life": (".yaml", ".yml"),

@@ -43,6 +43,7 @@ _KINDS: Mapping[str, _Kind] = {
     "words": _Kind(
         "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers", "lists"))
     ),
+    "knowledge": _Kind("a passage of knowledge", "knowledge/", frozenset(("questions", "answer"))),
     "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
     "motion": _Kind("a motion", "motions/", frozenset(("keyframes",))),

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from lumen.interpreters.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
+from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -30,9 +31,11 @@ from lumen.loading.files import (
 )
 from lumen.loading.fleet import build_fleet
 from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
+from lumen.loading.knowledge import build_passage
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend, shipped_models
 from lumen.loading.life import LIFE_FOLDER, build_life
 from lumen.loading.linking import link, with_robots
+from lumen.loading.markdown import MARKDOWN_SUFFIX
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
@@ -54,6 +57,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
     WORDS_FOLDER: "words",
+    KNOWLEDGE_FOLDER: "knowledge",
     "fuzzy": "controller",
     "motions": "motion",
     LIFE_FOLDER: "life",
@@ -89,6 +93,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         robots = tuple(found.settings.robots)
         found.behaviors = {name: with_robots(machine, robots) for name, machine in found.behaviors.items()}
     found.stories = _built(_each(found, "behaviors/stories", build_story))
+    found.knowledge = _built(_each(found, KNOWLEDGE_FOLDER, build_passage))
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     if body := found.body:
         found.controllers = {name: by_role(each, body) for name, each in found.controllers.items()}
@@ -135,6 +140,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         hall=settings.hall,
         behavior=settings.behavior,
         behaviors=found.behaviors,
+        knowledge=found.knowledge,
         controllers=found.controllers,
         motions=found.motions,
         life=found.life,
@@ -200,11 +206,19 @@ def _each(
     """
     names, read = set(), dict[str, BuiltFile[T]]()
     for file, content in (found.files if files is None else files).items():
-        if file.rpartition("/")[0] != folder or (path := PurePosixPath(file)).suffix not in (".yaml", ".yml"):
+        if file.rpartition("/")[0] != folder or (path := PurePosixPath(file)).suffix not in (
+            ".yaml",
+            ".yml",
+            MARKDOWN_SUFFIX,
+        ):
             continue
         if path.suffix == ".yml":
             hint = f"rename it to {path.stem}.yaml, or delete it"
             found.say(NOT_READ, file, "files that end in .yml are not read", hint)
+            continue
+        if path.stem in names:
+            message = f"this is not read: {folder}/ has another file called {path.stem}"
+            found.say(NOT_READ, file, message, "join them, or give one of them another name")
             continue
         names.add(path.stem)
         if (each := _read(found, file, content, FOLDER_KINDS.get(folder, "motion"), build, around)) is not None:

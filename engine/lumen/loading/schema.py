@@ -21,6 +21,7 @@ FILE_KINDS = (
     "behavior",
     "words",
     "story",
+    "knowledge",
     "controller",
     "motion",
     "life",

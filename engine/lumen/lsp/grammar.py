@@ -14,6 +14,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
     "behaviors/words": "words",
+    "knowledge": "knowledge",
     "fuzzy": "controller",
     "motions": "motion",
     "motions/life": "life",
@@ -64,6 +65,7 @@ _KEYS: Mapping[str, Table] = {
         **_WORD_LANGUAGES,
     },
     "words": _WORD_LANGUAGES,
+    "knowledge": {("questions", "*"): NameKind.LANGUAGE, ("answer", "*"): NameKind.LANGUAGE},
     "lumen": {(way, "routes", "*"): NameKind.ROUTE for way in ("mqtt", "osc", "dmx")},
     "story": {("context", "*"): NameKind.CONTEXT},
     "controller": {("sweep", "*"): NameKind.JOINT, ("ahead", "*"): NameKind.JOINT},
@@ -128,6 +130,7 @@ _VALUES: Mapping[str, Table] = {
         ("behavior",): NameKind.BEHAVIOR,
         ("language",): NameKind.LANGUAGE,
     },
+    "knowledge": {("place",): NameKind.PLACE},
     "lumen": {
         ("behavior",): NameKind.BEHAVIOR,
         ("story",): NameKind.STORY,

@@ -1,6 +1,7 @@
 """From a project's files to everything that is wrong with them."""
 
 from collections.abc import Callable, Mapping
+from datetime import date
 from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic, has_errors
@@ -48,7 +49,7 @@ def _checked(
 ) -> tuple[ProjectDraft, tuple[Diagnostic, ...]]:
     """What these files make, and everything wrong with them, as one robot reads them."""
     found = draft(files)
-    found.root = root
+    found.root, found.today = root, date.today()
     for rule in CHECKS:
         between()
         rule.check(found)

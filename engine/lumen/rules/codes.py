@@ -19,9 +19,11 @@ from lumen.loading import (
     gestures,
     house,
     keyframes,
+    knowledge,
     known_words,
     life,
     linking,
+    markdown,
     messages,
     misplaced,
     numbers,
@@ -49,9 +51,9 @@ from lumen.rules.checks import CHECKS
 
 LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, house, keyframes,
-    known_words, life, linking, messages, misplaced, numbers, outline, poses, project, role_names, roles, rounds,
-    rulebook, schedules, settings, shapes, signal_bindings, terms, transitions, units, variables, yaml_errors,
-    yaml_reader,
+    knowledge, known_words, life, linking, markdown, messages, misplaced, numbers, outline, poses, project, role_names,
+    roles, rounds, rulebook, schedules, settings, shapes, signal_bindings, terms, transitions, units, variables,
+    yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 
@@ -59,8 +61,8 @@ HELPERS = (aims, controller_shapes, ignores, lookups, on_request, routing_keys, 
 """What rules, or others, ask and what declares codes."""
 
 FAMILY_ORDER = (
-    "text", "shape", "references", "statecharts", "reload", "expressions", "speech", "controllers", "motions",
-    "physics", "robot", "routes", "alerts", "fleet", "comments",
+    "text", "shape", "references", "statecharts", "reload", "expressions", "speech", "knowledge", "controllers",
+    "motions", "physics", "robot", "routes", "alerts", "fleet", "comments",
 )  # fmt: skip
 """The families as they are listed: what is wrong with a file first."""
 

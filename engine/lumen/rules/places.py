@@ -9,6 +9,7 @@ from lumen.interpreters.expressions import split_template
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean, has_errors
 from lumen.language.hall_places import HallPlace
+from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.stories import Expect
@@ -63,7 +64,7 @@ def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
 
 
 def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]]:
-    """The places that behaviours walk to and stories expect, by name."""
+    """The places that behaviours walk to, stories expect, and passages are about, by name."""
     for behavior, machine in draft.behaviors.items():
         for site in action_sites(machine):
             if isinstance(site.step.action, GoTo) and "{{" not in site.step.action.to:
@@ -73,6 +74,9 @@ def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]
         for step in story.steps:
             if isinstance(step.action, Expect) and step.action.place:
                 yield draft.report("behaviors/stories", name), (*step.where, "expect", "place"), step.action.place
+    for name, passage in draft.knowledge.items():
+        if passage.place:
+            yield draft.report(KNOWLEDGE_FOLDER, name), ("place",), passage.place
 
 
 def _listed(draft: ProjectDraft, machine: MachineDefinition) -> Iterator[tuple[DocumentReport, NodePath, str]]:

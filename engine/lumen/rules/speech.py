@@ -9,6 +9,7 @@ from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
+from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -55,6 +56,10 @@ def check(draft: ProjectDraft) -> None:
     for tables in word_tables(draft):
         speech.tables(tables)
         speech.phrases(tables)
+    for name, passage in draft.knowledge.items():
+        report = draft.report(KNOWLEDGE_FOLDER, name)
+        speech.texts(report, ("questions",), passage.questions)
+        speech.texts(report, ("answer",), passage.answer)
     entries = language_entries(draft)
     for language in speech.languages:
         for report, path in begun(entries, language):

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import NodePath, Place
+from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lists import listed_texts
@@ -94,6 +95,8 @@ def _places(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
             for number in range(len(rows)):
                 yield tables.report, ("answers", table, number, "phrases")
                 yield tables.report, ("answers", table, number, "value")
+    for name in draft.knowledge:
+        yield from ((draft.report(KNOWLEDGE_FOLDER, name), (key,)) for key in ("questions", "answer"))
     languages = draft.settings.languages if draft.settings else ()
     yield from ((report, path) for report, path, _ in listed_texts(word_tables(draft), languages))
     for name, motion in draft.motions.items():

@@ -1,7 +1,7 @@
 """The changes between two projects, part by part, and all of them in one line."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import groupby
 from typing import TypeVar
 
@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 _PARTS = (
     "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
-    "life", "gestures",
+    "life", "gestures", "knowledge",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents")
 
@@ -68,6 +68,9 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from _named("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
     yield from _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes)
     yield from _named("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
+    files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
+    for found in _named("passage", "passage", Risk.COSMETIC, "{}", old.knowledge, new.knowledge):
+        yield replace(found, file=files[found.about])
     yield from _named("message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages)
     yield from _named("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
 

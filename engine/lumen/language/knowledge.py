@@ -1,0 +1,34 @@
+"""What the exhibition's people know, as `knowledge/NAME.yaml` or `knowledge/NAME.md` says it: frozen values."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import date
+
+KNOWLEDGE_FOLDER = "knowledge"
+
+
+@dataclass(frozen=True)
+class Passage:
+    """One thing that is known: questions as visitors may put them, and what is spoken, both by language.
+
+    `place` is the one of lumen.yaml that it is about, `who` the robots that may say it; empty means any. It is true
+    until the end of the day `until`; `as_of` is when somebody last made sure. `file` is where it stands.
+    """
+
+    name: str
+    questions: Mapping[str, tuple[str, ...]]
+    answer: Mapping[str, str]
+    place: str = ""
+    who: tuple[str, ...] = ()
+    as_of: date | None = None
+    until: date | None = None
+    tags: tuple[str, ...] = ()
+    file: str = ""
+
+    def is_said_by(self, robot: str) -> bool:
+        """Whether that robot may say it."""
+        return not self.who or robot in self.who
+
+    def is_past(self, today: date) -> bool:
+        """Whether the last day on which it is true is over."""
+        return self.until is not None and self.until < today

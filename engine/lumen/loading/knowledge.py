@@ -1,0 +1,45 @@
+"""A passage, `knowledge/NAME.yaml` or `knowledge/NAME.md`, from its plain data to a `Passage`."""
+
+from collections.abc import Mapping
+from datetime import date
+from typing import Any
+
+from lumen.language.diagnostics import ERROR, Code
+from lumen.language.knowledge import Passage
+from lumen.loading.document_report import DocumentReport
+
+BAD_DATE = Code("bad-date", "knowledge", ERROR, "a day of a passage can't be read, or its days are the wrong way round")
+
+
+def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | None:
+    """The passage that the data describes, None where it is no map or lacks its questions or its answer."""
+    if not isinstance(data, Mapping) or not {"questions", "answer"} <= data.keys():
+        return None
+    as_of, until = (_day(data, key, report) for key in ("as-of", "until"))
+    if as_of and until and until < as_of:
+        message = f"it is true until {until}, and somebody made sure on {as_of}"
+        report(BAD_DATE, ("until",), message, "write a later day, or delete the passage")
+    return Passage(
+        name,
+        {language: _listed(questions) for language, questions in data["questions"].items()},
+        {language: " ".join(text.split()) for language, text in data["answer"].items()},
+        data.get("place", ""),
+        _listed(data.get("who", ())),
+        as_of,
+        until,
+        _listed(data.get("tags", ())),
+        report.document.file,
+    )
+
+
+def _listed(value: Any) -> tuple[str, ...]:
+    return (value,) if isinstance(value, str) else tuple(value)
+
+
+def _day(data: Mapping[str, Any], key: str, report: DocumentReport) -> date | None:
+    text = data.get(key)
+    try:
+        return date.fromisoformat(text) if text else None
+    except ValueError:
+        report(BAD_DATE, (key,), f"there is no day `{text}`", "write year, month and day: 2015-11-21")
+        return None

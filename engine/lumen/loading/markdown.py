@@ -1,0 +1,69 @@
+"""A passage in Markdown: front matter between two lines `---`, then the answer beneath a heading for each language.
+
+It becomes the document that the same passage in YAML would be, with the places of the Markdown file.
+"""
+
+import re
+from dataclasses import replace
+
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
+from lumen.loading.document import Document, NodeSpan
+from lumen.loading.yaml_reader import parse
+
+NO_FRONT_MATTER = Code("no-front-matter", "knowledge", ERROR, "a passage in Markdown does not begin with its data")
+STRAY_TEXT = Code("stray-text", "knowledge", ERROR, "text of a passage in Markdown stands beneath no language")
+
+MARKDOWN_SUFFIX = ".md"
+FENCE = "---"
+
+_HEADING = re.compile(r"#+\s+(\S+)\s*")
+
+
+def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
+    """The document of a Markdown file, or None, and what is wrong with it; never raises for what the file holds."""
+    text = content.decode("utf-8-sig", "replace").replace("\r\n", "\n")
+    lines = text.split("\n")
+    end = next((i for i, line in enumerate(lines) if i and line.rstrip() == FENCE), 0)
+    if lines[0].rstrip() != FENCE or not end:
+        hint = f"begin with a line `{FENCE}`, then `questions:` as in YAML, then a line `{FENCE}`"
+        return None, [NO_FRONT_MATTER.at(Place(file, 1, 1), "the passage has no data on top", hint)]
+    front = "\n".join(["", *lines[1:end], ""])
+    document, found = parse(file, content if "\ufffd" in text else front.encode())
+    if document is None or not isinstance(document.data, dict):
+        return document, found
+    answer, spans, strays = _answers(file, lines, end + 1)
+    if "answer" in document.data:
+        found.append(_stray(document.place(("answer",), key=True), "the answer stands below the data"))
+    found += strays
+    data = {**document.data, **({"answer": answer} if answer else {})}
+    return replace(document, data=data, spans={**document.spans, **spans}, text=text), found
+
+
+def _answers(
+    file: str, lines: list[str], begin: int
+) -> tuple[dict[str, str], dict[NodePath, NodeSpan], list[Diagnostic]]:
+    """The paragraphs beneath each heading, by language, and where they stand."""
+    answer: dict[str, str] = {}
+    spans: dict[NodePath, NodeSpan] = {}
+    found: list[Diagnostic] = []
+    language = ""
+    for number, line in enumerate(lines[begin:], begin + 1):
+        place = Place(file, number, 1, number, len(line) + 1)
+        if heading := _HEADING.fullmatch(line):
+            language = heading[1]
+            if language in answer:
+                found.append(_stray(place, f"there is a heading `{language}` already"))
+            answer.setdefault(language, "")
+            spans.setdefault(("answer",), NodeSpan(place, place))
+            spans["answer", language] = NodeSpan(place, place)
+        elif line.strip() and not language:
+            found.append(_stray(place, "this text stands beneath no language"))
+            language = " "
+        elif line.strip() and language != " ":
+            answer[language] = f"{answer[language]} {line.strip()}".strip()
+            spans["answer", language] = NodeSpan(spans["answer", language].key, place)
+    return answer, spans, found
+
+
+def _stray(place: Place, message: str) -> Diagnostic:
+    return STRAY_TEXT.at(place, message, "write a heading with the language, `# en`, and the answer beneath it")

@@ -1,0 +1,62 @@
+"""Passages: questions that two claim, answers that are too long or past their day, robots that are not there."""
+
+import re
+from datetime import date
+
+from lumen.language.diagnostics import ERROR, WARNING, Code, Place, Related, did_you_mean
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.lookups import first
+
+CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages claim the same question")
+OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "a passage is past the last day on which it is true")
+LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is longer than a robot should speak at once")
+UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a robot is named that is not in lumen.yaml")
+
+MAX_ANSWER = 400
+"""Characters that a robot should say at once: about half a minute."""
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what is wrong with passages by themselves, with one another, and by lumen.yaml."""
+    claims: dict[tuple[str, str], tuple[Passage, Place]] = {}
+    for name, passage in draft.knowledge.items():
+        report = draft.report(KNOWLEDGE_FOLDER, name)
+        _claims(passage, report, claims)
+        _days(passage, report, draft.today)
+        for language, text in passage.answer.items():
+            if len(text) > MAX_ANSWER:
+                message = f"this is {len(text)} characters: nobody listens to a robot for so long"
+                hint = f"say it in {MAX_ANSWER}, or make two passages of it"
+                report(LONG_ANSWER, ("answer", language), message, hint, key=True)
+        if draft.settings and draft.main:
+            for i, robot in enumerate(passage.who):
+                if robot not in draft.settings.robots and robot not in draft.main.lost:
+                    hint = did_you_mean(robot, draft.settings.robots, "lumen.yaml has")
+                    path = first(report, ("who", i), ("who",))
+                    report(UNKNOWN_ROBOT, path, f"there is no robot `{robot}`", hint, cause=f"robot {robot}")
+
+
+def _claims(passage: Passage, report: DocumentReport, claims: dict[tuple[str, str], tuple[Passage, Place]]) -> None:
+    """Questions that this passage or one before has: the same words in the same order."""
+    for language, questions in passage.questions.items():
+        for i, question in enumerate(questions):
+            here = report.document.place(first(report, ("questions", language, i), ("questions", language)))
+            other, there = claims.setdefault((language, _words(question)), (passage, here))
+            if there == here or (other.who and passage.who and not {*other.who} & {*passage.who}):
+                continue
+            message = f"`{question}` is asked here and in {there.file}"
+            related = Related(there, "it stands here, too")
+            hint = "leave it to one of them: of two answers nobody knows which is given"
+            report.diagnostics.append(CLAIMED_TWICE.at(here, message, hint, (related,)))
+
+
+def _days(passage: Passage, report: DocumentReport, today: date | None) -> None:
+    if today and passage.is_past(today):
+        message = f"this was true until {passage.until}, and is not said any more"
+        report(OUT_OF_DATE, ("until",), message, "write what is true now, with a later day, or delete the passage")
+
+
+def _words(question: str) -> str:
+    return " ".join(re.findall(r"\w+", question.casefold()))
