@@ -1,0 +1,1 @@
+"""Which of the things that are known answers a question."""

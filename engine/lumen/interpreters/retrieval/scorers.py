@@ -1,0 +1,97 @@
+"""How alike a question is to each of those that are known, by several methods: 0 for not at all, 1 for the same."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.interpreters.retrieval.words import letter_runs, stems
+
+Scores = NDArray[np.float32]
+"""Shape (known questions,)."""
+
+K1, B = 1.2, 0.5
+"""How soon a word that comes again counts no more, and how much long questions are held back."""
+
+
+class Scorer(Protocol):
+    """The seam: whatever compares a question with known ones; embeddings would be another."""
+
+    def __call__(self, question: str) -> Scores:
+        """How alike it is to each known question, in their order."""
+
+
+Method = Callable[[Sequence[str], str], Scorer]
+"""Makes a scorer for known questions of a language."""
+
+
+class _Table:
+    """Known questions by what they consist of: `counts` has a row for each, and a column for each part."""
+
+    def __init__(self, known: Sequence[str], split: Callable[[str], list[str]]) -> None:
+        self.split = split
+        rows = [Counter(split(text)) for text in known]
+        self.columns = {part: i for i, part in enumerate(sorted({part for row in rows for part in row}))}
+        self.counts = np.zeros((len(rows), len(self.columns)), np.float32)
+        for i, row in enumerate(rows):
+            for part, count in row.items():
+                self.counts[i, self.columns[part]] = count
+        held = (self.counts > 0).sum(axis=0)
+        self.rarity = np.log1p((len(rows) - held + 0.5) / (held + 0.5)).astype(np.float32)
+        self.rarest = float(np.log1p(len(rows) + 0.5) + np.log(2.0)) if len(rows) else 1.0
+
+
+def ngrams(known: Sequence[str], language: str) -> Scorer:
+    """Cosines of TF-IDF vectors of runs of letters."""
+    table = _Table(known, lambda text: letter_runs(text, language))
+    vectors = np.sqrt(table.counts) * table.rarity
+    vectors /= np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+
+    def score(question: str) -> Scores:
+        weights: dict[int, float] = {}
+        beyond = 0.0
+        for part, count in Counter(table.split(question)).items():
+            column = table.columns.get(part)
+            if column is None:
+                beyond += count * table.rarest**2
+            else:
+                weights[column] = count**0.5 * float(table.rarity[column])
+        length = (sum(weight**2 for weight in weights.values()) + beyond) ** 0.5
+        columns = list(weights)
+        values = np.fromiter(weights.values(), np.float32, len(weights))
+        return np.asarray(vectors[:, columns] @ values / max(length, 1e-9), np.float32)
+
+    return score
+
+
+def bm25(known: Sequence[str], language: str) -> Scorer:
+    """Okapi BM25 of stems, as a share of what the question could reach; an unknown word counts as the rarest."""
+    table = _Table(known, lambda text: stems(text, language))
+    lengths = table.counts.sum(axis=1, keepdims=True)
+    held_back = K1 * (1 - B + B * lengths / max(float(lengths.mean()) if len(known) else 1.0, 1e-9))
+    worth = table.rarity * table.counts * (K1 + 1) / (table.counts + held_back + 1e-9)
+
+    def score(question: str) -> Scores:
+        words = set(table.split(question))
+        columns = [table.columns[word] for word in words if word in table.columns]
+        most = sum(float(table.rarity[column]) for column in columns) * (K1 + 1) / (1 + K1)
+        most += (len(words) - len(columns)) * table.rarest
+        return np.asarray(np.minimum(worth[:, columns].sum(axis=1) / max(most, 1e-9), 1.0), np.float32)
+
+    return score
+
+
+def combined(known: Sequence[str], language: str) -> Scorer:
+    """The mean of both: letters forgive what was misheard, words tell what was meant."""
+    one, other = ngrams(known, language), bm25(known, language)
+
+    def score(question: str) -> Scores:
+        return np.asarray((one(question) + other(question)) / 2, np.float32)
+
+    return score
+
+
+METHODS: dict[str, Method] = {"ngrams": ngrams, "bm25": bm25, "combined": combined}
+"""Every method by its name."""

@@ -1,0 +1,43 @@
+"""What a question is compared by: stems of its words, and runs of its letters."""
+
+import re
+from collections.abc import Callable
+from functools import cache
+
+import snowballstemmer
+
+STEMMERS = {"en": "english", "id": "indonesian", "de": "german", "fr": "french", "es": "spanish", "it": "italian",
+            "nl": "dutch", "pt": "portuguese"}  # fmt: skip
+"""Snowball's name of each language whose words are stemmed; those of others are taken as they are."""
+
+SHORTEST, LONGEST = 2, 4
+"""How many letters a run has."""
+
+MAX_QUESTION = 300
+"""Characters of a question that are looked at."""
+
+
+def stems(text: str, language: str) -> list[str]:
+    """The stems of its words, in their order."""
+    stem = _stemmer(language)
+    return [stem(word) for word in _plain(text)]
+
+
+def letter_runs(text: str, language: str) -> list[str]:
+    """Runs of letters within each word, with its ends marked; they are alike where words are misspelt or inflected."""
+    found = []
+    for word in _plain(text):
+        marked = f" {word} "
+        for length in range(SHORTEST, LONGEST + 1):
+            found += [marked[i : i + length] for i in range(len(marked) - length + 1)]
+    return found
+
+
+def _plain(text: str) -> list[str]:
+    return re.findall(r"\w+", text[:MAX_QUESTION].casefold())
+
+
+@cache
+def _stemmer(language: str) -> Callable[[str], str]:
+    name = STEMMERS.get(language)
+    return cache(snowballstemmer.stemmer(name).stemWord) if name else str
