@@ -23,6 +23,7 @@ from tests.simulation.pushes import (  # noqa: E402
     standing,
     upright,
     walking,
+    walking_briskly,
 )
 
 import lumen  # noqa: E402
@@ -43,6 +44,7 @@ def main() -> None:
     rows: list[tuple[str, Doing, tuple[float, float]]] = [
         ("standing", standing, (0.1, 0.1)),
         ("walking at 0.1 m/s", walking, (1.3, 4.5)),
+        ("walking at 0.2 m/s", walking_briskly, (3.0, 6.0)),
         ("dancing", dancing(dance), (0.5, dance.duration)),
     ]
     for impulse in (2.0, 3.0):

@@ -44,6 +44,11 @@ def walking(robot: SimulatedRobot) -> None:
     robot.start("it", Move(0.1, 0.0, 0.0))
 
 
+def walking_briskly(robot: SimulatedRobot) -> None:
+    """It walks on at 0.2 m/s, which takes the brisk pace."""
+    robot.start("it", Move(0.2, 0.0, 0.0))
+
+
 def dancing(dance: MotionDefinition) -> Doing:
     """It plays that motion."""
     return lambda robot: robot.start("it", Perform(dance))
