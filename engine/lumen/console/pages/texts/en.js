@@ -35,7 +35,7 @@ export default {
   "approvals": "Waits for your GO", "approvals.count": "Waiting for a GO: {count}", "approve.go": "GO", "approve.stay": "Don't", "approve.goes": "Goes by itself in", "approve.stays": "Stays, if nobody says GO, in",
   "autonomy": "Steps that need a GO", "autonomy.ask": "ask me", "autonomy.alone": "go alone",
   "body": "Robot", "battery": "Battery", "battery.low": "low", "heat": "Hottest", "heat.high": "hot", "sonar": "Sonar", "left": "left", "right": "right",
-  "realtime": "Real time", "realtime.slow": "slow", "queues": "Queues", "queues.both": "{events} events, {commands} commands",
+  "realtime": "Real time", "realtime.slow": "slow", "queues": "Queues", "queues.both": "events: {events}, commands: {commands}",
   "processes": "Processes and modules", "processes.none": "All of it is one process.", "process.here": "here", "process.gone": "gone", "process.leaves": "has left", "process.asks": "begins", "heard.ago": "last word",
   "last.reload": "Files", "verdict.applied": "active", "verdict.refused": "refused", "verdict.waiting": "waiting", "verdict.staged": "staged", "verdict.unchanged": "unchanged",
   "verdict.rolled back": "rolled back", "verdict.dry run": "tried", "verdict.judging": "being read",

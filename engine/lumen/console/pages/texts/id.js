@@ -35,7 +35,7 @@ export default {
   "approvals": "Menunggu izin Anda", "approvals.count": "Menunggu izin: {count}", "approve.go": "JALAN", "approve.stay": "Jangan", "approve.goes": "Jalan sendiri dalam", "approve.stays": "Tetap, jika tidak ada yang mengizinkan, dalam",
   "autonomy": "Langkah yang perlu izin", "autonomy.ask": "tanya saya", "autonomy.alone": "jalan sendiri",
   "body": "Robot", "battery": "Baterai", "battery.low": "rendah", "heat": "Terpanas", "heat.high": "panas", "sonar": "Sonar", "left": "kiri", "right": "kanan",
-  "realtime": "Waktu nyata", "realtime.slow": "lambat", "queues": "Antrean", "queues.both": "{events} peristiwa, {commands} perintah",
+  "realtime": "Waktu nyata", "realtime.slow": "lambat", "queues": "Antrean", "queues.both": "peristiwa: {events}, perintah: {commands}",
   "processes": "Proses dan modul", "processes.none": "Semuanya satu proses.", "process.here": "ada", "process.gone": "hilang", "process.leaves": "sudah pergi", "process.asks": "mulai", "heard.ago": "kabar terakhir",
   "last.reload": "Berkas", "verdict.applied": "aktif", "verdict.refused": "ditolak", "verdict.waiting": "menunggu", "verdict.staged": "siap", "verdict.unchanged": "tidak berubah",
   "verdict.rolled back": "dikembalikan", "verdict.dry run": "dicoba", "verdict.judging": "sedang dibaca",
