@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         SnapshotError,
         UndeliveredError,
         UsageError,
+        WorkersError,
     )
     from lumen.language.diagnostics import Diagnostic
     from lumen.language.events import Event
@@ -77,6 +78,7 @@ __all__ = [
     "SnapshotError",
     "UndeliveredError",
     "UsageError",
+    "WorkersError",
     "__version__",
     "check",
     "load",
@@ -116,6 +118,7 @@ _HOMES = {
         "SnapshotError",
         "UndeliveredError",
         "UsageError",
+        "WorkersError",
     ),
     "lumen.language.diagnostics": ("Diagnostic",),
     "lumen.language.events": ("Event",),

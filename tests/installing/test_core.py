@@ -39,7 +39,7 @@ def test_where_physics_is_asked_for_one_line_says_what_to_install(lumen: Lumen, 
     done = lumen(exhibition, *words.split())
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
-    assert "the simulated robot needs mujoco" in line
+    assert "needs mujoco" in line
     assert "pip install 'lumen-robot[simulation]'" in line
 
 

@@ -121,7 +121,7 @@ def test_who_reaches_an_exhibition_reads_no_file_but_the_main_one(copy: Path, mo
         return usual(path, most, follow=follow)
 
     monkeypatch.setattr(project_files, "read_regular", noted)
-    assert reaching._keys(copy, None) == ("avatar.NAO.command", "avatar.NAO.stop")
+    assert reaching._keys(copy, None, "") == ("avatar.NAO.command", "avatar.NAO.stop")
     assert set(read) == {"lumen.yaml"}
     (copy / "lumen.yaml").write_text("[" * 60_000)
-    assert reaching._keys(copy, None) == ("avatar.NAO.command", "avatar.NAO.stop")
+    assert reaching._keys(copy, None, "") == ("avatar.NAO.command", "avatar.NAO.stop")

@@ -48,7 +48,7 @@ def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
     for name in settings.robots:
         if name not in house.robots:
             hint = did_you_mean(name, house.robots, "it has")
-            main(UNKNOWN_HOUSE, ("house",), f"the house has no robot `{name}` in fleet.yaml", hint)
+            main(UNKNOWN_HOUSE, ("house",), f"the house `{settings.house}` has no robot `{name}` in fleet.yaml", hint)
 
 
 def check_fleet(fleet: Fleet, report: DocumentReport) -> None:
