@@ -11,7 +11,7 @@ figures.
 import argparse
 import sys
 from collections.abc import Callable
-from math import hypot, pi, radians, tan
+from math import hypot, pi
 from pathlib import Path
 
 import numpy as np
@@ -20,16 +20,13 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
 from tests.simulation.bodies import shipped  # noqa: E402
-from tests.simulation.walks import START, any_robot, truth, walk  # noqa: E402
+from tests.simulation.walks import any_robot, bump, ramp, strayed, truth, walk  # noqa: E402
 
 from lumen.interpreters.gait import Pose  # noqa: E402
 from lumen.language.commands import Move, Walk  # noqa: E402
 from lumen.robots.simulation import SimulatedRobot  # noqa: E402
 
 SECONDS = 8.0
-LENGTH = 2.0
-"""Of a slope [m]."""
-
 Start = Callable[[int], SimulatedRobot]
 
 
@@ -60,34 +57,15 @@ def far(name: str, start: Start, robots: int, command: Walk) -> None:
         if not walked.upright:
             continue
         upright += 1
-        there, where = truth(robot), robot.base.whereabouts
+        there = truth(robot)
         off.append(walked.off)
         aside.append(100 * abs(there.y - command.y))
-        wrong.append(100 * hypot(there.x - where.x, there.y - where.y))
+        wrong.append(strayed(robot))
     share = max(wrong) / hypot(command.x, command.y)
     print(
         f"{name:<26} {upright:2d} of {robots} upright   off {max(off):4.1f} cm, aside {max(aside):4.1f} cm,"
         f" odometry {max(wrong):4.1f} cm ({share:.1f} %)",
         flush=True,
-    )
-
-
-def ramp(degrees: float) -> str:
-    """A slope that begins 0.3 m ahead of the robot."""
-    angle = radians(degrees)
-    x, height = START[0] + 0.3 + LENGTH / 2, LENGTH / 2 * tan(angle)
-    return (
-        f'<geom class="ground" type="box" size="{LENGTH / 2} 0.6 0.005" pos="{x} {START[1]} {height - 0.005}" '
-        f'euler="0 {-angle} 0"/>'
-    )
-
-
-def bump(height: float) -> str:
-    """Rails of that height [m] across the robot's way, 3 cm wide, 13 cm apart."""
-    return "".join(
-        f'<geom class="ground" type="box" size="0.015 0.6 {height / 2}" pos="{START[0] + 0.2 + 0.13 * k} {START[1]} '
-        f'{height / 2}"/>'
-        for k in range(6)
     )
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
-from math import atan2, cos, degrees, hypot, pi, sin
+from math import atan2, cos, degrees, hypot, pi, radians, sin, tan
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
@@ -23,6 +23,9 @@ START = (3.0, -3.0)
 """Where on the hall's floor these robots stand [m], with two metres around them."""
 
 TARGETS = (Walk(0.2), Walk(0.5), Walk(0.0, 0.2), Walk(0.0, 0.0, pi / 2), Walk(0.3, 0.2, pi / 4))
+SLOPE = 2.0
+"""How long a slope is [m]."""
+
 LONGEST = 120.0
 """No walk takes longer [s]."""
 
@@ -96,6 +99,31 @@ def feet(robot: SimulatedRobot) -> Feet:
 def truth(robot: SimulatedRobot) -> Pose:
     """Where the robot really stands, between its feet, from where it began."""
     return middle(feet(robot))
+
+
+def ramp(degrees: float) -> str:
+    """A slope that begins 0.3 m ahead of the robot."""
+    angle = radians(degrees)
+    x, height = START[0] + 0.3 + SLOPE / 2, SLOPE / 2 * tan(angle)
+    return (
+        f'<geom class="ground" type="box" size="{SLOPE / 2} 0.6 0.005" pos="{x} {START[1]} {height - 0.005}" '
+        f'euler="0 {-angle} 0"/>'
+    )
+
+
+def bump(height: float) -> str:
+    """Rails of that height [m] across the robot's way, 3 cm wide, 13 cm apart."""
+    return "".join(
+        f'<geom class="ground" type="box" size="0.015 0.6 {height / 2}" pos="{START[0] + 0.2 + 0.13 * k} {START[1]} '
+        f'{height / 2}"/>'
+        for k in range(6)
+    )
+
+
+def strayed(robot: SimulatedRobot) -> float:
+    """How far the robot stands from where its odometry believes it to be [cm]."""
+    there, where = truth(robot), robot.base.whereabouts
+    return 100 * hypot(there.x - where.x, there.y - where.y)
 
 
 @dataclass
