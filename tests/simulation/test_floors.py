@@ -26,7 +26,7 @@ class Way(NamedTuple):
 WAYS = {
     "rails of 5 mm": Way(bump(0.005), Walk(1.2), 7.0, 7.0),
     "up 5 degrees": Way(ramp(5.0), Walk(1.0), 4.0, 4.0),
-    "5 m straight": Way("", Walk(5.0), 30.0, 30.0),
+    "5 m straight": Way("", Walk(5.0), 25.0, 25.0),
 }
 
 
