@@ -250,10 +250,10 @@ def test_the_commands_publish_roll_out_tell_and_abort(
         told("pin", "museum/nao3")
         told("rollout", hash, "--first", "40%", "--then", "all", "--pause", "1h", "--abort-if", "")
         until(lambda: museums.have(hash) == 2, 60.0)
+        until(lambda: [row["state"] for row in told("status")["robots"]] == ["proved"] * 5, 60.0)
         status = told("status")
         assert {"houses", "robots", "rollout"} <= status.keys()
         assert status["rollout"]["state"] == "going"
-        assert [row["state"] for row in status["robots"]] == ["proved"] * 5
         assert main(["fleet", "status", *where]) == 0
         assert "-> 40%: at most 2 robots" in capsys.readouterr().out
         assert main(["fleet", "rollout", hash, *where]) == 2
