@@ -150,7 +150,7 @@ def leave(page: Stream) -> int:
     return len(positions)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_an_hour_of_it(busy_house: House) -> None:
     lived(busy_house, 5_000, 14, 2)
 

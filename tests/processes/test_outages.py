@@ -17,7 +17,7 @@ def outages(*words: object) -> str:
     return str(done.stdout)
 
 
-@pytest.mark.slow
+@pytest.mark.soak  # tests/processes/test_faults.py kills brains in `make test`
 @pytest.mark.xdist_group("outages")  # it waits most of the time
 def test_an_explanation_goes_on_after_the_brain_was_killed_and_killed_again() -> None:
     said = outages("--parts", "brain", "--faults", "killed", "--moments", "explain")
