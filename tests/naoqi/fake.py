@@ -10,7 +10,8 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.robots.naoqi.naoqi_events import event_of
 from lumen.robots.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
-from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice, World
+from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice
+from tests.naoqi.world import World
 
 
 class FakeNao:
