@@ -93,3 +93,9 @@ def test_it_depends_on_nothing_but_the_files_given(small: Path) -> None:
     project, _ = check_files(small, files)
     assert project
     assert project.hash == lumen.load(small).hash
+
+
+def test_a_body_that_comes_with_lumen_is_meant_where_its_name_is_nearly_written(small: Path) -> None:
+    files = {"lumen.yaml": MAIN.replace("model: nao", "model: nau").encode(), "behaviors/hello.yaml": HELLO.encode()}
+    (hint,) = (found.hint for found in check_files(small, files)[1] if found.code == "missing-folder")
+    assert hint.startswith("did you mean `nao`, which comes with Lumen?")

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, nearest
 from lumen.loading.bodies import UNKNOWN_MODEL
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.keyframes import UNKNOWN_MOTION
+from lumen.loading.lending import shipped_models
 from lumen.loading.linking import UNKNOWN_BEHAVIOR
 
 MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
@@ -67,6 +68,8 @@ class References:
         elif folder not in self._missing:
             self._missing.add(folder)
             hint = f"make the folder {folder}/ and put the file into it"
+            if kind == "model" and (near := nearest(name, shipped_models())):
+                hint = f"did you mean `{near}`, which comes with Lumen? Else {hint}"
             message = f"there is no {what} `{name}`: {folder}/ is missing or empty"
             report(MISSING_FOLDER, path, message, hint, key=key)
         return False
