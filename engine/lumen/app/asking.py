@@ -7,12 +7,15 @@ from typing import Any
 
 from lumen.errors import BusUnreachableError
 from lumen.language.routing_keys import OPERATOR_ANSWER, OPERATOR_REQUEST, key_of_robot
-from lumen.ports import Bus
+from lumen.ports import Bus, ReturningBus
 
 OPERATOR_ANSWERS = OPERATOR_ANSWER
 """Where the answers of a running exhibition come."""
 FIRST_ANSWER_TIMEOUT = 10.0
 """How long the first answer may take [s]: files are loaded for it."""
+
+NOBODY = object()
+"""In place of an answer: the message came back."""
 
 
 def operator_key(robot: str) -> str:
@@ -23,16 +26,20 @@ def operator_key(robot: str) -> str:
 def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
     """The answers to a message, as they come; who takes them decides which is the last.
 
-    Raises BusError where there is none within `first` [s].
+    Raises BusError where there is none within `first` [s], or nobody is there to be asked.
     """
     answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
     mark = str(uuid.uuid4())
     undo = bus.subscribe(reply_to, lambda m: answers.put(m.body) if m.correlation_id == mark else None)
+    if isinstance(bus, ReturningBus):
+        bus.returns(lambda returned: answers.put(NOBODY) if returned == key else None)
     bus.publish(key, body, reply_to=reply_to, correlation_id=mark)
     timeout: float | None = first
     try:
         while True:
-            yield answers.get(timeout=timeout)
+            if (answer := answers.get(timeout=timeout)) is NOBODY:
+                raise queue.Empty
+            yield answer
             timeout = None
     except queue.Empty:
         raise BusUnreachableError(f"nobody answers on `{key}`: is an exhibition running on that bus?") from None

@@ -2,13 +2,22 @@
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.app.asking import FIRST_ANSWER_TIMEOUT, OPERATOR_ANSWERS, ask, operator_key
+from lumen.app.one_robot import one_robot, robots_of
+from lumen.app.reaching import reach_exhibition
+from lumen.app.recovery.last_run import last_run
 from lumen.cli.printing import clock_time
-from lumen.cli.reach import configure_reach, names_meant, reach
+from lumen.cli.reach import configure_reach
+from lumen.errors import BusError
+from lumen.loading.packaged import find_project
+
+AMONG_OTHERS = 5.0
+"""How long the answer of one robot of several may take [s]."""
+QUESTION = {"ask": "status"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -17,30 +26,62 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where one runs and says how it is."""
-    names = names_meant(options)
-    found = [_status(options, name) for name in names]
-    if options.format == "json":
+    """0 where one runs and says how it is; of the others of its house it is said what is known here."""
+    root = find_project(options.project)
+    names = [options.robot_name] if options.robot_name else list(robots_of(root, None)) or [""]
+    answers = [_status(options, name, AMONG_OTHERS if names[1:] else FIRST_ANSWER_TIMEOUT) for name in names]
+    found = [
+        last_run(root, one_robot(root, name)) if isinstance(one, BusError) else one
+        for name, one in zip(names, answers, strict=True)
+    ]
+    none = answers[0] if all(isinstance(one, BusError) for one in answers) else None
+    if options.format == "json" and not isinstance(none, BusError):
         print(json.dumps(found[0] if len(names) == 1 else {"robots": found}, ensure_ascii=False))
-        return 0
-    for i, status in enumerate(found):
-        if i:
-            print()
-        for name, text in _lines(status, datetime.now(UTC)):
-            text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
-            print(f"{name:<9} {text}")
+    elif options.format == "text":
+        _print([status for status in found if none is None or status["ended"] or status["stopped"]])
+    if isinstance(none, BusError):
+        raise none
     return 0
 
 
-def _status(options: argparse.Namespace, name: str) -> dict[str, Any]:
-    """What the exhibition of that robot says of itself."""
-    options.robot_name = name
-    reached = reach(options)
+def _status(options: argparse.Namespace, name: str, patience: float) -> dict[str, Any] | BusError:
+    """What the exhibition of that robot says of itself, or why it does not."""
     try:
-        found: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
+        reached = reach_exhibition(options.project, options.bus, name)
+    except BusError as error:
+        return error
+    try:
+        found: dict[str, Any] = next(
+            ask(reached.bus, operator_key(reached.robot), QUESTION, OPERATOR_ANSWERS, first=patience)
+        )
         return found
+    except BusError as error:
+        return error
     finally:
         reached.bus.close()
+
+
+def _print(found: Sequence[dict[str, Any]]) -> None:
+    for i, status in enumerate(found):
+        if i:
+            print()
+        for name, text in (_lines if "configuration" in status else _absent)(status, datetime.now(UTC)):
+            text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
+            print(f"{name:<9} {text}")
+
+
+def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
+    """What a person reads of a robot that does not answer."""
+    name = status["robot"] or "robot"
+    if status["held"]:
+        yield name, "does not answer, though a process of this machine is it"
+    elif status["ended"]:
+        how = "was told to end" if status["told"] else "ended without notice"
+        yield name, f"does not run: it {how} at {_ago(status['ended'], now)}"
+    else:
+        yield name, "does not run"
+    if status["stopped"]:
+        yield "stopped", f"by {status['stopped_by']}: so it is when it runs again, until `lumen resume`"
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:

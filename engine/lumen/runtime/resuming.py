@@ -18,18 +18,20 @@ LOST_COMMAND_REASON = "the engine was restarted while it ran"
 class FreshStart(NamedTuple):
     """A run that does not go on with the one before, and why, where there is something to say.
 
-    `rests` is whether the robot was at rest then: nobody but a person lets it move.
+    `rests` is whether the robot was at rest then: nobody but a person lets it move. `crashed` is whether the one before
+    ended without notice.
     """
 
     why: str = ""
     rests: bool = False
+    crashed: bool = False
 
 
 class Resumption(NamedTuple):
     """How a behaviour goes on: from `snapshot`, with what has to be performed first.
 
     `lost` are the commands that were under way, `tracking` the controllers that were on, `away` [s] how long the engine
-    was. `notes` say what somebody could miss.
+    was, and `told` whether it had been told to end. `notes` say what somebody could miss.
     """
 
     snapshot: Snapshot
@@ -38,6 +40,7 @@ class Resumption(NamedTuple):
     lost: tuple[str, ...] = ()
     tracking: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    told: bool = False
 
     def answers(self, now: float) -> list[Event]:
         """An answer for each command that was under way: the robot has forgotten it."""

@@ -26,7 +26,8 @@ SNAPSHOT_SPACING = 0.02
 class StoredSnapshot(NamedTuple):
     """A snapshot as it was written: of which bundle and behaviour, at which time (Unix), frozen.
 
-    `tracking` are the controllers that were on, `rests` is whether the robot was at rest. The run lived until `ended`.
+    `tracking` are the controllers that were on, `rests` is whether the robot was at rest. The run lived until `ended`,
+    and was `told` to end by the system, or nobody knows why it did.
     """
 
     bundle: str
@@ -36,6 +37,7 @@ class StoredSnapshot(NamedTuple):
     tracking: tuple[str, ...] = ()
     rests: bool = False
     ended: float = 0.0
+    told: bool = False
 
 
 class SnapshotStore:
@@ -85,6 +87,10 @@ class SnapshotStore:
         """The run lives: where its behaviour stands is as true as when it was written."""
         self._wrote(self._home.write(ALIVE_FILE, json.dumps({"time": time.time()}).encode()))
 
+    def leave(self) -> None:
+        """The run was told to end: the next one goes on where its behaviour stands."""
+        self._wrote(self._home.write(ALIVE_FILE, json.dumps({"time": time.time(), "told": True}).encode()))
+
     def kept(self) -> StoredSnapshot | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""
         try:
@@ -93,6 +99,7 @@ class SnapshotStore:
                 return None
             tracking = tuple(map(str, data["tracking"]))
             written = float(data["time"])
+            alive, told = self._alive()
             return StoredSnapshot(
                 str(data["bundle"]),
                 str(data["behavior"]),
@@ -100,7 +107,8 @@ class SnapshotStore:
                 dict(data["snapshot"]),
                 tracking,
                 data.get("rests") is True,
-                max(written, self._alive()),
+                max(written, alive),
+                told and alive >= written,
             )
         except (ValueError, TypeError, KeyError, OverflowError):
             return None
@@ -160,12 +168,13 @@ class SnapshotStore:
             if path.name not in names:
                 self._home.remove(path.name)
 
-    def _alive(self) -> float:
-        """When the run was last known to live (Unix), 0 where that is not known."""
+    def _alive(self) -> tuple[float, bool]:
+        """When the run was last known to live (Unix), 0 where that is not known; whether it was told to end then."""
         try:
-            return float(self._home.read_json(ALIVE_FILE)["time"])
-        except (ValueError, TypeError, KeyError):
-            return 0.0
+            said = self._home.read_json(ALIVE_FILE)
+            return float(said["time"]), said.get("told") is True
+        except (ValueError, TypeError, KeyError, AttributeError):
+            return 0.0, False
 
     def _wrote(self, trouble: str) -> None:
         self.trouble = self.trouble or trouble

@@ -23,8 +23,6 @@ BROKER_PATIENCE = 5.0
 """How long a broker may be away before that is told [s]: it comes back from a restart within that."""
 PARTS = (ROBOT_PART, BRAIN, MOTION, *MODULES)
 """What can be lost."""
-AFTER_CRASH = "ended without notice"
-"""What is said of a run that did not end as it should."""
 BRAIN_PATIENCE = 5.0
 """How long a robot's brain may be [s]."""
 
@@ -61,8 +59,9 @@ class AlertPart(Part, Observer):
     def recovered(self, found: Resumption | FreshStart) -> Resumption | FreshStart:
         """How this run begins, which tells how the last one ended; the same again."""
         if isinstance(found, Resumption):
-            self._desk("crashed", f"it ended without notice, and goes on after {found.away:.0f} s")
-        elif AFTER_CRASH in found.why:
+            if not found.told:
+                self._desk("crashed", f"it ended without notice, and goes on after {found.away:.0f} s")
+        elif found.crashed:
             self._desk("crashed", "it ended without notice, and begins anew")
         return found
 

@@ -97,10 +97,11 @@ class BrainPart(Part):
         yield self._narrator.counted()
 
     def _resume(self, found: Resumption) -> None:
-        """Go on where a run ended that nobody meant to end."""
+        """Go on where the run before ended."""
         states = ", ".join(sorted(innermost(self.project.machine, found.snapshot.configuration)))
         self._narrator.note(
-            f"The last run ended without notice {found.away:.0f} s ago: this one goes on from there, in {states}.\n"
+            f"The last run {'was told to end' if found.told else 'ended without notice'} {found.away:.0f} s ago: "
+            f"this one goes on from there, in {states}.\n"
             f"`lumen run --fresh` begins anew.{''.join(f' {note}.' for note in found.notes)}"
         )
         self.behavior.loop.resume(self._regained(found))

@@ -21,7 +21,7 @@ def keep_hold(hold: PersonHold, folder: Path) -> None:
             home.remove(STOPPED_FILE)
 
     hold.changed.append(keep)
-    if before := _before(home):
+    if before := kept_hold(home):
         hold.stop(before.by, before.since)
 
 
@@ -30,7 +30,8 @@ def forget_hold(folder: Path) -> None:
     Home(folder).remove(STOPPED_FILE)
 
 
-def _before(home: Home) -> StoppedBy | None:
+def kept_hold(home: Home) -> StoppedBy | None:
+    """Who had stopped the robot when the run before ended; None where nobody had."""
     found = home.read_json(STOPPED_FILE)
     try:
         return StoppedBy(str(found["by"]), datetime.fromisoformat(found["since"]))

@@ -41,19 +41,24 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
         return Recovery(_after_another(keeper) if keeper else FreshStart())
     away, began = time.time() - kept.ended, time.perf_counter()
     if not 0.0 <= away <= LATELY:
-        return _anew(kept, f"The last run ended without notice, but {_ago(away)}: this one begins anew.")
+        return _anew(kept, f"The last run {how_ended(kept)}, but {_ago(away)}: this one begins anew.")
     if records.died(project.hash) >= MAX_CRASHES:
         return _anew(kept, "The last runs ended without notice soon after their start: this one begins anew.")
     try:
         old = _before(root, keeper, kept, project)
         how = _resumed(old, project, kept, away) if old else _UNKNOWN
     except LumenError as error:
-        return _anew(kept, f"The last run ended without notice and can't be gone on with: {error}")
+        return _anew(kept, f"The last run {how_ended(kept)} and can't be gone on with: {error}")
     news = () if old is None or old.hash == project.hash else (_news(old, project, how, time.perf_counter() - began),)
     if isinstance(how, Refusal):
-        why = f"The last run ended without notice, and these files can't go on from there: {how.reason}"
+        why = f"The last run {how_ended(kept)}, and these files can't go on from there: {how.reason}"
         return _anew(kept, why, news)
-    return Recovery(how, news)
+    return Recovery(how._replace(told=kept.told), news)
+
+
+def how_ended(kept: StoredSnapshot) -> str:
+    """`ended without notice`, for a line to a person."""
+    return "was told to end" if kept.told else "ended without notice"
 
 
 def rested(records: RunRecords) -> FreshStart:
@@ -70,11 +75,12 @@ def _after_another(keeper: SnapshotStore) -> FreshStart:
         f"The last run ended without notice, under another Lumen (its snapshot is of version {version}, this one reads "
         f"{SNAPSHOT_VERSION}): this one begins anew. To go on from there, start that Lumen instead, next time."
     )
-    return FreshStart(f"{why}\n{AT_REST}" if rests else why, rests) if version else FreshStart()
+    return FreshStart(f"{why}\n{AT_REST}" if rests else why, rests, crashed=True) if version else FreshStart()
 
 
 def _anew(kept: StoredSnapshot, why: str, news: tuple[ReloadReport, ...] = ()) -> Recovery:
-    return Recovery(FreshStart(f"{why}\n{AT_REST}" if kept.rests else why, kept.rests), news)
+    told = f"{why}\n{AT_REST}" if kept.rests else why
+    return Recovery(FreshStart(told, kept.rests, crashed=not kept.told), news)
 
 
 def _resumed(old: Project, new: Project, kept: StoredSnapshot, away: float) -> Resumption | Refusal:

@@ -47,6 +47,7 @@ class RunDirectory:
         except UsageError as error:
             _log.warning("the exhibition can't be resumed nor reached from other terminals: %s", error)
         self.records = RunRecords(self.home)
+        self._ended = False
         self.news: list[ReloadReport] = []
         self._door: LocalBusServer | None = None
         self._bus = ""
@@ -62,6 +63,7 @@ class RunDirectory:
 
     def ended(self, project: Project) -> None:
         """The exhibition has ended as it should, on these files."""
+        self._ended = True
         self.records.annul()
         if not self.records.died(project.hash):
             self.records.approve(project.hash)
@@ -130,6 +132,8 @@ class RunDirectory:
         if forget and self.records.keeper:
             self.records.keeper.forget()
             forget_hold(home.folder)
+        elif self._ended and self.records.keeper:
+            self.records.keeper.leave()
         home.release()
 
     def last_good(self) -> Project | None:

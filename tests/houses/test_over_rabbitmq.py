@@ -1,0 +1,105 @@
+"""A house over RabbitMQ: its robots in one process or several, one stopped or killed while the other goes on."""
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.cli.main import main
+from tests.guarded import DEVNULL, STDOUT, Guarded
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import until
+
+PATIENCE = 120.0
+"""How long a process may take to be there, on a crowded machine [s]."""
+
+
+class Hall:
+    """The two robots' processes on one broker, and what people ask of them."""
+
+    def __init__(self, root: Path, url: str, capsys: pytest.CaptureFixture[str]) -> None:
+        self.root, self.bus, self._capsys = root, ["--bus", url], capsys
+        self.running: list[Guarded[bytes]] = []
+
+    def begin(self, *flags: str) -> tuple[Guarded[bytes], Path]:
+        """A process of `lumen run`, and the file with what it says."""
+        told = self.root / f"told-{len(self.running)}.txt"
+        line = [sys.executable, "-m", "lumen", "run", self.root, "--robot", "recording", *self.bus, *flags]
+        with told.open("wb") as file:
+            process = Guarded(line, stdin=DEVNULL, stdout=file, stderr=STDOUT)
+        self.running.append(process)
+        return process, told
+
+    def end(self, process: Guarded[bytes], how: signal.Signals = signal.SIGKILL) -> None:
+        os.killpg(process.pid, how)
+        process.wait(PATIENCE)
+
+    def call(self, verb: str, *flags: str) -> tuple[int, str]:
+        """Its exit code, and all that it says."""
+        self._capsys.readouterr()
+        code = main([verb, *flags, str(self.root), *self.bus])
+        said = self._capsys.readouterr()
+        return code, said.out + said.err
+
+    def status(self) -> dict[str, dict[str, Any]]:
+        """What each robot says, or is said of it; nothing where none answers."""
+        code, said = self.call("status", "--format", "json")
+        return {} if code else {one["robot"]: one for one in json.loads(said)["robots"]}
+
+    def both(self) -> bool:
+        return ["configuration" in one for one in self.status().values()] == [True, True]
+
+
+@pytest.fixture
+def hall(two: Path, broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> Iterator[Hall]:
+    one = Hall(two, broker.url, capsys)
+    yield one
+    for process in one.running:
+        if process.poll() is None:
+            one.end(process)
+
+
+def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second of a name is refused, the stop of one is its own, and outlives its process; who ended it is told."""
+    monkeypatch.setattr(sys, "stdin", None)
+    process, _ = hall.begin()
+    until(hall.both, PATIENCE)
+    code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")
+    assert (code, "is the robot of ana on this bus already: end it first" in said) == (2, True)
+    assert hall.call("stop", "--robot-name", "ana")[0] == 0
+    found = hall.status()
+    by = found["ana"]["stopped_by"]
+    assert by
+    assert not found["ben"]["stopped"]
+    hall.end(process)
+    code, said = hall.call("status", "--robot-name", "ana")
+    assert code == 2
+    assert "ana       does not run: it ended without notice at " in said
+    assert f"stopped   by {by}: so it is when it runs again, until `lumen resume`" in said
+    process, told = hall.begin()
+    until(hall.both, PATIENCE)
+    assert hall.status()["ana"]["stopped_by"] == by
+    hall.end(process, signal.SIGTERM)
+    assert told.read_text("utf-8").count("The last run ended without notice") == 2
+    assert "ana       does not run: it was told to end at " in hall.call("status", "--robot-name", "ana")[1]
+    said = hall.call("run", "--robot", "recording", "--for", "0.1s")[1]
+    assert said.count("The last run was told to end") == 2
+    assert "without notice" not in said
+
+
+def test_a_robot_whose_process_is_killed_is_told_and_the_other_goes_on(hall: Hall) -> None:
+    _, told = hall.begin("--only", "brain", "--robot-name", "ana,ben")
+    lost, _ = hall.begin("--only", "robot", "--robot-name", "ana")
+    hall.begin("--only", "robot", "--robot-name", "ben")
+    until(hall.both, PATIENCE)
+    hall.end(lost)
+    until(lambda: "robot.lost" in told.read_text("utf-8"), PATIENCE)
+    lines = [line for line in told.read_text("utf-8").splitlines() if "robot.lost" in line]
+    assert [line.split()[1] for line in lines] == ["ana"]
+    assert hall.call("say", "I am here", "--robot-name", "ben") == (0, "said\n")
+    assert not hall.status()["ben"]["stopped"]
