@@ -4,15 +4,16 @@ from pathlib import Path
 
 from tests.guarded import run_guarded
 
-KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2"]
+KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
 
 
-def certify(folder: Path, name: str) -> Path:
+def certify(folder: Path, name: str, days: int = 2) -> Path:
     """A folder with `ca.pem`, and `server.pem` and `server.key` for the host of that name (`IP:…` or `DNS:…`)."""
-    _openssl(folder, "req", "-x509", *KEY, "-keyout", "ca.key", "-out", "ca.pem", "-subj", "/CN=Hall")
+    good = ["-days", str(days)]
+    _openssl(folder, "req", "-x509", *KEY, *good, "-keyout", "ca.key", "-out", "ca.pem", "-subj", "/CN=Hall")
     _openssl(folder, "req", *KEY, "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=broker")
     (folder / "names").write_text(f"subjectAltName={name}\n")
-    signing = ["-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-days", "2", "-extfile", "names"]
+    signing = ["-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", *good, "-extfile", "names"]
     _openssl(folder, "x509", "-req", "-in", "server.csr", *signing, "-out", "server.pem")
     return folder
 

@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import random
+import shlex
 import shutil
 import signal
 import socket
@@ -80,6 +81,13 @@ class RabbitMQ:
     def url_of(self, user: str) -> str:
         """The address for one of `USERS`, whose password is the same as the name."""
         return f"amqp://{user}:{user}@127.0.0.1:{self.port}/"
+
+    @property
+    def ctl(self) -> str:
+        """How rabbitmqctl is called for this broker."""
+        environment = [f"{name}={value}" for name, value in self._environment().items()]
+        tool = Path(self._script).with_name("rabbitmqctl")
+        return shlex.join(["env", *environment, str(tool), "-n", f"t{self.port}@localhost"])
 
     def start(self) -> None:
         """Start it, or start it again with what it had stored, and wait until it accepts connections."""

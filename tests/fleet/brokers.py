@@ -19,8 +19,9 @@ class FleetBrokers:
 
     def __init__(self, folder: Path, robots: Mapping[str, tuple[str, ...]]) -> None:
         certificates = folder / "certificates"
+        self.ca = certificates / "ca.pem"
         certificates.mkdir(parents=True)
-        certify(certificates, "DNS:localhost")
+        certify(certificates, "DNS:localhost", days=90)
         self.brokers = {CENTRE: RabbitMQ(certificates, plugins=PLUGINS)}
         self.brokers |= {name: RabbitMQ(plugins=PLUGINS) for name in HOUSES}
         centre = self.brokers[CENTRE]

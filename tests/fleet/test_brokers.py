@@ -1,6 +1,7 @@
 """Three RabbitMQ as `lumen fleet init` describes them: what crosses between them, what does not, and what waits."""
 
 import json
+import re
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -11,22 +12,17 @@ import pika
 import pytest
 from pika.exceptions import ChannelClosedByBroker
 
-from lumen.app.fleet.agent import FleetAgent
+from lumen.app.fleet.broker_links import check_links
 from lumen.app.fleet.brokers import CENTRE, UP, write_settings
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.keys import EXCHANGE, bundle_key, desired_key, presence_key
-from lumen.app.fleet.memory import AgentMemory
-from lumen.app.fleet.serving import ServedCentre
-from lumen.app.fleet.signing import Signer, generate
+from lumen.app.fleet.keys import EXCHANGE
+from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
 from lumen.cli.main import main
-from lumen.loading.files import read_files
 from tests.fleet.brokers import HOUSES, FleetBrokers
-from tests.fleet.houses import Taker, changed, project
+from tests.fleet.checking import checked, ctl, mended, wrong
+from tests.fleet.houses import changed
+from tests.fleet.museums import ROBOTS, Museums
 from tests.waiting import Collector, until
-
-ROBOTS = {"itb": ("nao1", "nao2"), "museum": ("nao1", "nao2", "nao3")}
 
 
 @pytest.fixture(scope="module")
@@ -35,77 +31,6 @@ def own_broker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[FleetBroker
     found.start()
     yield found
     found.close()
-
-
-class Museums:
-    """Agents in two houses, each on its house's broker, and a centre on its own."""
-
-    def __init__(self, brokers: FleetBrokers, folder: Path) -> None:
-        self.brokers, self.folder = brokers, folder
-        generate(folder / "key")
-        self.signer = Signer(folder / "key")
-        self.root = project(folder / "centre")
-        fleet = {
-            "key": self.signer.public,
-            "centre": {"broker": brokers.fleet.centre},
-            "houses": {
-                name: {"broker": f"amqp://127.0.0.1:{brokers.brokers[name].port}/", "robots": [*ROBOTS[name]]}
-                for name in HOUSES
-            },
-            "rollout": {"steps": [{"to": "40%"}, {"to": "all"}], "pause": "2s"},
-        }
-        (self.root / "fleet.yaml").write_text(json.dumps(fleet))
-        self.buses = {name: connect(brokers.url(name), sender=name) for name in HOUSES}
-        self.agents: dict[str, FleetAgent] = {}
-        self.takers: dict[str, Taker] = {}
-        for house in HOUSES:
-            for robot in ROBOTS[house]:
-                self._robot(house, robot)
-        self.served = self.serve()
-        self.most = 0
-
-    def _robot(self, house: str, robot: str) -> None:
-        name, bus = f"{house}/{robot}", self.buses[house]
-        taker = self.takers[name] = Taker(read_files(self.root))
-        agent = self.agents[name] = FleetAgent(
-            house, robot, self.signer.public, taker, AgentMemory(), BundleFolder(self.folder / house / robot),
-            save=lambda _: "", tell=lambda _: None,
-        )  # fmt: skip
-        bus.subscribe(desired_key(house), lambda message: agent.order(message.body))
-        bus.subscribe(bundle_key(house), lambda message: agent.bundle(message.body))
-
-    def serve(self) -> ServedCentre:
-        bus = connect(self.brokers.url(CENTRE), sender=CENTRE)
-        self.served = ServedCentre(self.root, self.signer, bus, lambda _: None)
-        return self.served
-
-    def look(self) -> None:
-        for name, agent in self.agents.items():
-            agent.tick()
-            if agent.state == "checking":
-                self.takers[name].take(agent)
-            house, _, robot = name.partition("/")
-            self.buses[house].publish(presence_key(house, robot), agent.presence(0.1, {}).to_json(), ttl=60.0)
-        self.served.tick()
-        self.most = max(self.most, len(self.served.centre.state.exposed))
-
-    def until(self, holds: Callable[[], object], timeout: float = 60.0) -> None:
-        until(lambda: self.look() or holds(), timeout, every=0.1)
-
-    def roll(self, files: dict[str, bytes]) -> str:
-        desk = self.served._desk
-        for body in messages_of(files, self.signer):
-            hash = str(desk.answer({"ask": "publish", "bundle": body}, 0.0)["bundle"])
-        desk.answer({"ask": "rollout", "bundle": hash, "by": "Ani"}, time.time())
-        return hash
-
-    def have(self, hash: str) -> int:
-        return sum(agent.running == hash for agent in self.agents.values())
-
-    def close(self) -> None:
-        self.served.close()
-        for bus in self.buses.values():
-            bus.close()
 
 
 @pytest.fixture
@@ -203,21 +128,77 @@ def test_all_go_back_also_over_a_line_that_was_cut(museums: Museums) -> None:
     museums.until(lambda: museums.have(before) == 5 and not museums.served.centre.state.exposed)
 
 
-def test_the_command_says_what_a_broker_has_and_lacks(
+def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
+    own_broker: FleetBrokers, museums: Museums, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Some fifteen calls of rabbitmqctl, each half a second: it is RabbitMQ's own word that counts."""
+    ctl(own_broker, "itb", "set_permissions", "robots", ".*", ".*", ".*")
+    ctl(own_broker, "itb", "clear_policy", EXCHANGE)
+    ctl(own_broker, "itb", "delete_shovel", UP)
+    found = checked(own_broker, museums.root, "itb", capsys)
+    assert wrong(found) == {
+        "what the user robots may do": r'its configure is ".*", not "^(?!lumen\\.fleet).*"',
+        f"the shovel {UP}": "it is not there",
+        f"the policy {EXCHANGE}": "it is not there",
+        "the line up to the centre": "there is none",
+        "the line down from the centre": "there is none",
+    }
+    mended(own_broker, "itb", found)
+    control = RabbitMQControl(own_broker.brokers["itb"].ctl)
+    until(lambda: not any(line.wrong for line in check_links(control)), 60.0)
+    found = checked(own_broker, museums.root, "itb", capsys)
+    assert wrong(found) == {}
+    assert found["the broker"]["note"] == "it answers, in clear"
+    assert {"all users", "all permissions", "all bindings", "all parameters", "all policies"} <= found.keys()
+    assert found["the line up to the centre"]["note"].startswith("it runs since ")
+    own_broker.cables["itb"].refuse()
+    until(lambda: all("can't be reached from here" in line.wrong for line in check_links(control)), 60.0)
+    assert [line.mend.split()[1] for line in check_links(control)] == ["restart_shovel", "restart_federation_link"]
+
+
+def test_what_the_centre_lacks_is_told(
+    own_broker: FleetBrokers,
+    museums: Museums,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = checked(own_broker, museums.root, CENTRE, capsys)
+    assert wrong(found) == {}
+    assert found["the certificate"]["note"].startswith("it is good until ")
+    ctl(own_broker, CENTRE, "clear_topic_permissions", "itb", EXCHANGE)
+    monkeypatch.setattr("lumen.app.fleet.broker_certificate.NOTICE", 100)
+    found = checked(own_broker, museums.root, CENTRE, capsys)
+    assert wrong(found).keys() == {"the certificate", f"the keys of the user itb on {EXCHANGE}"}
+    assert re.fullmatch(r"it ends on \d{4}-\d\d-\d\d, in \d+ days", found["the certificate"]["wrong"])
+    del found["the certificate"]
+    mended(own_broker, CENTRE, found)
+    monkeypatch.undo()
+    assert not wrong(checked(own_broker, museums.root, CENTRE, capsys))
+
+
+def test_what_was_not_looked_at_is_not_well(
     own_broker: FleetBrokers, museums: Museums, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    root = str(museums.root)
-    assert main(["fleet", "check", "itb", "--project", root, "--bus", own_broker.url("itb")]) == 0
-    assert main(["fleet", "check", "--project", root, "--bus", own_broker.url(CENTRE)]) == 0
+    where = ["--project", str(museums.root), "--bus", own_broker.url("itb")]
+    assert main(["fleet", "check", "itb", *where, "--rabbitmqctl", "no-such-tool"]) == 1
     told = capsys.readouterr().out
-    assert "ok the broker: it answers, in clear" in told
-    assert f"ok the queue {UP}" in told
-    assert main(["fleet", "check", "itb", "--project", root, "--bus", own_broker.url(CENTRE)]) == 1
-    assert f"!! the queue {UP}: it is not there: import the definitions" in capsys.readouterr().out
+    assert f"ok the queue {UP}: " in told
+    assert "!! users, rights, policies and lines: they were not looked at: `no-such-tool` can't be run" in told
+    where = ["--project", str(museums.root), "--bus", own_broker.url(CENTRE)]
+    assert main(["fleet", "check", "itb", *where, "--rabbitmqctl", "false"]) == 1
+    assert f"!! the queue {UP}: it is not there\n   rabbitmqctl import_definitions" in capsys.readouterr().out
     monkeypatch.setattr("lumen.cli.fleet.ANSWER_TIMEOUT", 0.2)
     museums.served._desk.close()
-    assert main(["fleet", "status", "--project", root, "--bus", own_broker.url(CENTRE)]) == 2
+    assert main(["fleet", "status", *where]) == 2
     assert "no centre answers on 127.0.0.1" in capsys.readouterr().err
+
+
+def test_a_centre_without_a_broker_is_told_with_what_helps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fleet", "status", "--project", str(tmp_path), "--bus", "amqp://127.0.0.1:1/"]) == 2
+    told = capsys.readouterr().err
+    assert "no broker listens at 127.0.0.1:1: start RabbitMQ there (the centre's broker: --bus" in told
+    assert "memory" not in told
 
 
 def test_the_commands_publish_roll_out_tell_and_abort(

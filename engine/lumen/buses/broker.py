@@ -92,7 +92,7 @@ class BrokerAddress:
 
     def _unreachable(self, cause: BaseException) -> str:
         if isinstance(cause, ConnectionRefusedError):
-            return f"no broker listens at {self}: start RabbitMQ there, or use --bus memory://"
+            return f"no broker listens at {self}: start RabbitMQ there"
         if isinstance(cause, socket.gaierror):
             return f"the host `{self.parameters.host}` is unknown: check the address of the broker"
         if isinstance(cause, ssl.SSLCertVerificationError):

@@ -13,10 +13,11 @@ from lumen.app.fleet.broker_check import check_broker
 from lumen.app.fleet.brokers import CENTRE, write_settings
 from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.keys import ORDER
+from lumen.app.fleet.rabbitmqctl import USUAL, RabbitMQControl
 from lumen.app.fleet.serving import ServedCentre, fleet_in
 from lumen.app.fleet.signing import Signer, generate
 from lumen.app.versions import version
-from lumen.bus import connect
+from lumen.bus import Bus, connect
 from lumen.cli.fleet_text import fleet_lines
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
@@ -63,7 +64,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--abort-if", metavar="TEXT", help="rollout: send all back where this holds, as in fleet.yaml")
     add("--against", metavar="HASH", help="diff: the bundle to compare with; default: the one that was proved last")
     add("-o", "--output", metavar="DIR", type=Path, default=Path("brokers"), help="init: where to (default: brokers)")
-    add("--ca", metavar="FILE", default="", help="init: the authority of the centre's certificate, on a house's broker")
+    add(
+        "--ca",
+        metavar="FILE",
+        default="",
+        help="init: the authority of the centre's certificate, on a house's broker; check: that of the broker",
+    )
+    add("--rabbitmqctl", metavar="CMD", default=USUAL, help="check: how it is called, as in 'sudo rabbitmqctl'")
     configure_format(parser)
 
 
@@ -123,21 +130,22 @@ def _check(options: argparse.Namespace, root: Path) -> int:
     if name != CENTRE and name not in fleet.houses:
         raise UsageError(f"the fleet has no house `{name}`: there are {', '.join(fleet.houses)}, and `{CENTRE}`")
     address = fleet.centre if name == CENTRE else fleet.houses[name].broker
-    found = check_broker(options.bus or os.environ.get("LUMEN_BUS") or address, house=name != CENTRE)
+    url = options.bus or os.environ.get("LUMEN_BUS") or address
+    found = list(check_broker(fleet, name, url, RabbitMQControl(options.rabbitmqctl), ca=options.ca))
     if options.format == "json":
         print_object(
             {"broker": name, "ok": not any(row.wrong for row in found), "found": [row._asdict() for row in found]}
         )
     else:
         for row in found:
-            print(
-                f"{'!!' if row.wrong else 'ok'} {row.what}{': ' * bool(row.wrong or row.note)}{row.wrong or row.note}"
-            )
+            print(f"{'!!' if row.wrong else 'ok'} {': '.join(filter(None, (row.what, row.wrong or row.note)))}")
+            if row.mend:
+                print(f"   {row.mend}")
     return int(any(row.wrong for row in found))
 
 
 def _serve(options: argparse.Namespace, root: Path) -> int:
-    bus = connect(_address(options, root), sender="centre")
+    bus = _connected(_address(options, root), "centre")
     try:
         served = ServedCentre(root, _signer(options, root), bus, lambda line: print(line, flush=True))
     except BaseException:
@@ -204,7 +212,7 @@ def _diff(options: argparse.Namespace, root: Path) -> int:
 def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], what: str = "") -> dict[str, Any]:
     """What the centre says to it. Raises UsageError with its words where it refuses, BusError where none answers."""
     url = _address(options, root)
-    bus = connect(url, sender="lumen fleet")
+    bus = _connected(url, "lumen fleet")
     question = {"ask": what or options.what, "by": getpass.getuser(), **body}
     try:
         answer = next(ask(bus, ORDER, question, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
@@ -215,6 +223,14 @@ def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], wha
     if not isinstance(answer, dict) or not answer.pop("ok", False):
         raise UsageError(str(answer.get("reason")) if isinstance(answer, dict) else "the centre's answer is none")
     return answer
+
+
+def _connected(url: str, sender: str) -> Bus:
+    """The centre's bus. Raises BusError with what is to be done."""
+    try:
+        return connect(url, sender=sender)
+    except BusUnreachableError as error:
+        raise BusUnreachableError(f"{error} (the centre's broker: --bus, LUMEN_BUS or fleet.yaml says where)") from None
 
 
 def _address(options: argparse.Namespace, root: Path) -> str:

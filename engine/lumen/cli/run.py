@@ -38,7 +38,7 @@ from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
-from lumen.errors import BusError, ModuleError, RobotError, UsageError
+from lumen.errors import BusError, BusUnreachableError, ModuleError, RobotError, UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.packaged import find_project
@@ -199,7 +199,10 @@ def _processes(
     clock: Clock = setup.clock if setup else FollowingClock(speed)
     transcript = Transcript(clock.now, lambda: node.project.machine)
     how = ProcessOptions(url, speed, options.reload, language, options.fresh)
-    bus = validated(connect(url, sender="+".join(parts)), project)
+    try:
+        bus = validated(connect(url, sender="+".join(parts)), project)
+    except BusUnreachableError as error:
+        raise error if options.only else BusUnreachableError(f"{error}, or use --bus memory://") from None
     alerts = alert_desk(project, parts, transcript, story)
     node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
     transcript.unread = lambda: node.interrupt(2, leave=True)

@@ -1,38 +1,73 @@
-"""Whether a broker has what a fleet needs, asked of the broker itself."""
+"""Whether a broker has what a fleet needs, asked of the broker itself and of its rabbitmqctl."""
 
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import quote
 
-from lumen.app.fleet.brokers import UP
+from lumen.app.fleet.broker_certificate import check_certificate
+from lumen.app.fleet.broker_finding import BrokerFinding
+from lumen.app.fleet.broker_links import check_links
+from lumen.app.fleet.broker_rights import IMPORT, compare
+from lumen.app.fleet.brokers import CENTRE, OPERATORS, ROBOTS, UP, centre_settings, house_settings
 from lumen.app.fleet.keys import EXCHANGE
+from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.buses.broker import BrokerAddress
 from lumen.errors import BusError
+from lumen.language.fleet import Fleet
+
+CALLED = (
+    "say how rabbitmqctl is called for this broker: --rabbitmqctl 'sudo rabbitmqctl', or 'ssh HOST sudo rabbitmqctl'"
+)
 
 
-class BrokerFinding(NamedTuple):
-    """What was looked at, what is wrong with it (empty where nothing is), and what is to be known of it."""
+def check_broker(
+    fleet: Fleet, name: str, url: str, control: RabbitMQControl, *, ca: str = ""
+) -> Iterator[BrokerFinding]:
+    """What the broker at `url` has and lacks as that of a house, or as the centre's; nothing on it is changed.
 
-    what: str
-    wrong: str = ""
-    note: str = ""
-
-
-def check_broker(url: str, *, house: bool) -> list[BrokerFinding]:
-    """What a house's broker (or the centre's) has and lacks; nothing on it is changed."""
+    Passwords are not compared. The certificate is that of the address in fleet.yaml, signed by who is in the file `ca`.
+    """
     import pika
     from pika.exceptions import AMQPError
 
     try:
-        address = BrokerAddress(url)
+        address = BrokerAddress(trusting(url, ca))
         connection = pika.BlockingConnection(address.parameters)
     except (BusError, AMQPError, OSError) as error:
-        return [BrokerFinding("the broker", f"it can't be reached: {error or type(error).__name__}")]
-    found = [BrokerFinding("the broker", note=f"it answers, {'by TLS' if url.startswith('amqps:') else 'in clear'}")]
+        yield BrokerFinding("the broker", str(error if isinstance(error, BusError) else address.explain(error)))
+        return
+    yield BrokerFinding("the broker", note=f"it answers, {'by TLS' if url.startswith('amqps:') else 'in clear'}")
     try:
-        found.append(_passive(connection, "exchange", EXCHANGE))
-        found.append(_passive(connection, "queue" if house else "exchange", UP))
+        seen = [_passive(connection, "exchange", EXCHANGE)]
+        seen.append(_passive(connection, "queue" if name != CENTRE else "exchange", UP))
     finally:
         connection.close()
-    return found
+    for told in (fleet.centre if name == CENTRE else fleet.houses[name].broker, url):
+        if told.startswith("amqps:"):
+            yield check_certificate(BrokerAddress(trusting(told, ca)))
+            break
+    try:
+        found = control.definitions()
+    except BusError as error:
+        yield from seen
+        yield BrokerFinding("users, rights, policies and lines", f"they were not looked at: {error}", mend=CALLED)
+        return
+    yield from (row for row in seen if row.note)
+    yield from compare(_wanted(fleet, name), found)
+    if name != CENTRE:
+        yield from check_links(control)
+
+
+def trusting(url: str, ca: str) -> str:
+    """The address of a broker, with the file of who has signed its certificate."""
+    return f"{url}{'&' if '?' in url else '?'}ca={quote(ca)}" if ca and url.startswith("amqps:") else url
+
+
+def _wanted(fleet: Fleet, name: str) -> Any:
+    """The definitions that `lumen fleet init` would write, without any password."""
+    if name == CENTRE:
+        return centre_settings(fleet, dict.fromkeys((OPERATORS, *fleet.houses), "")).definitions
+    return house_settings(fleet, name, {ROBOTS: ""}, "").definitions
 
 
 def _passive(connection: Any, kind: str, name: str) -> BrokerFinding:
@@ -45,7 +80,8 @@ def _passive(connection: Any, kind: str, name: str) -> BrokerFinding:
             return BrokerFinding(what)
         waiting = channel.queue_declare(name, passive=True).method.message_count
     except ChannelClosedByBroker as error:
-        why = "it is not there: import the definitions that `lumen fleet init` writes"
-        return BrokerFinding(what, why if error.reply_code == 404 else f"the broker refuses: {error.reply_text}")
+        if error.reply_code == 404:
+            return BrokerFinding(what, "it is not there", mend=IMPORT)
+        return BrokerFinding(what, f"the broker refuses: {error.reply_text}")
     note = f"{waiting:,} messages wait for the line to the centre" if waiting else "nothing waits for the centre"
     return BrokerFinding(what, note=note)
