@@ -75,7 +75,7 @@ def test_entries_that_are_told_make_the_same_day(copy: Path) -> None:
         yield json.dumps([{"position": 3, "at": 1.0, "heard": "heard", "data": {"result": "dance"}}]).encode()
         yield b"{nonsense"
 
-    day = json.loads(asyncio.run(Jobs(copy).do("day", "2026-11-23", "page", "told", told=told())))
+    day = json.loads(asyncio.run(Jobs(copy).do("day", "", "2026-11-23", "page", "told", told=told())))
     assert (day["date"], day["visits"]) == ("2026-11-23", [])
 
 
@@ -90,7 +90,7 @@ def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
 ) -> None:
     """The head is turned by as much as its joint on the bus says; what is about no joint is passed over."""
     monkeypatch.setattr("lumen.console.poses.LINGER", 0.1)
-    poses, bus = served.console.site.sights.poses, hosted.exhibition.node.bus
+    poses, bus = served.console.site.sights.poses("NAO"), hosted.exhibition.node.bus
     names = list(lumen.load(hosted.root).body.joints)
 
     def turned(angle: float) -> bool:
@@ -125,11 +125,11 @@ def test_who_does_not_read_poses_is_given_the_newest_only(
     served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However often the robot moves, of what it was not sent nothing is kept."""
-    poses = served.console.site.sights.poses
+    poses = served.console.site.sights.poses("NAO")
     view = served.console.site.watch.robots["NAO"]
 
     async def read() -> tuple[bytes, bytes]:
-        stream = poses.stream("NAO")
+        stream = poses.stream()
         first = await anext(stream)
         for _ in range(1_000):
             view.feel("joint", {"name": []})
@@ -149,5 +149,5 @@ def test_a_robot_of_another_project_is_not_drawn_by_the_model_of_this_one(served
     until(lambda: "NAO2" in [robot["robot"] for robot in served.browser.robots])
     for path in ("shape", "poses"):
         answer = served.browser.get(f"/api/{path}?robot=NAO2")
-        reason = "only the robot of this console's own project can be drawn"
+        reason = "only robots of this console's own project can be drawn"
         assert (answer.status, answer.data["reason"]) == (404, reason)

@@ -17,13 +17,16 @@ DIGITS = 4
 
 
 class Drawing:
-    """The robot of the project in `root`. Raises LumenError where its files have errors, or MuJoCo is not installed."""
+    """The robot of the project in `root`, of several that one, without a name the first.
 
-    def __init__(self, root: Path) -> None:
+    Raises LumenError where its files have errors, or MuJoCo is not installed.
+    """
+
+    def __init__(self, root: Path, robot: str = "") -> None:
         demand("simulation", "the view of the robot in its hall", "mujoco", "dm_control")
         from lumen.robots.simulation.link_frames import LinkFrames
 
-        self._project = lumen.load(root)
+        self._project = lumen.load(root, robot=robot)
         self._links = LinkFrames(self._project.body, model_files(self._project)[0])
 
     def shape(self) -> dict[str, Any]:

@@ -1,4 +1,5 @@
-"""One job of the console: `python -m lumen.console.job JOB PROJECT [ARGUMENTS]`; the last two as a folder and JSON.
+"""One job of the console: `python -m lumen.console.job JOB PROJECT [ARGUMENTS]`; the last two as a folder and JSON,
+of which the first is a robot of `robots:`, empty where there is one.
 
 Its answer goes to the standard output, as JSON. It may take so much memory, and so much time; the system ends it where
 it takes more. `poses` alone goes on until there is nothing more to read.
@@ -30,13 +31,14 @@ from lumen.errors import LumenError
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 
+TOO_LONG_AGO = "it was too long ago"
 REPLAY_TIME = 10.0
 """How long visits are played with the saved files [s]; the others are said to be unknown."""
 
 
-def day(root: Path, wanted: str, form: str, whose: str) -> Iterator[bytes]:
+def day(root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
     """A day, for a page or as a `csv`: from this machine's files, or from pages of entries that are read (`told`)."""
-    days, chosen_day = KeptDays(root), date.fromisoformat(wanted) if wanted else None
+    days, chosen_day = KeptDays(root, robot), date.fromisoformat(wanted) if wanted else None
     found = days.told(_lines(), chosen_day) if whose == "told" else days.day(chosen_day)
     if found is None:
         yield NOTHING
@@ -46,14 +48,14 @@ def day(root: Path, wanted: str, form: str, whose: str) -> Iterator[bytes]:
         yield orjson.dumps(found.to_json())
 
 
-def why(root: Path, question: str, what: str, at: str | None) -> Iterator[bytes]:
+def why(root: Path, robot: str, question: str, what: str, at: str | None) -> Iterator[bytes]:
     """Why something happened, or did not, from the journal."""
-    yield orjson.dumps(answer_from_journal(str(root), question, what, at, "it was too long ago"), default=str)
+    yield orjson.dumps(answer_from_journal(str(root), question, what, at, TOO_LONG_AGO, robot), default=str)
 
 
-def replay(root: Path) -> Iterator[bytes]:
+def replay(root: Path, robot: str) -> Iterator[bytes]:
     """What the files on the disk would have done in the visits that are kept; nothing where that can't be said."""
-    project = check_files(root, read_files(root))[0]
+    project = check_files(root, read_files(root, robot))[0]
     if project is None:
         yield NOTHING
         return
@@ -65,18 +67,18 @@ def replay(root: Path) -> Iterator[bytes]:
         yield NOTHING
 
 
-def shape(root: Path) -> Iterator[bytes]:
+def shape(root: Path, robot: str) -> Iterator[bytes]:
     """What the robot's links look like, and its stage."""
     from lumen.console.drawing import Drawing
 
-    yield orjson.dumps(Drawing(root).shape())
+    yield orjson.dumps(Drawing(root, robot).shape())
 
 
-def poses(root: Path) -> Iterator[bytes]:
+def poses(root: Path, robot: str) -> Iterator[bytes]:
     """Where its links are, a line for each line with joint angles; `null` for what can't be a robot's."""
     from lumen.console.drawing import Drawing
 
-    drawing = Drawing(root)
+    drawing = Drawing(root, robot)
     limit_time(0.0)
     for line in _lines():
         yield orjson.dumps(drawing.pose(line)) + b"\n"

@@ -23,10 +23,10 @@ WINDOW = 86_400.0 * 1.5
 
 
 class KeptDays:
-    """Days of the project in `root`."""
+    """Days of the project in `root`, of the first of several robots unless one is named."""
 
-    def __init__(self, root: Path) -> None:
-        self._robot = one_robot(root)
+    def __init__(self, root: Path, robot: str = "") -> None:
+        self._robot = one_robot(root, robot)
         self._root, self._kept = root, KeptBundles(root, self._robot)
         self._here = list[Project | None]()
 

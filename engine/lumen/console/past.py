@@ -51,7 +51,7 @@ class Past:
         at = request.query_params.get("at") or None
         said = await self._ask(view, {"ask": question, "what": what, **({"at": at} if at else {})})
         if said.get("kept") == "later" and self._is_ours(view):
-            said = orjson.loads(await self._jobs.do("why", question, what, at))
+            said = orjson.loads(await self._jobs.do("why", self._home(view), question, what, at))
         if said.get("verdict") == "refused":
             raise DeniedError(404, str(said.get("reason")))
         return as_json(said)
@@ -83,10 +83,15 @@ class Past:
             wanted = wanted and date.fromisoformat(wanted).isoformat()
         except ValueError:
             raise DeniedError(400, "`date` is a day such as 2026-11-23") from None
-        if self._is_ours(view) and (found := await self._jobs.do("day", wanted, form, "here")) != NOTHING:
+        if (
+            self._is_ours(view)
+            and (found := await self._jobs.do("day", self._home(view), wanted, form, "here")) != NOTHING
+        ):
             return found
         try:
-            return await self._jobs.do("day", wanted, form, "told", told=self._source.pages(view.robot))
+            return await self._jobs.do(
+                "day", self._home(view), wanted, form, "told", told=self._source.pages(view.robot)
+            )
         except BusError as error:
             raise DeniedError(503, f"the exhibition does not tell its day: {error}") from None
 
@@ -109,7 +114,7 @@ class Past:
         changed = bool(said.get("staged")) or bool(said.get("waiting"))
         changed = changed or (isinstance(last, dict) and last.get("verdict") in ("refused", "dry run"))
         if self._is_ours(view) and changed:
-            said["replay"] = orjson.loads(await self._jobs.do("replay"))
+            said["replay"] = orjson.loads(await self._jobs.do("replay", self._home(view)))
         return as_json(said)
 
     def _asked(self, request: Request, needs: Role) -> KnownRobot:
@@ -117,9 +122,12 @@ class Past:
         return self._reception.robot(request.query_params.get("robot"))
 
     def _is_ours(self, view: KnownRobot) -> bool:
-        """Whether it is the robot of the project whose folder we know."""
-        reached = self._watch.link.reached
-        return reached is not None and reached.robot == view.robot
+        """Whether it is a robot of the project whose folder we know, and the bus is reached."""
+        return self._watch.link.reached is not None and self._watch.keys.is_ours(view.robot)
+
+    def _home(self, view: KnownRobot) -> str:
+        """Which of the robots of the project whose folder we know; the first where it is none of them."""
+        return self._watch.keys.home(view.robot) if self._is_ours(view) else ""
 
     async def _ask(self, view: KnownRobot, body: dict[str, Any]) -> dict[str, Any]:
         key = self._watch.keys.of(view.robot).operator

@@ -21,29 +21,29 @@ LINGER, RETRY = 5.0, 5.0
 
 
 class Poses:
-    """Poses of the robot of this console's own project; other robots have models that nobody here knows.
+    """Poses of a robot of this console's own project; other robots have models that nobody here knows.
 
     Everything raises DeniedError where that has errors, or MuJoCo is not installed.
     """
 
-    def __init__(self, watch: Watch, jobs: Jobs) -> None:
-        self._watch, self._jobs = watch, jobs
+    def __init__(self, watch: Watch, jobs: Jobs, robot: str) -> None:
+        self._watch, self._jobs, self._robot = watch, jobs, robot
         self._shape: tuple[object, bytes] | None = None
         self._child: Process | None = None
         self._turn, self._lookers = asyncio.Lock(), 0
         self._pose: tuple[int, bytes] = -1, b""
         self.closing = False
 
-    async def shape(self, robot: str) -> bytes:
+    async def shape(self) -> bytes:
         """The links with their shapes, and the stage [m], as JSON; made once for a bundle of files."""
-        bundle = self._watch.robots[robot].said.get("bundle")
+        bundle = self._watch.robots[self._robot].said.get("bundle")
         if self._shape is None or self._shape[0] != bundle:
-            self._shape = bundle, await self._jobs.do("shape")
+            self._shape = bundle, await self._jobs.do("shape", self._home)
         return self._shape[1]
 
-    async def stream(self, robot: str) -> AsyncIterator[bytes]:
+    async def stream(self) -> AsyncIterator[bytes]:
         """Server-sent events `pose` as it moves, only the newest; `trouble` where there is none, with the reason."""
-        seen, waited, view = -1, 0.0, self._watch.robots[robot]
+        seen, waited, view = -1, 0.0, self._watch.robots[self._robot]
         self._lookers += 1
         try:
             while not self.closing:
@@ -62,6 +62,10 @@ class Poses:
             self._lookers -= 1
             asyncio.get_running_loop().call_later(0.0 if self.closing else LINGER, self._leave)
 
+    @property
+    def _home(self) -> str:
+        return self._watch.keys.home(self._robot)
+
     async def _placed(self, view: KnownRobot) -> bytes:
         """The event of where it is now, computed once for all that look."""
         async with self._turn:
@@ -75,7 +79,7 @@ class Poses:
     async def _asked(self, joints: bytes) -> bytes:
         """A line for a line, from the process, which is begun where there is none."""
         if self._child is None:
-            self._child = await self._jobs.begin("poses")
+            self._child = await self._jobs.begin("poses", self._home)
         child, line = self._child, b""
         assert child.stdin
         assert child.stdout

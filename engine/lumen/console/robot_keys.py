@@ -33,9 +33,10 @@ class KeyBook:
 
     def __init__(self, root: Path) -> None:
         self._own = ""
-        self._routes: Mapping[str, str] = {}
+        self._routes: Mapping[str, Mapping[str, str]] = {}
+        self._heard: Mapping[str, tuple[str, str]] = {}
         self._reached: Reached | None = None
-        self._root = root
+        self._root, self._told_apart = root, False
         self.robots: Sequence[str] = ()
         """Those that are there in any case: of the project, else who was reached."""
 
@@ -43,29 +44,50 @@ class KeyBook:
         """A bus was reached; the patterns to subscribe to there."""
         self._reached, self._own = reached, reached.robot
         settings = main_settings(self._root)
-        self.robots = tuple(settings.robots) if settings and reached.robot in settings.robots else (reached.robot,)
-        rows = settings.routes if settings else {}
-        self._routes = {name: rows[name].key_for(reached.robot) for name in (*HEARD, IMAGE) if name in rows}
+        ours = settings is not None and reached.robot in settings.robots
+        self.robots = tuple(settings.robots) if settings and ours else (reached.robot,)
+        self._told_apart = bool(settings and ours and settings.told_apart)
+        self._routes = {name: self._keys(name) for name in self.robots}
+        heard = {
+            (robot, name): key for robot, keys in self._routes.items() for name, key in keys.items() if name in HEARD
+        }
+        self._heard = {key: row for row, key in heard.items()}
         usual = [DEFAULT_KEYS[name].replace("{robot}", "*") for name in HEARD]
         told = [key_of_robot(CONFIG_STATUS, "*"), STATUS, *(DEFAULT_ALIASES[name] for name in (PRESENCE, *FACES))]
-        covered = {default_key(name, self._own) for name in HEARD}
-        return [*usual, *told, *(key for name, key in self._routes.items() if name != IMAGE and key not in covered)]
+        return [*usual, *told, *(key for (robot, name), key in heard.items() if key != default_key(name, robot))]
+
+    def is_ours(self, robot: str) -> bool:
+        """Whether it is one of the project whose folder we know, and which was reached."""
+        return self._reached is not None and robot in self.robots
+
+    def home(self, robot: str) -> str:
+        """What the folder of one of ours is called, empty where lumen.yaml has one `robot:`."""
+        return robot if self._told_apart else ""
 
     def of(self, robot: str) -> RobotKeys:
-        own = self._reached if robot == self._own else None
+        own, routes = self._reached if robot == self._own else None, self._routes.get(robot, {})
+
+        def key(route: str) -> str:
+            return routes.get(route) or default_key(route, robot)
+
         return RobotKeys(
             operator_key(robot),
             command_key(robot),
-            own.command if own else default_key(COMMAND_ROUTE, robot),
-            own.stop if own else default_key(STOP_ROUTE, robot),
-            self._routes.get(IMAGE, "") if own and IMAGE in self._routes else default_key(IMAGE, robot),
+            own.command if own else key(COMMAND_ROUTE),
+            own.stop if own else key(STOP_ROUTE),
+            key(IMAGE),
         )
+
+    def _keys(self, robot: str) -> Mapping[str, str]:
+        """The keys of those routes of one of ours that lumen.yaml has."""
+        settings = main_settings(self._root, robot if self._told_apart else "")
+        rows = settings.routes if settings else {}
+        return {name: rows[name].key_for(robot) for name in (*HEARD, IMAGE, COMMAND_ROUTE, STOP_ROUTE) if name in rows}
 
     def sense(self, key: str) -> tuple[str, str]:
         """The robot and the route of a key that was heard; empty texts where it is none of the senses."""
-        for name, own in self._routes.items():
-            if key == own:
-                return self._own, name
+        if row := self._heard.get(key):
+            return row
         for name in FACES:
             if key == DEFAULT_ALIASES[name]:
                 return self._own, name

@@ -19,7 +19,8 @@ class Sights:
 
     def __init__(self, reception: Reception, jobs: Jobs) -> None:
         self._reception = reception
-        self.cameras, self.poses = Cameras(reception.watch), Poses(reception.watch, jobs)
+        self.cameras, self._jobs = Cameras(reception.watch), jobs
+        self._drawings: dict[str, Poses] = {}
         self.routes = [
             Route("/camera/{robot}", self._camera),
             Route("/api/shape", self._shape),
@@ -28,7 +29,14 @@ class Sights:
 
     def close(self) -> None:
         self.cameras.close()
-        self.poses.closing = True
+        for poses in self._drawings.values():
+            poses.closing = True
+
+    def poses(self, robot: str) -> Poses:
+        """Where the links of that robot are."""
+        if robot not in self._drawings:
+            self._drawings[robot] = Poses(self._reception.watch, self._jobs, robot)
+        return self._drawings[robot]
 
     async def _camera(self, request: Request) -> Response:
         self._reception.person(request, Role.SHOW)
@@ -41,19 +49,19 @@ class Sights:
     async def _shape(self, request: Request) -> Response:
         view = self._drawn(request)
         try:
-            data = await self.poses.shape(view.robot)
+            data = await self.poses(view.robot).shape()
         except DeniedError as error:
             raise DeniedError(error.status, f"the robot can't be drawn: {error.reason}") from None
         return Response(data, headers=NO_STORE, media_type="application/json")
 
     async def _poses(self, request: Request) -> Response:
         view = self._drawn(request)
-        return StreamingResponse(self.poses.stream(view.robot), media_type=STREAM, headers=NO_STORE)
+        return StreamingResponse(self.poses(view.robot).stream(), media_type=STREAM, headers=NO_STORE)
 
     def _drawn(self, request: Request) -> KnownRobot:
         self._reception.person(request, Role.SHOW)
         view = self._reception.robot(request.query_params.get("robot"))
-        reached = self._reception.watch.link.reached
-        if reached is None or reached.robot != view.robot:
-            raise DeniedError(404, "only the robot of this console's own project can be drawn")
+        watch = self._reception.watch
+        if watch.link.reached is None or not watch.keys.is_ours(view.robot):
+            raise DeniedError(404, "only robots of this console's own project can be drawn")
         return view
