@@ -52,6 +52,18 @@ def test_of_the_headers_the_cause_is_read_where_texts_stand_before_it() -> None:
     assert read({}) == read({"cause": 3}) == read({"deep": {"cause": "d3"}, "cause": "d3"}) == ""
 
 
+def test_where_a_message_stands_in_a_stream_is_read_behind_whatever_a_sender_invents() -> None:
+    def read(*entries: bytes) -> int:
+        return read_properties(encoded(headers=b"".join(entries))).offset
+
+    offset = header(b"x-stream-offset", b"l", struct.pack(">q", 2**40))
+    text = header(b"a", b"S", struct.pack(">I", len(offset)) + offset)
+    table = header(b"b", b"F", struct.pack(">I", len(offset)) + offset)
+    assert read(offset) == read(text, table, offset) == 2**40
+    assert read(text) == read(table) == read(header(b"x-stream-offset", b"S", b"\0\0\0\1x")) == -1
+    assert read(offset[:-1]) == read(header(b"x", b"?", b""), offset) == -1
+
+
 def test_no_bytes_are_too_many_or_too_few() -> None:
     random = Random(1)
     for make in (*PROPERTIES, lambda random: random.randbytes(random.randrange(40))):

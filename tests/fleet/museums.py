@@ -61,8 +61,19 @@ class Museums:
 
     def serve(self) -> ServedCentre:
         bus = connect(self.brokers.url(CENTRE), sender=CENTRE)
-        self.served = ServedCentre(self.root, self.signer, bus, lambda _: None)
+        self.served = ServedCentre(self.root, self.signer, bus, lambda _: None, self.brokers.url(CENTRE))
         return self.served
+
+    def kill(self) -> None:
+        """End the centre as a power cut would: what it would write when it is closed is not written."""
+        served = self.served
+        served._desk.close()
+        if served._stream:
+            served._stream.close()
+        for undo in served.centre._undo:
+            undo()
+        served._bus.close()
+        served._home.release()
 
     def look(self) -> None:
         for name, agent in self.agents.items():

@@ -26,7 +26,7 @@ def other_centre(there: Any) -> None:
 
 
 def short_queue(there: Any) -> None:
-    there["queues"][0]["arguments"] = {}
+    there["queues"][0]["arguments"] = {"x-queue-type": "quorum"}
 
 
 def leak(there: Any) -> None:

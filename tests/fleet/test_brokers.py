@@ -14,7 +14,7 @@ from pika.exceptions import ChannelClosedByBroker
 
 from lumen.app.fleet.broker_links import check_links
 from lumen.app.fleet.brokers import CENTRE, UP, write_settings
-from lumen.app.fleet.keys import EXCHANGE
+from lumen.app.fleet.keys import EXCHANGE, incident_key
 from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
 from lumen.cli.main import main
@@ -128,6 +128,42 @@ def test_all_go_back_also_over_a_line_that_was_cut(museums: Museums) -> None:
     museums.until(lambda: museums.have(before) == 5 and not museums.served.centre.state.exposed)
 
 
+def test_what_happened_while_no_centre_ran_is_counted_once(museums: Museums) -> None:
+    """The centre is killed before it has saved anything, and the house loses its power while the line is cut."""
+
+    def happens(text: str, id: str = "") -> None:
+        url = museums.brokers.url("itb")
+        with pika.BlockingConnection(pika.URLParameters(url)) as connection:
+            body = json.dumps({"kind": "fell", "text": text}).encode()
+            properties = pika.BasicProperties(message_id=id or text, timestamp=1_800_000_000)
+            (channel := connection.channel()).confirm_delivery()
+            channel.basic_publish("amq.topic", incident_key("itb", "nao1"), body, properties)
+
+    def told() -> list[str]:
+        return [row["text"] for row in museums.served.centre.log.incidents]
+
+    happens("before")
+    museums.until(lambda: told() == ["before"])
+    museums.kill()
+    happens("meanwhile")
+    happens("meanwhile, sent anew", "meanwhile")
+    museums.serve()
+    museums.until(lambda: told() == ["before", "meanwhile"])
+    museums.served.close()
+    cable, house = museums.brokers.cables["itb"], museums.brokers.brokers["itb"]
+    cable.refuse()
+    happens("in the dark")
+    museums.buses["itb"].close()
+    house.kill()
+    house.start()
+    cable.mend()
+    museums.buses["itb"] = connect(museums.brokers.url("itb"), sender="itb")
+    museums.serve()
+    museums.until(lambda: told() == ["before", "meanwhile", "in the dark"])
+    assert museums.served.centre.log.kinds == {"fell": 3}
+    assert museums.served.centre.log.incidents[-1]["at"] == 1_800_000_000
+
+
 def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
     own_broker: FleetBrokers, museums: Museums, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -145,14 +181,14 @@ def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
     }
     mended(own_broker, "itb", found)
     control = RabbitMQControl(own_broker.brokers["itb"].ctl)
-    until(lambda: not any(line.wrong for line in check_links(control)), 60.0)
+    until(lambda: not any(line.wrong for line in check_links(control)), 60.0, every=1.0)
     found = checked(own_broker, museums.root, "itb", capsys)
     assert wrong(found) == {}
     assert found["the broker"]["note"] == "it answers, in clear"
     assert {"all users", "all permissions", "all bindings", "all parameters", "all policies"} <= found.keys()
     assert found["the line up to the centre"]["note"].startswith("it runs since ")
     own_broker.cables["itb"].refuse()
-    until(lambda: all("can't be reached from here" in line.wrong for line in check_links(control)), 60.0)
+    until(lambda: all("can't be reached from here" in line.wrong for line in check_links(control)), 60.0, every=1.0)
     assert [line.mend.split()[1] for line in check_links(control)] == ["restart_shovel", "restart_federation_link"]
 
 
@@ -194,13 +230,6 @@ def test_what_was_not_looked_at_is_not_well(
     assert "no centre answers on 127.0.0.1" in capsys.readouterr().err
 
 
-def test_a_centre_without_a_broker_is_told_with_what_helps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["fleet", "status", "--project", str(tmp_path), "--bus", "amqp://127.0.0.1:1/"]) == 2
-    told = capsys.readouterr().err
-    assert "no broker listens at 127.0.0.1:1: start RabbitMQ there (the centre's broker: --bus" in told
-    assert "memory" not in told
-
-
 def test_the_commands_publish_roll_out_tell_and_abort(
     museums: Museums, own_broker: FleetBrokers, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -237,6 +266,7 @@ def test_the_commands_publish_roll_out_tell_and_abort(
         assert status["rollout"]["state"] == "going"
         assert main(["fleet", "status", *where]) == 0
         assert "-> 40%: at most 2 robots" in capsys.readouterr().out
+        assert told("log").keys() == {"incidents", "kinds", "numbers"}
         assert main(["fleet", "rollout", hash, *where]) == 2
         assert "is going: abort it, or let it end" in capsys.readouterr().err
         told("abort")

@@ -17,6 +17,7 @@ from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.serving import ServedCentre, fleet_in
 from lumen.app.fleet.signing import Signer, generate
 from lumen.buses.memory import MemoryBus
+from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.loading.files import fingerprint, read_files
 from tests.fleet.houses import Taker, changed, project
@@ -229,3 +230,10 @@ def test_nothing_but_numbers_hashes_and_words_of_ours_leaves_a_house(hall: Hall)
     assert not any("Welcome" in line or "Nao." in line for line in up)
     assert max(map(len, up)) < 1200
     assert fingerprint(changed(hall.root)) == hash
+
+
+def test_a_centre_without_a_broker_is_told_with_what_helps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fleet", "status", "--project", str(tmp_path), "--bus", "amqp://127.0.0.1:1/"]) == 2
+    told = capsys.readouterr().err
+    assert "no broker listens at 127.0.0.1:1: start RabbitMQ there (the centre's broker: --bus" in told
+    assert "memory" not in told

@@ -28,7 +28,8 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
     signer = Signer(key)
     root = project(tmp_path / "house", signer.public)
     files = changed(root)
-    loaded, bus, heard = load(root), MemoryBus("fleet-taking"), Collector()
+    loaded, bus, heard, numbers = load(root), MemoryBus("fleet-taking"), Collector(), Collector()
+    bus.subscribe("fleet.numbers.itb.nao1", numbers)
     bus.subscribe("fleet.presence.itb.nao1", heard)
     directory = RunDirectory(root)
     setup = set_up("recording", loaded, "max", None)
@@ -48,6 +49,9 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
         assert "waiting" in show.configuration
         until(lambda: show.tick() and heard.bodies[-1]["state"] == "proved", every=0.0)
         assert heard.bodies[-1]["bundle"] == fingerprint(files)
+        (ended,) = numbers.bodies
+        assert ended["bundle"] == loaded.hash
+        assert ended["counts"].keys() >= {"hours"}
         until(lambda: b"Welcome" in (root / "behaviors/hello.yaml").read_bytes())
         until(lambda: not json.loads((home_of(root) / memory_file(ROBOT)).read_text())["writing"])
         assert load(root).hash == show.project.hash

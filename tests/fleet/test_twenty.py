@@ -97,7 +97,7 @@ class Twenty:
 
     def serve(self) -> ServedCentre:
         bus = connect(self.brokers.url(CENTRE), sender=CENTRE)
-        self.served = ServedCentre(self.root, self.signer, bus, lambda _: None)
+        self.served = ServedCentre(self.root, self.signer, bus, lambda _: None, self.brokers.url(CENTRE))
         return self.served
 
     def live(self, holds: Callable[[], object], seconds: float = 180.0, *, trouble: bool = False) -> None:

@@ -17,6 +17,7 @@ How RabbitMQ is used, from the inside out:
     broker.py         where a broker is, and in one line why it can't be used
     queues.py         which queue a route has, and its bounds
     declarer.py       declares queues, binds and deletes them
+    stream_reader.py  a stream of RabbitMQ, read on from where it was left
     subscriptions.py  who has subscribed, and what is delivered to whom
     outbox.py         what waits to be sent: bounded
     intake.py         what of all that comes is taken, held back or dropped, and counted

@@ -2,9 +2,11 @@
 
 pika reads every header that a sender may invent, deep tables and dates beyond its own, and raises inside its reading of
 frames: the connection is gone with one message. Of the headers only a text called `cause` is read, where nothing but
-texts stands before it; the others are passed over unread. Of the rest what is no text is left out, and named.
+texts stands before it, and where in a stream the message stands; the others are passed over unread. Of the rest what is
+no text is left out, and named.
 """
 
+from contextlib import suppress
 from struct import error as struct_error
 from struct import unpack_from
 from typing import Any, NamedTuple
@@ -16,6 +18,8 @@ _HEADER_START = spec.FRAME_HEADER_SIZE + 12
 """Where in a frame the properties begin: behind the class, the weight and the length of the body."""
 CAUSE_HEADER = "cause"
 """The header that says what in a behaviour asked for a message."""
+OFFSET_HEADER = "x-stream-offset"
+"""The header by which RabbitMQ says where in a stream a message stands."""
 _FIELDS = (
     ("content_type", "text"), ("content_encoding", "text"), ("headers", "table"), ("delivery_mode", "byte"),
     ("priority", "byte"), ("correlation_id", "text"), ("reply_to", "text"), ("expiration", "text"),
@@ -28,7 +32,7 @@ _FIELDS = (
 class MessageProperties(NamedTuple):
     """What we go by of a message's properties; `unreadable` names those that were left out.
 
-    `headers` is what the one that we read says: `CAUSE_HEADER`.
+    `headers` is what the one that we read says: `CAUSE_HEADER`. `offset` is where in a stream it stands, -1 in none.
     """
 
     content_type: str = ""
@@ -40,6 +44,7 @@ class MessageProperties(NamedTuple):
     app_id: str = ""
     delivery_mode: int = 0
     headers: str = ""
+    offset: int = -1
     unreadable: tuple[str, ...] = ()
 
 
@@ -66,7 +71,9 @@ def read_properties(data: bytes) -> MessageProperties:
         flags, at = _flags(data)
         for bit, (name, kind) in zip(range(15, 1, -1), _FIELDS, strict=True):
             if flags & 1 << bit:
-                value, at = _READERS[kind](data, at)
+                start, (value, at) = at, _READERS[kind](data, at)
+                if kind == "table":
+                    found["offset"] = _offset(data[start + 4 : at])
                 if value is None:
                     unreadable.append(name)
                 elif name in MessageProperties._fields:
@@ -113,6 +120,22 @@ def _cause(table: bytes) -> str:
     return ""
 
 
+def _offset(table: bytes) -> int:
+    """What `OFFSET_HEADER` of a table says, -1 where there is none: an entry is a name, a sign and its value."""
+    name = OFFSET_HEADER.encode()
+    at = 0
+    with suppress(struct_error):
+        while name in table[at:]:
+            named = at + 1 + table[at]
+            sign, value = table[named : named + 1], named + 1
+            if table[at + 1 : named] == name and sign == b"l":
+                return max(-1, int(unpack_from(">q", table, value)[0]))
+            if sign not in _LONG and sign not in _SIZES:
+                break
+            at = value + (4 + unpack_from(">I", table, value)[0] if sign in _LONG else _SIZES[sign])
+    return -1
+
+
 def _byte(data: bytes, at: int) -> tuple[int | None, int]:
     return unpack_from("B", data, at)[0], at + 1
 
@@ -121,4 +144,10 @@ def _time(data: bytes, at: int) -> tuple[int | None, int]:
     return unpack_from(">Q", data, at)[0], at + 8
 
 
+_LONG = frozenset((b"S", b"A", b"F", b"x"))
+"""The signs of values that begin with their length."""
+_SIZES = {
+    b"t": 1, b"b": 1, b"B": 1, b"s": 2, b"u": 2, b"I": 4, b"i": 4, b"f": 4, b"D": 5, b"l": 8, b"d": 8, b"T": 8, b"V": 0,
+}  # fmt: skip
+"""How long the values of the other signs are [bytes], as RabbitMQ writes them."""
 _READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}

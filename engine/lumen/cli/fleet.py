@@ -5,6 +5,7 @@ import getpass
 import os
 import signal
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from lumen.app.fleet.serving import ServedCentre, fleet_in
 from lumen.app.fleet.signing import Signer, generate
 from lumen.app.versions import version
 from lumen.bus import Bus, connect
-from lumen.cli.fleet_text import fleet_lines
+from lumen.cli.fleet_text import fleet_lines, log_lines
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
 from lumen.interpreters.changes import changes, risk, summary
@@ -33,6 +34,7 @@ WHATS: Mapping[str, str] = {
     "serve": "be the centre",
     "publish": "send a project to the centre as a bundle",
     "rollout": "let the robots have a bundle, step by step",
+    "log": "say what happened: incidents, and what was counted with each bundle",
     "status": "say how houses, robots and the rollout are",
     "pause": "let a rollout wait",
     "go": "let it go on, or decide what nobody knew",
@@ -42,6 +44,7 @@ WHATS: Mapping[str, str] = {
     "diff": "say what a bundle would change",
     "take-over": "replace a centre that is gone",
 }
+LINES = {"status": fleet_lines, "log": log_lines}
 KEY_FILE = "fleet.key"
 ANSWER_TIMEOUT = 15.0
 
@@ -94,12 +97,15 @@ def run(options: argparse.Namespace) -> int:
             return _diff(options, root)
         case "pin" | "unpin":
             answer = _asked(options, root, {"robot": _named(options)})
+        case "log":
+            told = _asked(options, root, {}, "status")
+            answer = {name: told[name] for name in ("incidents", "kinds", "numbers")}
         case _:
             answer = _asked(options, root, {})
     if options.format == "json":
         print_object(answer)
-    elif options.what == "status":
-        print("\n".join(fleet_lines(answer)))
+    elif options.what in LINES:
+        print("\n".join(LINES[options.what](answer)))
     else:
         print(answer.get("bundle") or "done")
     return 0
@@ -147,7 +153,8 @@ def _check(options: argparse.Namespace, root: Path) -> int:
 def _serve(options: argparse.Namespace, root: Path) -> int:
     bus = _connected(_address(options, root), "centre")
     try:
-        served = ServedCentre(root, _signer(options, root), bus, lambda line: print(line, flush=True))
+        tell = partial(print, flush=True)
+        served = ServedCentre(root, _signer(options, root), bus, tell, _address(options, root))
     except BaseException:
         bus.close()
         raise

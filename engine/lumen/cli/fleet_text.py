@@ -1,6 +1,7 @@
 """`lumen fleet status` for people."""
 
 from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
 from typing import Any
 
 from lumen.cli.tables import table
@@ -29,6 +30,22 @@ def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
             yield f"!! {found[name]}"
     if found["centre"]["overruled"]:
         yield f"!! this centre orders nothing: {found['centre']['overruled']}"
+
+
+def log_lines(found: Mapping[str, Any]) -> Iterator[str]:
+    """The last incidents, how often each kind came, and what was counted with each bundle."""
+    for row in found["incidents"]:
+        at = datetime.fromtimestamp(row["at"], UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
+        yield f"{at}  {row['robot']}: {row['kind']}: {row['text']}"
+    yield ", ".join(f"{kind}: {count}" for kind, count in found["kinds"].items()) or "no incidents"
+    if found["numbers"]:
+        names = sorted({name for row in found["numbers"] for name in row["measures"]})
+        rows = [
+            [row["bundle"][:SHORT], f"{row['robots']}", f"{row['hours']:.1f}"]
+            + [f"{row['measures'][name]:.3g}" if name in row["measures"] else "-" for name in names]
+            for row in found["numbers"]
+        ]
+        yield table(("bundle", "robots", "hours", *names), rows)
 
 
 def _rollout(rollout: Mapping[str, Any] | None) -> Iterator[str]:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlsplit
 
-from lumen.app.fleet.keys import BUNDLE, DESIRED, EXCHANGE, INCIDENT, PRESENCE, bundle_key, desired_key
+from lumen.app.fleet.keys import BUNDLE, DESIRED, EXCHANGE, KEPT, PRESENCE, bundle_key, desired_key
 from lumen.errors import UsageError
 from lumen.language.fleet import Fleet
 from lumen.upkeep.private_folder import private_folder
@@ -24,6 +24,8 @@ from lumen.upkeep.private_folder import private_folder
 CENTRE = "centre"
 UP = f"{EXCHANGE}.up"
 """At the centre, the exchange that houses write to; in a house, the queue of what is on its way there."""
+STREAM = f"{EXCHANGE}.log"
+"""At the centre, the stream of incidents and numbers: it is read on from where it was left."""
 ROBOTS, OPERATORS = "robots", "operators"
 """Who uses the broker of a house, and who that of the centre."""
 EVERYTHING = ".*"
@@ -34,6 +36,20 @@ MOST_WAITING = 50_000
 LINK_EXPIRES = 3_600_000
 """After how long without a house the centre forgets what waits for it [ms]: orders are told again."""
 TOPIC = "amq.topic"
+WAITING = {
+    "x-queue-type": "quorum",
+    "x-max-length": MOST_WAITING,
+    "x-overflow": "drop-head",
+    "x-delivery-limit": 1_000_000,
+}
+"""Of the queue in a house: on its disk, so that a power cut loses no incident, however often the line breaks."""
+KEPT_AT_CENTRE = {
+    "x-queue-type": "stream",
+    "x-max-age": "30D",
+    "x-max-length-bytes": 200_000_000,
+    "x-stream-max-segment-size-bytes": 4_000_000,
+}
+"""Of the stream: what is older, or more, gives way in pieces of 4 MB."""
 
 
 class BrokerSettings:
@@ -50,8 +66,7 @@ def house_settings(fleet: Fleet, house: str, own: Mapping[str, str], upstream: s
     """
     address = _with_user(fleet.centre, house, upstream, ca)
     down = [_link(EXCHANGE, TOPIC, "exchange", key) for key in (desired_key(house), bundle_key(house))]
-    up = [_link(TOPIC, UP, "queue", f"{key}.{house}.*") for key in (PRESENCE, INCIDENT)]
-    limits = {"x-max-length": MOST_WAITING, "x-overflow": "drop-head"}
+    up = [_link(TOPIC, UP, "queue", f"{key}.{house}.*") for key in (PRESENCE, *KEPT)]
     shovel = {
         "src-protocol": "amqp091",
         "src-uri": "amqp://",
@@ -74,7 +89,7 @@ def house_settings(fleet: Fleet, house: str, own: Mapping[str, str], upstream: s
     definitions = {
         **_users(own, {ROBOTS: (f"^(?!{re.escape(EXCHANGE)}).*", f"^(?!{re.escape(EXCHANGE)}).*", EVERYTHING)}),
         "exchanges": [_exchange(EXCHANGE)],
-        "queues": [{"vhost": "/", "name": UP, "durable": True, "auto_delete": False, "arguments": limits}],
+        "queues": [{"vhost": "/", "name": UP, "durable": True, "auto_delete": False, "arguments": WAITING}],
         "bindings": [*down, *up],
         "parameters": [
             {"vhost": "/", "component": "federation-upstream", "name": CENTRE, "value": federation},
@@ -104,16 +119,17 @@ def centre_settings(fleet: Fleet, own: Mapping[str, str]) -> BrokerSettings:
     topics = []
     for house in fleet.houses:
         name = re.escape(house)
-        heard, said = rf"^fleet\.(desired|bundle)\.{name}$", rf"^fleet\.(presence|incident)\.{name}\."
+        heard, said = rf"^fleet\.(desired|bundle)\.{name}$", rf"^fleet\.(presence|incident|numbers)\.{name}\."
         topics += [_topic(house, EXCHANGE, "^$", heard), _topic(house, UP, said, "^$")]
     definitions = {
         **_users(own, rights),
         "topic_permissions": topics,
         "exchanges": [_exchange(EXCHANGE), _exchange(UP)],
-        "queues": [],
+        "queues": [{"vhost": "/", "name": STREAM, "durable": True, "auto_delete": False, "arguments": KEPT_AT_CENTRE}],
         "bindings": [
             *(_link(TOPIC, EXCHANGE, "exchange", f"{key}.*") for key in (DESIRED, BUNDLE)),
-            *(_link(UP, TOPIC, "exchange", f"{key}.*.*") for key in (PRESENCE, INCIDENT)),
+            *(_link(UP, TOPIC, "exchange", f"{key}.*.*") for key in (PRESENCE, *KEPT)),
+            *(_link(UP, STREAM, "queue", f"{key}.*.*") for key in KEPT),
         ],
         "parameters": [],
         "policies": [],

@@ -9,10 +9,12 @@ from typing import Any
 
 from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.centre_journal import CentreJournal
+from lumen.app.fleet.fleet_log import FleetLog
 from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.keys import INCIDENT, PRESENCE, bundle_key, desired_key, robot_of
+from lumen.app.fleet.keys import KEPT, PRESENCE, bundle_key, desired_key, robot_of
 from lumen.app.fleet.overview import overview
 from lumen.app.fleet.signing import ORDER, Signer
+from lumen.buses.stream_reader import StreamEntry, StreamReader
 from lumen.errors import BusError, UsageError
 from lumen.interpreters.fleet.orders import DesiredState
 from lumen.interpreters.fleet.presence import presence_from
@@ -28,14 +30,14 @@ BUNDLE_PERIOD = 20.0
 KEEP_PERIOD = 60.0
 """How often it is written down how long a step was watched [s]."""
 MAX_WAITING = 20_000
-MAX_INCIDENTS = 200
 
 
 class Centre:
     """Of one fleet, on the centre's bus. `tick` it about once a second.
 
     What it decides is in its journal before anybody hears of it; where that can't be written it decides nothing, and
-    `trouble` says why. `clock` gives the time [s since 1970].
+    `trouble` says why. `clock` gives the time [s since 1970]. Incidents and numbers come by the `stream`; where
+    there is none by the bus, and then none while nobody is the centre.
     """
 
     def __init__(
@@ -46,25 +48,32 @@ class Centre:
         bundles: BundleFolder,
         signer: Signer,
         bus: Bus,
+        log: FleetLog,
+        stream: StreamReader | None = None,
         *,
         tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.time,
     ) -> None:
         self.fleet, self.state, self.bundles, self.trouble = fleet, state, bundles, ""
         self.heard: dict[str, HeardPresence] = {}
-        self.incidents: deque[dict[str, Any]] = deque(maxlen=MAX_INCIDENTS)
+        self.log, self._stream = log, stream
         self._journal, self._signer, self._bus, self._tell, self._clock = journal, signer, bus, tell, clock
         self._came: deque[Message] = deque(maxlen=MAX_WAITING)
         self._told, self._version, self._kept = 0.0, -1, 0.0
         self._sent: dict[tuple[str, str], float] = {}
         self._known = frozenset(fleet.robots)
-        self._undo = [bus.subscribe(f"{key}.*.*", self._came.append) for key in (PRESENCE, INCIDENT)]
+        heard = (PRESENCE,) if stream else (PRESENCE, *KEPT)
+        self._undo = [bus.subscribe(f"{key}.*.*", self._came.append) for key in heard]
 
     def tick(self) -> None:
         """Hear what came, go on with the rollout, tell the houses."""
         now = self._clock()
         while self._came:
             self._hear(self._came.popleft(), now)
+        for entry in self._stream.take() if self._stream else ():
+            self._count(entry, now)
+        if why := self.log.save():
+            self._tell(f"the centre's log can't be written: {why}")
         self._decide(step(self.state, self.fleet, self.heard, now), now)
         if not self.trouble and not self.state.overruled:
             self._order(now)
@@ -80,7 +89,9 @@ class Centre:
         """How the fleet is, as JSON data."""
         told = overview(self.fleet, self.state, self.heard, self._clock())
         return told | {
-            "incidents": list(self.incidents)[-20:],
+            "incidents": list(self.log.incidents)[-20:],
+            "kinds": self.log.kinds,
+            "numbers": self.log.numbers(self.fleet.measures),
             "trouble": self.trouble,
             "bundles": self.bundles.hashes(),
         }
@@ -88,22 +99,26 @@ class Centre:
     def close(self) -> None:
         for undo in self._undo:
             undo()
+        self.log.save(now=True)
 
     def _hear(self, message: Message, now: float) -> None:
         robot = robot_of(message.key)
         if robot not in self._known:
             return
-        if message.key.startswith(INCIDENT):
-            match message.body:
-                case {"kind": str(kind), "text": str(text)}:
-                    self.incidents.append({"robot": robot, "kind": kind[:40], "text": text[:300], "at": round(now)})
-                    self._tell(f"{robot}: {kind[:40]}: {text[:300]}")
+        if not message.key.startswith(f"{PRESENCE}."):
+            self._count(StreamEntry(-1, message.key, message.body, message.id, message.time), now)
             return
         said = presence_from(robot, message.body)
         if said is not None:
             self.heard[robot] = HeardPresence(said, now)
             if said.wants:
                 self._send(said.robot.partition("/")[0], said.wants, now)
+
+    def _count(self, entry: StreamEntry, now: float) -> None:
+        """What is counted once; of a robot that is not of the fleet, nothing."""
+        known = robot_of(entry.key) in self._known
+        if line := self.log.take(entry if known else entry._replace(body=None), now):
+            self._tell(line)
 
     def _send(self, house: str, hash: str, now: float) -> None:
         """The bundle that a robot of a house lacks."""

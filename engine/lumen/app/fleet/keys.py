@@ -2,10 +2,12 @@
 
 EXCHANGE = "lumen.fleet"
 """The exchange of a broker that is joined with that of others."""
-PRESENCE, INCIDENT, DESIRED, BUNDLE, ORDER = (
-    "fleet.presence", "fleet.incident", "fleet.desired", "fleet.bundle", "fleet.order",
+PRESENCE, INCIDENT, NUMBERS, DESIRED, BUNDLE, ORDER = (
+    "fleet.presence", "fleet.incident", "fleet.numbers", "fleet.desired", "fleet.bundle", "fleet.order",
 )  # fmt: skip
-UP, DOWN = (PRESENCE, INCIDENT), (DESIRED, BUNDLE)
+KEPT = (INCIDENT, NUMBERS)
+"""What a centre has to hear once, however long it was off."""
+UP, DOWN = (PRESENCE, *KEPT), (DESIRED, BUNDLE)
 """From a house to the centre; and from the centre to a house."""
 
 
@@ -19,6 +21,11 @@ def incident_key(house: str, robot: str) -> str:
     return f"{INCIDENT}.{house}.{robot}"
 
 
+def numbers_key(house: str, robot: str) -> str:
+    """Where a robot tells each hour, and at the end of a bundle, what it has counted."""
+    return f"{NUMBERS}.{house}.{robot}"
+
+
 def desired_key(house: str) -> str:
     """Where a house hears what its robots are to run."""
     return f"{DESIRED}.{house}"
@@ -30,6 +37,6 @@ def bundle_key(house: str) -> str:
 
 
 def robot_of(key: str) -> str:
-    """HOUSE/ROBOT of a presence's or an incident's key, empty for any other."""
+    """HOUSE/ROBOT of a key that leads up, empty for any other."""
     words = key.split(".")
     return "/".join(words[2:4]) if len(words) == 4 else ""

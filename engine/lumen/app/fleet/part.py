@@ -11,7 +11,7 @@ from typing import Any
 from lumen.app.fleet.agent import FleetAgent
 from lumen.app.fleet.counter import MeasureCounter
 from lumen.app.fleet.installing import all_have, bundle_folder, install, written
-from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, presence_key
+from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, numbers_key, presence_key
 from lumen.app.fleet.memory import keep, remember
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.parts.part import Part
@@ -30,6 +30,8 @@ from lumen.runtime.snapshot_store import SnapshotStore
 HOUSE_VARIABLE = "LUMEN_HOUSE"
 PERIOD = 10.0
 """How often a robot tells of itself [s]."""
+NUMBERS_PERIOD = 3600.0
+"""How often it tells what was counted, for those who look back [s]; a bundle that ends is told at once."""
 MAX_WAITING = 50
 
 
@@ -99,6 +101,7 @@ class FleetPart(Part):
         taker.installed = lambda: written(home, self._robot, memory)
         self._came: deque[Message] = deque(maxlen=MAX_WAITING)
         self._told, self._as = time.monotonic(), ""
+        self._counting, self._numbered = ("", 0.0), time.monotonic()
         self._undo = [self._bus.subscribe(key, self._came.append) for key in (desired_key(house), bundle_key(house))]
 
     def begin(self, now: float) -> None:
@@ -123,8 +126,22 @@ class FleetPart(Part):
         now = time.monotonic()
         said = self.agent.presence(now - self._told, self.counter.take())
         self._told = now
+        self._tell_numbers(now)
         with suppress(BusError):
             self._bus.publish(presence_key(self._house, self._robot), said.to_json(), ttl=60.0)
+
+    def _tell_numbers(self, now: float) -> None:
+        """What was counted with the bundle before, once it is another one; with this one each hour."""
+        memory = self.agent.memory
+        before, self._counting = self._counting, (self.agent.running, memory.since)
+        ended = bool(before[0]) and before != self._counting
+        if not ended and now - self._numbered < NUMBERS_PERIOD:
+            return
+        bundle, since = before if ended else self._counting
+        self._numbered = now
+        body = {"bundle": bundle, "since": since, "counts": dict(memory.past if ended else memory.now)}
+        with suppress(BusError):
+            self._bus.publish(numbers_key(self._house, self._robot), body)
 
     def _incident(self, kind: str, text: str) -> None:
         body = {"kind": kind, "text": text, "bundle": self.agent.running}

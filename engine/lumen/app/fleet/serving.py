@@ -6,11 +6,14 @@ import uuid
 from collections.abc import Callable
 from pathlib import Path
 
+from lumen.app.fleet.brokers import STREAM
 from lumen.app.fleet.centre import Centre
 from lumen.app.fleet.centre_desk import CentreDesk
 from lumen.app.fleet.centre_journal import CentreJournal
+from lumen.app.fleet.fleet_log import FleetLog
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.signing import Signer
+from lumen.buses.stream_reader import StreamReader, has_stream
 from lumen.errors import UsageError
 from lumen.interpreters.fleet.state import CentreState
 from lumen.language.diagnostics import has_errors
@@ -37,12 +40,12 @@ def fleet_in(root: Path) -> Fleet:
 
 
 class ServedCentre:
-    """The centre of the fleet in a folder, on a bus that it closes at its end.
+    """The centre of the fleet in a folder, on a bus that it closes at its end. At `url` it looks for the stream.
 
     Raises UsageError where another process is it already, or the key is not the one of fleet.yaml.
     """
 
-    def __init__(self, root: Path, signer: Signer, bus: Bus, tell: Callable[[str], None]) -> None:
+    def __init__(self, root: Path, signer: Signer, bus: Bus, tell: Callable[[str], None], url: str = "") -> None:
         self._bus = bus
         fleet = fleet_in(root)
         if fleet.key != signer.public:
@@ -53,7 +56,10 @@ class ServedCentre:
             raise UsageError(f"another process is the centre of {root.absolute()} already")
         journal = CentreJournal(self._home.folder)
         state = journal.last() or CentreState(uuid.uuid4().hex)
-        self.centre = Centre(fleet, state, journal, BundleFolder(self._home.folder), signer, bus, tell=tell)
+        log = FleetLog(self._home)
+        self._stream = self._opened(url, log.next, tell)
+        kept = BundleFolder(self._home.folder)
+        self.centre = Centre(fleet, state, journal, kept, signer, bus, log, self._stream, tell=tell)
         self._desk = CentreDesk(self.centre, bus)
         self._ending = threading.Event()
 
@@ -72,8 +78,20 @@ class ServedCentre:
         """Let `run` return; safe in a signal handler."""
         self._ending.set()
 
+    def _opened(self, url: str, first: int, tell: Callable[[str], None]) -> StreamReader | None:
+        if not url.startswith(("amqp:", "amqps:")):
+            return None
+        if not has_stream(url, STREAM):
+            tell(f"the broker has no stream {STREAM}: incidents are lost while no centre runs (`lumen fleet check`)")
+            return None
+        reader = StreamReader(url, STREAM, first)
+        reader.open()
+        return reader
+
     def close(self) -> None:
         self._desk.close()
+        if self._stream:
+            self._stream.close()
         self.centre.close()
         self._bus.close()
         self._home.release()

@@ -65,6 +65,11 @@ def presence_from(robot: str, body: Any) -> RobotPresence | None:
     return RobotPresence(robot, **texts, **counts, **times, **measures) if sound else None
 
 
+def measures_from(data: Any) -> dict[str, float] | None:
+    """Counts by their name, None for what is none."""
+    return dict(data) if _measures(data) else None
+
+
 def _measures(data: Any) -> bool:
     if not isinstance(data, Mapping) or len(data) > MAX_MEASURES + 1:
         return False

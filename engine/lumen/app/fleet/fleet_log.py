@@ -1,0 +1,96 @@
+"""Incidents and numbers of a fleet at its centre, each counted once: kept together with how far the stream was read."""
+
+import json
+import time
+from collections import deque
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.app.fleet.keys import INCIDENT, NUMBERS, robot_of
+from lumen.buses.stream_reader import StreamEntry
+from lumen.interpreters.fleet.counting import rates
+from lumen.interpreters.fleet.presence import HOURS, MAX_TEXT, measures_from
+from lumen.language.fleet import FleetMeasure
+from lumen.runtime.home import Home
+
+FILE = "log.json"
+MAX_INCIDENTS, MAX_IDS, MAX_BUNDLES = 200, 2000, 4
+SAVE_PERIOD = 10.0
+"""How often it is written [s]: who is killed between two reads what came meanwhile again, and counts from the file."""
+
+
+class FleetLog:
+    """The log in the home of a centre; `next` is where in the stream it goes on.
+
+    A line that comes twice (a shovel sends anew what was not confirmed) is known by its id.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self._home, self._saved, self._changed = home, time.monotonic(), False
+        self.next = 0
+        self.incidents: deque[dict[str, Any]] = deque(maxlen=MAX_INCIDENTS)
+        self.kinds: dict[str, int] = {}
+        self._ids: dict[str, None] = {}
+        self._numbers: dict[str, dict[str, Mapping[str, float]]] = {}
+        match home.read_json(FILE):
+            case {
+                "next": int(next), "incidents": list(incidents), "kinds": dict(kinds), "ids": list(ids),
+                "numbers": dict(numbers),
+            }:  # fmt: skip
+                self.next, self.kinds, self._numbers, self._ids = next, kinds, numbers, dict.fromkeys(ids)
+                self.incidents.extend(incidents)
+
+    def take(self, entry: StreamEntry, now: float) -> str:
+        """Count a message; the line that people are told of it, empty where there is none. `now` in [s since 1970]."""
+        if entry.offset >= 0:
+            self.next, self._changed = entry.offset + 1, True
+        if entry.id and entry.id in self._ids:
+            return ""
+        robot, at = robot_of(entry.key), entry.time or now
+        match entry.body:
+            case {"kind": str(kind), "text": str(text)} if entry.key.startswith(f"{INCIDENT}."):
+                kind, text = kind[:40], text[:MAX_TEXT]
+                self.incidents.append({"robot": robot, "kind": kind, "text": text, "at": round(at)})
+                self.kinds[kind] = self.kinds.get(kind, 0) + 1
+                told = f"{robot}: {kind}: {text}"
+            case {"bundle": str(bundle), "since": int() | float() as since, "counts": counts} if (
+                entry.key.startswith(f"{NUMBERS}.") and (found := measures_from(counts)) is not None
+            ):
+                of_bundle = self._numbers.pop(bundle[:MAX_TEXT], {})
+                self._numbers[bundle[:MAX_TEXT]] = {**of_bundle, f"{robot} {round(since)}": found}
+                told = ""
+            case _:
+                return ""
+        self._changed = True
+        self._ids |= {entry.id: None} if entry.id else {}
+        for old in list(self._ids)[:-MAX_IDS]:
+            del self._ids[old]
+        for old in list(self._numbers)[:-MAX_BUNDLES]:
+            del self._numbers[old]
+        return told
+
+    def numbers(self, measures: Mapping[str, FleetMeasure]) -> list[dict[str, Any]]:
+        """What was counted with each bundle, that which was heard of last at the end."""
+        return [
+            {
+                "bundle": bundle,
+                "robots": len({name.partition(" ")[0] for name in rows}),
+                "hours": round(sum(row.get(HOURS, 0.0) for row in rows.values()), 2),
+                "measures": rates(rows.values(), measures),
+            }
+            for bundle, rows in self._numbers.items()
+        ]
+
+    def save(self, *, now: bool = False) -> str:
+        """Write it, where there is news and enough time has passed; why that could not be, else empty."""
+        if not self._changed or not (now or time.monotonic() - self._saved > SAVE_PERIOD):
+            return ""
+        self._saved, self._changed = time.monotonic(), False
+        data = {
+            "next": self.next,
+            "incidents": list(self.incidents),
+            "kinds": self.kinds,
+            "ids": list(self._ids),
+            "numbers": self._numbers,
+        }
+        return self._home.write(FILE, json.dumps(data).encode())

@@ -1,0 +1,96 @@
+"""A stream of RabbitMQ, read from where it was left: whoever was off hears what was said meanwhile."""
+
+from collections import deque
+from typing import Any, NamedTuple
+
+import pika
+from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
+
+from lumen.buses.bodies import JSON, decode
+from lumen.buses.broker import BrokerAddress
+from lumen.buses.connection import BrokerConnection, OutageLog
+from lumen.buses.properties import MessageProperties
+
+PREFETCH = 200
+"""How many messages the broker sends ahead: a stream wants a bound."""
+MOST_READ = 2000
+"""How many messages wait for `take`; then no more are asked for."""
+TURN = 0.2
+"""How long the connection's thread waits for what comes, before it looks whether it is to end [s]."""
+
+
+class StreamEntry(NamedTuple):
+    """A message of a stream, at its `offset`, which is -1 in none; `body` is JSON data, None where it can't be read.
+
+    `id` tells it from every other one, and `time` is when it was sent [s since 1970]: empty and 0 where nobody said.
+    """
+
+    offset: int
+    key: str
+    body: Any
+    id: str = ""
+    time: float = 0.0
+
+
+class StreamReader(BrokerConnection):
+    """Reads the stream `name` from the offset `first` on, on a thread of its own, through all outages of the broker."""
+
+    def __init__(self, url: str, name: str, first: int = 0) -> None:
+        address = BrokerAddress(url)
+        super().__init__(address, f"stream {name}", OutageLog(address))
+        self._stream, self._next = name, first
+        self._read: deque[StreamEntry] = deque()
+        self._last = 0
+
+    def take(self) -> list[StreamEntry]:
+        """What was read since the last call, in the stream's order."""
+        return [self._read.popleft() for _ in range(len(self._read))]
+
+    def close(self, timeout: float = 5.0) -> None:
+        """End; what was not taken is read again by the next one that begins there."""
+        self.ending.set()
+        self.join(timeout)
+
+    def begin(self) -> None:
+        self.channel.basic_qos(prefetch_count=PREFETCH)
+        self.channel.add_on_cancel_callback(self._cancelled)
+        self.channel.basic_consume(self._stream, self._came, arguments={"x-stream-offset": self._next})
+
+    def serve(self) -> bool:
+        if self._last and len(self._read) < MOST_READ:
+            self.channel.basic_ack(self._last, multiple=True)
+            self._last = 0
+        self.process(TURN)
+        return not self.ending.is_set()
+
+    def _came(self, _: Any, method: Any, properties: MessageProperties, data: bytes) -> None:
+        self._last = method.delivery_tag
+        offset = properties.offset if properties.offset >= 0 else self._next
+        if offset < self._next:  # a stream is sent from the beginning of the piece in which the offset lies
+            return
+        self._next = offset + 1
+        key = method.routing_key if isinstance(method.routing_key, str) else ""
+        try:
+            body = decode(data, properties.content_type or JSON)
+        except ValueError:
+            body = None
+        self._read.append(StreamEntry(offset, key, body, properties.message_id, float(properties.timestamp)))
+
+    def _cancelled(self, frame: Any) -> None:
+        raise ConsumerCancelled(frame.method.consumer_tag)
+
+
+def has_stream(url: str, name: str) -> bool:
+    """Whether the broker has such a queue. Raises BusError where it can't be reached."""
+    address = BrokerAddress(url)
+    try:
+        connection = pika.BlockingConnection(address.parameters)
+    except (AMQPError, OSError) as error:
+        raise address.explain(error) from error
+    try:
+        connection.channel().queue_declare(name, passive=True)
+    except ChannelClosedByBroker:
+        return False
+    finally:
+        connection.close()
+    return True
