@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.statechart import Snapshot, Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
-from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Say, Start, VerbCommand, Wake, Walk
+from lumen.language.commands import Ask, Command, GoTo, Move, Play, Posture, Rest, Say, Start, VerbCommand, Wake, Walk
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.verbs import verb_of
@@ -104,6 +104,8 @@ class Doings(Observer):
                 self._begin(self._speaking, command.id, UnderWay("say", text, now, None, language))
             case Play() | Posture() | Walk() | Move() | GoTo() | Rest() | Wake() as moves:
                 self._begin(self._moving, command.id, self._moves(moves, now))
+            case Ask():
+                return
             case other if not verb_of(other).instant:
                 self._others[command.id] = None
                 _keep_few(self._others)

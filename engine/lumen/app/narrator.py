@@ -6,7 +6,7 @@ from lumen.app.causes import innermost, reason_of, why
 from lumen.app.ignoring import IgnoredEvents
 from lumen.interpreters.statechart import Step, finished
 from lumen.interpreters.statechart.nesting import flattened_steps
-from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start, Tell
+from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say, Start, Tell
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import (
@@ -84,6 +84,9 @@ class Narrator(Observer):
         if isinstance(command, Say):
             self.said += 1
             self.line("robot", f"“{command.text}”")
+            return
+        if isinstance(command, Ask):
+            self.line("robot", f"asks “{command.question}”")
             return
         verb = verb_of(command)
         words = verb.transcript(command)

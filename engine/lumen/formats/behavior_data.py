@@ -9,6 +9,7 @@ from lumen.interpreters.expressions import unparse
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import (
     Action,
+    AskQuestion,
     Assign,
     CancelSend,
     ComputedValue,
@@ -94,6 +95,9 @@ def plain_action(action: Action) -> ActionData:
         case If(guard, then, otherwise):
             block: dict[str, Any] = {"if": guard.source, "then": plain_block(then)}
             return block | ({"else": plain_block(otherwise)} if otherwise else {})
+        case AskQuestion(question, within, otherwise):
+            row = {"question": question.source, "within": duration(within * 1000)}
+            return {"ask": row | {"else": plain_block(otherwise)}}
         case Parallel(branches):
             return {"parallel": plain_block(branches)}
         case _:

@@ -140,7 +140,18 @@ class Parallel:
     branches: tuple["PlacedAction", ...]
 
 
-ComputedAction = SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel
+@dataclass(frozen=True, slots=True)
+class AskQuestion:
+    """`ask`, in `do` only: say what answers the question, and where nothing does `within` [s], do the `otherwise`."""
+
+    question: Expression
+    within: float
+    otherwise: tuple["PlacedAction", ...]
+
+
+ComputedAction = (
+    SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel | AskQuestion
+)
 """What a step has to evaluate, or to decide."""
 
 Action = ComputedAction | VerbCommand

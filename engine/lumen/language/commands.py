@@ -25,6 +25,20 @@ class Say:
 
 
 @dataclass(frozen=True, slots=True)
+class Ask:
+    """Find out what answers a visitor's `question`, `within` so long [s]; names are not in it any more.
+
+    What is found comes as events `answer.command.ID`; `error.command.ID` says that nobody knows. `language` is what is
+    to be spoken, `place` where the robot is.
+    """
+
+    question: str
+    language: str = ""
+    within: float = 0.0
+    place: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Play:
     """Play the motion of that name."""
 
@@ -171,8 +185,8 @@ MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop |
 VerbCommand = MotorCommand | Play | Track | Language | GoTo
 """Verbs of the YAML that are their own commands, for they hold no expressions but a place's name."""
 
-BodyCommand = VerbCommand | Say
-"""What a robot performs, or the parts of the runtime that move it."""
+BodyCommand = VerbCommand | Say | Ask
+"""What a robot performs, or the parts of the runtime that move it, or answer it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,9 @@ from typing import Any
 
 MEMORY, EYES, EARS, VOICE, SOCIAL, SHOW = MODULES = ("memory", "eyes", "ears", "voice", "social", "show")
 
+ANSWERS = "answers"
+"""The module that finds answers which no passage has."""
+
 VISITOR_KEY = "visitor"
 """The key of a behaviour's context that holds the visitor's name, where the memory's options do not say another."""
 

@@ -37,6 +37,8 @@ DEFAULT_KEYS: Mapping[str, str] = {
     "fact": "lumen.{robot}.persistence.fact",
     "forgotten": "lumen.{robot}.persistence.forgotten",
     "journal": "lumen.{robot}.persistence.journal",
+    "ask": "lumen.{robot}.ask",
+    "answer": "lumen.{robot}.answer",
     "trouble": "lumen.{robot}.trouble",
 }
 """The routes that Lumen and its modules use, and the key of each where lumen.yaml does not say otherwise."""

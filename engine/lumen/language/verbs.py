@@ -13,6 +13,7 @@ from typing import Any, Generic, TypeVar
 
 from lumen.language.actions import (
     Action,
+    AskQuestion,
     Assign,
     CancelSend,
     ComputedAction,
@@ -212,6 +213,7 @@ VERBS: tuple[Verb[Any], ...] = (
 COMPUTED: Mapping[type[ComputedAction], str] = {
     SayText: "say", PublishBody: "publish", Assign: "assign", Raise: "raise", Send: "send", CancelSend: "cancel",
     Wait: "wait", LogText: "log", If: "if", Parallel: "parallel",
+    AskQuestion: "ask",
 }  # fmt: skip
 """The names of the other verbs: what each does is the statechart's, and `mypy` names the places that know."""
 

@@ -5,6 +5,7 @@ from typing import Any, assert_never
 
 from lumen.language.actions import (
     Action,
+    AskQuestion,
     Assign,
     CancelSend,
     If,
@@ -41,7 +42,7 @@ class Actions:
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
 
     def block(self, data: Any, where: NodePath, *, do: bool = False) -> tuple[PlacedAction, ...]:
-        """A single action or a list of them; `do` allows `wait` and `parallel`. Broken ones are left out."""
+        """A single action or a list of them; `do` allows `wait`, `parallel` and `ask`. Broken ones are left out."""
         if isinstance(data, Mapping):
             action = self.action(data, where, do=do)
             return (PlacedAction(action, where),) if action else ()
@@ -55,7 +56,7 @@ class Actions:
         if len(data) != 1:
             return None
         [(verb, body)] = data.items()
-        if verb in ("wait", "parallel") and not do:
+        if verb in ("wait", "parallel", "ask") and not do:
             hint = "move it into the `do` of a state" + (
                 ", or `send` an event with a `delay`" if verb == "wait" else ""
             )
@@ -129,6 +130,12 @@ class Actions:
     def _parallel(self, data: Any, where: NodePath) -> Parallel:
         return Parallel(self.block(data, where, do=True))
 
+    def _ask(self, data: Mapping[str, Any], where: NodePath) -> AskQuestion | None:
+        question = self.expressions.expression(data["question"], (*where, "question"))
+        within = self.duration(data["within"], (*where, "within"))
+        otherwise = self.block(data["else"], (*where, "else"), do=True)
+        return None if question is None or within is None else AskQuestion(question, within, otherwise)
+
     def _say(self, body: Any, where: NodePath) -> SayText | None:
         table = {"any": body} if isinstance(body, str) else body
         texts: dict[str, tuple[Template, ...]] = {}
@@ -181,5 +188,6 @@ COMPUTED_READERS: Mapping[str, Callable[[Actions, Any, NodePath], Action | None]
     "log": Actions._log,
     "wait": Actions._wait,
     "parallel": Actions._parallel,
+    "ask": Actions._ask,
 }
 """What reads the verbs that a step evaluates, by their names; `if` has keys beside it, and is read before."""

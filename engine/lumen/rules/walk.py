@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import schema_of
 from lumen.language.actions import (
+    AskQuestion,
     Assign,
     ComputedValue,
     Expression,
@@ -103,7 +104,7 @@ def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
             case If(then=then, otherwise=otherwise):
                 yield from nested(then)
                 yield from nested(otherwise)
-            case Parallel(branches):
+            case Parallel(branches) | AskQuestion(otherwise=branches):
                 yield from nested(branches)
 
 
@@ -112,6 +113,8 @@ def _spots(site: ActionSite) -> Iterator[ExpressionSite]:
     match site.step.action:
         case If(guard=guard):
             yield ExpressionSite(guard, transition, guard=True)
+        case AskQuestion(question=question):
+            yield ExpressionSite(question, transition, expected={"type": "string"})
         case Assign(values):
             for key, value in values.items():
                 if isinstance(value, Expression):

@@ -1,6 +1,7 @@
 """The loop of a running behaviour: the order of things, fifty times a second."""
 
 from collections.abc import Mapping, Sequence
+from datetime import date
 from math import inf
 from typing import Any
 
@@ -8,6 +9,7 @@ from lumen.interpreters.explaining.pressing import pressed
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
 from lumen.interpreters.statechart import Step, due
+from lumen.interpreters.wall_clock import local_time, moment
 from lumen.language.approvals import Autonomy
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
@@ -67,6 +69,7 @@ class BehaviorLoop:
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
         self.regulation = Regulation(project, bus)
         self.performer = Performer(robot, bus, self._track)
+        self.performer.questions.today = self._today
         self._cues = MotionCues()
         self._life = LifeDirector(robot)
         self._events: list[Event] = []
@@ -90,14 +93,14 @@ class BehaviorLoop:
     ) -> None:
         """Listen, and enter the initial states; `context` gives keys of the context other first values."""
         self._last = self.clock.now()
-        self.inbox.listen(self.project)
+        self._listen(self.project)
         first = self.runtime.start(self._last, language=language, epoch=epoch, timezone=timezone, context=context)
         self._perform(first, self._last)
 
     def resume(self, resumption: Resumption) -> None:
         """Listen, and go on from where this project's behaviour stood before the engine was away."""
         self._last = self.clock.now()
-        self.inbox.listen(self.project)
+        self._listen(self.project)
         self.runtime.apply(self.project, resumption.snapshot, "resume", resumption.commands)
         for name in resumption.tracking:
             self._track(Track(name))
@@ -155,7 +158,7 @@ class BehaviorLoop:
 
     def quiet_until(self, now: float) -> float:
         """Until when nothing happens unless something comes from outside [s]; `now` where that is not known."""
-        pending = self._events or self.performer.events or not self.inbox.empty
+        pending = self._events or self.performer.events or not (self.inbox.empty and self.performer.questions.empty)
         if pending or self.tracking.on or self.performer.navigator.busy:
             return now
         event = due(self.runtime.snapshot)
@@ -183,13 +186,13 @@ class BehaviorLoop:
         """
         old = self.project
         try:
-            self.inbox.listen(project)
+            self._listen(project)
             self.tracking.reload(project)
             self.regulation.reload(project)
             self.runtime.apply(project, plan.snapshot, kind, plan.commands)
             self.performer.navigator.renew()
         except Exception:
-            self.inbox.listen(old)
+            self._listen(old)
             self.tracking.reload(old)
             self.regulation.reload(old)
             raise
@@ -198,6 +201,15 @@ class BehaviorLoop:
         """Do what a plan asks for that has been switched to: what is left is left by the old bundle."""
         self._perform(plan.leaving, self._last, old)
         self._perform(plan.entering, self._last)
+
+    def _listen(self, project: Project) -> None:
+        self.inbox.listen(project)
+        self.performer.questions.listen(project)
+
+    def _today(self) -> date:
+        """The day on the exhibition's clock."""
+        now = self.runtime.snapshot
+        return local_time(moment(now.epoch, self.clock.now()), now.timezone).date()
 
     def _track(self, track: Track) -> None:
         """Switch a controller on or off: what moves joints where that is done, the rest here."""
@@ -231,7 +243,7 @@ class BehaviorLoop:
         happened = [*happened, *self.runtime.approvals.tick(now)]
         own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]
         own.sort(key=lambda event: event.name not in CAUSES)
-        return [*own, *self.inbox.drain(now)]
+        return [*own, *self.performer.questions.drain(now), *self.inbox.drain(now)]
 
     def _perform(
         self, commands: Sequence[Command], now: float, project: Project | None = None, step: int | None = None

@@ -7,6 +7,7 @@ from pathlib import Path
 from lumen.errors import BusError
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import (
+    Ask,
     BodyCommand,
     Cancel,
     Command,
@@ -30,6 +31,7 @@ from lumen.language.skills import lack_of, tracked, tracking_lack
 from lumen.loading.sounds import sound_duration
 from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.runtime.navigator import Navigator
+from lumen.runtime.questions import Questions
 from lumen.runtime.sending import send
 
 LEFT_OUT = "left_out"
@@ -44,22 +46,26 @@ class Performer:
     `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, of
     those that are left out because the body lacks what they need, and of those that can't even begin: `refuse` gives
     the reason why the robot may not begin one, empty where it may. `navigator` makes single walks of the walks to
-    places.
+    places, `questions` finds answers.
     """
 
     def __init__(self, robot: Robot, bus: Bus, track: Callable[[Track], None]) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
         self.navigator = Navigator(robot, self._begin)
+        self.questions = Questions(bus)
         self.refuse: Callable[[RobotCommand], str] = lambda _: ""
 
     def perform(self, project: Project, command: Command, now: float, step: int = 0) -> None:
         """Begin a command, which the step of that number asked for; what it publishes names it."""
         match command:
+            case Start(id, Ask() as asked):
+                origin = MessageOrigin(cause=f"step {step}" if step else "")
+                self.events += self.questions.ask(project, id, asked, now, origin)
             case Start(id, wanted):
                 self._start(project, id, wanted, now)
             case Cancel(id):
-                if not self.navigator.cancel(id):
+                if not (self.navigator.cancel(id) or self.questions.cancel(id)):
                     self._robot.cancel(id)
             case Publish(name, body):
                 if reason := send(self._bus, project, name, body, MessageOrigin(cause=f"step {step}" if step else "")):
@@ -95,6 +101,8 @@ class Performer:
                 self._answer("done", id, now)
             case GoTo(place):
                 self.navigator.start(id, place, now)
+            case Ask():
+                raise TypeError("a question is asked of no robot")
             case _:
                 self._begin(id, wanted, now)
 

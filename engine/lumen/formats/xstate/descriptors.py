@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
-from lumen.language.actions import If, PlacedAction, Raise, Send
+from lumen.language.actions import AskQuestion, If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
 _OWN_EVENTS = {
@@ -106,6 +106,8 @@ def _raised(steps: Sequence[PlacedAction]) -> Iterator[str]:
         match step.action:
             case Raise(event) | Send(event, to=""):
                 yield event
+            case AskQuestion(otherwise=otherwise):
+                yield from _raised(otherwise)
             case If(_, then, otherwise):
                 yield from _raised(then)
                 yield from _raised(otherwise)

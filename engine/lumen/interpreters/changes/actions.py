@@ -8,6 +8,7 @@ from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, quoted, seconds
 from lumen.language.actions import (
     Action,
+    AskQuestion,
     Assign,
     CancelSend,
     If,
@@ -86,6 +87,14 @@ def _action(old: Action, new: Action, title: str, when: str, file: str) -> Itera
                 yield Change("action", title, now, Risk.BEHAVIOR, file)
             yield from block_changes(then, then_now, title, when, file)
             yield from block_changes(otherwise, otherwise_now, title, when, file)
+        case AskQuestion(before, within, otherwise), AskQuestion(after, within_now, otherwise_now):
+            if before != after:
+                now = f"{title} asks{when} for {code(after.source)} now, not {code(before.source)}"
+                yield Change("action", title, now, Risk.BEHAVIOR, file)
+            if within != within_now:
+                now = f"{title} waits{when} {seconds(within_now)} for an answer now, not {seconds(within)}"
+                yield Change("action", title, now, Risk.BEHAVIOR, file)
+            yield from block_changes(otherwise, otherwise_now, title, when, file)
         case Parallel(before), Parallel(after):
             yield from block_changes(before, after, title, when, file)
         case _ if old != new:
@@ -122,6 +131,8 @@ def described(action: Action) -> str:
             return f"logs {quoted(text.text)}"
         case If(guard):
             return f"decides by {code(guard.shown)}"
+        case AskQuestion(question):
+            return f"asks for an answer to {code(question.shown)}"
         case Parallel(branches):
             return f"does {len(branches)} things at once"
         case _:

@@ -12,7 +12,7 @@ from lumen.interpreters.expressions import Scope
 from lumen.interpreters.expressions.scope import no_draw
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.values import Snapshot, awaited
-from lumen.language.actions import If, Parallel, PlacedAction
+from lumen.language.actions import AskQuestion, If, Parallel, PlacedAction
 from lumen.language.diagnostics import NodePath
 
 
@@ -54,7 +54,7 @@ def _conditions(block: tuple[PlacedAction, ...], where: NodePath) -> Iterator[tu
             case If(_, then, otherwise) as found:
                 yield found, any(where[: len(inner.where)] == inner.where for inner in then)
                 yield from _conditions(then + otherwise, where)
-            case Parallel(branches):
+            case Parallel(branches) | AskQuestion(otherwise=branches):
                 yield from _conditions(branches, where)
 
 

@@ -1,6 +1,6 @@
 """Why something happened: from the effect back to a person, a message, a sensor, a file or the start."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any, TypeAlias
@@ -21,7 +21,7 @@ from lumen.interpreters.explaining.words import (
     ordinal,
     prefix_of,
 )
-from lumen.interpreters.statechart.command_ids import answer_of, inner_id
+from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.commands import Command, Start
 from lumen.language.diagnostics import Place
@@ -159,7 +159,8 @@ class Chain:
         elif timer := ended_timer(one.before, event):
             yield partial(self.timer, number, event, timer)
         elif not event.sendid and (answer := answer_of(event)):
-            yield self._link(number, "event", _answered(answer.kind, answer.id, answer.reason), id=answer.id)
+            values = brought(event) if answer.kind == "answer" else {}
+            yield self._link(number, "event", _answered(answer), id=answer.id, values=values)
             asked = [n for n in self.history.started.get(answer.id, ()) if n < number]
             if asked:
                 command = next(c for c in self.history.steps[asked[-1]].step.commands if _id(c) == answer.id)
@@ -270,6 +271,10 @@ def _ended(kind: str) -> str:
     return "is done" if kind == "done" else "failed"
 
 
-def _answered(kind: str, id: str, reason: str) -> str:
+def _answered(answer: CommandAnswer) -> str:
+    kind, id, reason, data = answer
+    if kind == "answer":
+        by = data.get("passage") or data.get("source") if isinstance(data, Mapping) else ""
+        return f"{id} is answered" + (f" by {by}" if by else "")
     said = {"done": "is done", "error": "failed", "cancelled": "was cancelled", "lost": "was forgotten by the robot"}
     return f"{id} {said[kind]}" + (f": {reason}" if reason != kind else "")

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.interpreters.explaining.history import RecordedStep
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.language.actions import Action, If, Parallel, PlacedAction, SayText
+from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction, SayText
 from lumen.language.commands import Play
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State
@@ -50,6 +50,9 @@ def _flat(block: tuple[PlacedAction, ...]) -> Iterator[tuple[Action, NodePath]]:
         match placed.action:
             case If(_, then, otherwise):
                 yield from _flat(then + otherwise)
+            case AskQuestion(otherwise=branches) as action:
+                yield action, placed.where
+                yield from _flat(branches)
             case Parallel(branches):
                 yield from _flat(branches)
             case action:

@@ -3,10 +3,12 @@
 from typing import Any
 
 from lumen.interpreters.expressions import compile_guard
+from lumen.interpreters.statechart.asking import compile_question, spoken
 from lumen.interpreters.statechart.blocks import ActionFunction, CommandFactory, CompiledBlock, compile_action
 from lumen.interpreters.statechart.chart import Chart
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
 from lumen.interpreters.statechart.do_actions import (
+    AskedQuestion,
     AwaitedCommand,
     CompiledAction,
     ConditionalAction,
@@ -17,7 +19,7 @@ from lumen.interpreters.statechart.do_actions import (
 )
 from lumen.interpreters.statechart.fast_path import FastPaths
 from lumen.interpreters.statechart.plans import MicrostepPlanner
-from lumen.language.actions import Action, If, Parallel, PlacedAction
+from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
 
@@ -76,6 +78,9 @@ def _deed(action: Action, step: PlacedAction) -> CompiledAction:
             return ConditionalAction(compile_guard(guard.source), _do(then), _do(otherwise), guard.where)
         case Parallel(branches):
             return ParallelActions(_do(branches))
+        case AskQuestion(_, within, otherwise):
+            make, say = _making(step.where, compile_question(action)), _saying(step.where)
+            return AskedQuestion(make, say, within, _do(otherwise), step.where)
     match compile_do((step,))[0]:
         case InstantAction(act, where):
             return InstantAction(_placed(where, act), where)
@@ -93,3 +98,11 @@ def _making(where: NodePath, make: CommandFactory) -> CommandFactory:
         return make(context)
 
     return making
+
+
+def _saying(where: NodePath) -> Any:
+    def saying(context: Any, sentence: Any) -> Any:
+        context.acting = where
+        return spoken(context, sentence)
+
+    return saying

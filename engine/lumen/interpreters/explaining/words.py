@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.commands import Cancel, Command, Log, Publish, Say, Start, Tell
+from lumen.language.commands import Ask, BodyCommand, Cancel, Command, Log, Publish, Say, Start, Tell
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.verbs import verb_of
@@ -21,7 +21,7 @@ def of_command(command: Command) -> str:
     """`says “Hello!”`, `plays dance`, `publishes on `show``."""
     match command:
         case Start(_, wanted):
-            return f"says “{wanted.text}”" if isinstance(wanted, Say) else verb_of(wanted).transcript(wanted)
+            return of_deed(wanted)
         case Publish(route):
             return f"publishes on `{route}`"
         case Tell(robot, event):
@@ -30,6 +30,17 @@ def of_command(command: Command) -> str:
             return f"logs “{text}”"
         case Cancel(id):
             return f"cancels {id}"
+
+
+def of_deed(command: BodyCommand) -> str:
+    """`says “Hello!”`, `plays dance`, `asks “how tall are you”`."""
+    match command:
+        case Say(text):
+            return f"says “{text}”"
+        case Ask(question):
+            return f"asks “{question}”"
+        case _:
+            return verb_of(command).transcript(command)
 
 
 def of_transition(machine: MachineDefinition, transition: Transition, owner: str = "") -> str:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression, split_template
 from lumen.language.actions import (
+    AskQuestion,
     Assign,
     ComputedValue,
     Expression,
@@ -67,7 +68,7 @@ def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
             case If(guard, then, otherwise):
                 yield from _of(guard)
                 yield from of_block(then + otherwise)
-            case Parallel(branches):
+            case Parallel(branches) | AskQuestion(otherwise=branches):
                 yield from of_block(branches)
             case Assign(values):
                 for way, value in values.items():

@@ -1,7 +1,7 @@
 """Whether a `do` that is under way can go on as it is written now."""
 
 from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Within
-from lumen.language.actions import Action, If, Parallel, PlacedAction, SayText, Wait
+from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction, SayText, Wait
 
 
 def can_continue(before: tuple[PlacedAction, ...], after: tuple[PlacedAction, ...], position: Within) -> bool:
@@ -22,6 +22,10 @@ def _same(before: Action, after: Action, position: Position | None) -> bool:
             return True
         case If(), If(), Within(block):
             return can_continue(_branch(before, block), _branch(after, block), position)
+        case AskQuestion(), AskQuestion(), Fork():
+            return True
+        case AskQuestion(_, _, ours), AskQuestion(_, _, theirs), Within():
+            return can_continue(ours, theirs, position)
         case Parallel(ours), Parallel(theirs), Fork(positions):
             if len(ours) != len(theirs):
                 return False

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from lumen.interpreters.retrieval.calibration import Ranked, Sample, Thresholds
 from lumen.interpreters.retrieval.scorers import Method, combined
+from lumen.interpreters.retrieval.words import words
 from lumen.language.knowledge import Passage
 
 NEAREST = 15
@@ -47,6 +48,7 @@ class Retriever:
         }
         known = [(name, text) for name, passage in self._passages.items() for text in passage.questions[language]]
         self._owners = [name for name, _ in known]
+        self._whose = {" ".join(words(text)): name for name, text in reversed(known)}
         self._score = method([text for _, text in known], language)
 
     def rank(self, question: str) -> Ranked:
@@ -63,8 +65,13 @@ class Retriever:
         return found + [Sample("", self.rank(text)) for text in unanswered]
 
     def answer(self, question: str, thresholds: Thresholds, samples: Sequence[Sample] = ()) -> FoundAnswer | None:
-        """The passage that answers the question, None where none surely does; `samples` tell how sure that is."""
+        """The passage that answers the question, None where none surely does; `samples` tell how sure that is.
+
+        A question that stands in a passage, whatever its signs, is that passage's.
+        """
         ranked = self.rank(question)
+        if own := self._whose.get(" ".join(words(question))):
+            return FoundAnswer(self._passages[own], self.language, 1.0, 1.0)
         if not ranked.passage or not thresholds.allow(ranked):
             return None
         near = sorted(samples, key=lambda sample: abs(sample.ranked.score - ranked.score))[:NEAREST]

@@ -20,20 +20,21 @@ MAX_QUESTION = 300
 def stems(text: str, language: str) -> list[str]:
     """The stems of its words, in their order."""
     stem = _stemmer(language)
-    return [stem(word) for word in _plain(text)]
+    return [stem(word) for word in words(text)]
 
 
 def letter_runs(text: str, language: str) -> list[str]:
     """Runs of letters within each word, with its ends marked; they are alike where words are misspelt or inflected."""
     found = []
-    for word in _plain(text):
+    for word in words(text):
         marked = f" {word} "
         for length in range(SHORTEST, LONGEST + 1):
             found += [marked[i : i + length] for i in range(len(marked) - length + 1)]
     return found
 
 
-def _plain(text: str) -> list[str]:
+def words(text: str) -> list[str]:
+    """Its words, in small letters."""
     return re.findall(r"\w+", text[:MAX_QUESTION].casefold())
 
 

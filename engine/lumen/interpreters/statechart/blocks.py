@@ -8,6 +8,7 @@ from lumen.interpreters.statechart.action_context import ActionContext, ActionEr
 from lumen.interpreters.statechart.nested_values import with_value
 from lumen.language.actions import (
     Action,
+    AskQuestion,
     Assign,
     CancelSend,
     ComputedValue,
@@ -59,7 +60,7 @@ def compile_action(action: Action) -> ActionFunction:
             return lambda context: context.emit(Log(text(context.scope())))
         case If(guard, then, otherwise):
             return _if(guard, compile_block(then), compile_block(otherwise))
-        case Wait() | Parallel():
+        case Wait() | Parallel() | AskQuestion():
             raise TypeError(f"{action} stands outside `do`")
     make = compile_command(action)
 

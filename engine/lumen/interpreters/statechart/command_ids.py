@@ -5,20 +5,24 @@ is `d7@hint@quiz`.
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lumen.language.commands import Cancel, Command, Start
 from lumen.language.events import Event
 
-ANSWER_KINDS = ("done", "error", "cancelled", "lost")
+ANSWER_KINDS = ("done", "error", "cancelled", "lost", "answer")
 
 
 class CommandAnswer(NamedTuple):
-    """What became of a command: `done`, or `error`, `cancelled` or `lost` (forgotten by the robot) with a reason."""
+    """What became of a command: `done`, or `error`, `cancelled` or `lost` (forgotten by the robot) with a reason.
+
+    An `answer` is (part of) what is known about a question; its `data` says it.
+    """
 
     kind: str
     id: str
     reason: str
+    data: Any = None
 
 
 def answer_of(event: Event) -> CommandAnswer | None:
@@ -27,7 +31,7 @@ def answer_of(event: Event) -> CommandAnswer | None:
     if kind not in ANSWER_KINDS or id[:1] not in ("c", "d") or not id[1:].partition("@")[0].isdecimal():
         return None
     data = event.data if isinstance(event.data, Mapping) else {}
-    return CommandAnswer(kind, id, str(data.get("reason", "")) or kind)
+    return CommandAnswer(kind, id, str(data.get("reason", "")) or kind, event.data)
 
 
 def outer_id(id: str, owner: str) -> str:

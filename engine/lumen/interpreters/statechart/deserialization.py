@@ -6,6 +6,7 @@ from typing import Any
 from lumen.errors import SnapshotError, UsageError
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.do_actions import (
+    AskedQuestion,
     AwaitedCommand,
     CompiledAction,
     ConditionalAction,
@@ -198,7 +199,7 @@ def _within(data: JsonCursor, actions: tuple[CompiledAction, ...], blocks: tuple
 def _position(data: JsonCursor, action: CompiledAction) -> Position:
     match action:
         case AwaitedCommand() | TimedWait():
-            return Awaiting(data["awaiting"].text(), data["at"].number() if "at" in dict(data.items()) else 0.0)
+            return _awaiting(data)
         case ConditionalAction():
             return _within(data, action.block(data["block"].text()), ("then", "else"))
         case ParallelActions(branches):
@@ -207,7 +208,18 @@ def _position(data: JsonCursor, action: CompiledAction) -> Position:
                 raise data["branches"].refused(f"should say of {len(branches)} branches where they stand")
             pairs = zip(rows, branches, strict=True)
             return Fork(tuple(None if row.data is None else _position(row, branch) for row, branch in pairs))
+        case AskedQuestion(otherwise=otherwise):
+            if "block" in dict(data.items()):
+                return _within(data, otherwise, ("else",))
+            rows = data["branches"].rows()
+            if len(rows) < 3 or all(row.data is None for row in rows):
+                raise data["branches"].refused("should say where the answer, its time and what is said stand")
+            return Fork(tuple(None if row.data is None else _awaiting(row) for row in rows))
     raise data.refused("stands in an action that takes no time")
+
+
+def _awaiting(data: JsonCursor) -> Awaiting:
+    return Awaiting(data["awaiting"].text(), data["at"].number() if "at" in dict(data.items()) else 0.0)
 
 
 def _difference(machine: MachineDefinition, other: JsonCursor) -> str:

@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from lumen.interpreters.expressions import Scope, compile_guard
+from lumen.interpreters.statechart.action_context import ActionContext
+from lumen.interpreters.statechart.asking import Sentence, compile_question, spoken
 from lumen.interpreters.statechart.blocks import ActionFunction, CommandFactory, compile_action, compile_command
 from lumen.language.actions import (
     Action,
+    AskQuestion,
     Assign,
     CancelSend,
     If,
@@ -19,6 +22,7 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
+from lumen.language.commands import BodyCommand
 from lumen.language.diagnostics import NodePath
 
 
@@ -65,7 +69,20 @@ class ParallelActions:
     branches: "tuple[CompiledAction, ...]"
 
 
-CompiledAction: TypeAlias = InstantAction | AwaitedCommand | TimedWait | ConditionalAction | ParallelActions
+@dataclass(frozen=True, slots=True)
+class AskedQuestion:
+    """`ask`: over when its answer is said, or `otherwise` is done, which it is where none comes within so many [s]."""
+
+    make: CommandFactory
+    say: Callable[[ActionContext, Sentence], BodyCommand]
+    within: float
+    otherwise: "tuple[CompiledAction, ...]"
+    where: NodePath
+
+
+CompiledAction: TypeAlias = (
+    InstantAction | AwaitedCommand | TimedWait | ConditionalAction | ParallelActions | AskedQuestion
+)
 
 
 def compile_do(steps: tuple[PlacedAction, ...]) -> tuple[CompiledAction, ...]:
@@ -81,6 +98,8 @@ def _compile(action: Action, where: NodePath) -> CompiledAction:
             return ParallelActions(compile_do(branches))
         case If(guard, then, otherwise):
             return ConditionalAction(compile_guard(guard.source), compile_do(then), compile_do(otherwise), guard.where)
+        case AskQuestion(_, within, otherwise):
+            return AskedQuestion(compile_question(action), spoken, within, compile_do(otherwise), where)
         case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
             return InstantAction(compile_action(action), where)
     return AwaitedCommand(compile_command(action), where)

@@ -77,7 +77,7 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
 
 def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> None:
     """What became of a command: the `do` that awaits it goes on or fails; nobody else hears of it."""
-    kind, id, reason = answer
+    kind, id, reason, data = answer
     own, owner = inner_id(id)
     if owner:
         _hand_down(context, event, kind, own, owner)
@@ -85,7 +85,9 @@ def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> N
     waiting = next((path for path, position in context.activities.positions.items() if id in awaited(position)), None)
     if waiting is not None:
         node = context.machine.chart.nodes[waiting]
-        if kind == "done":
+        if kind == "answer":
+            context.activities.answer(context, node, id, data)
+        elif kind == "done" or context.activities.is_question(node, id):
             context.activities.resume(context, node, id)
         elif kind == "lost":
             context.activities.lose(context, node, id, reason)

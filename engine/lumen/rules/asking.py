@@ -1,0 +1,21 @@
+"""Questions of visitors that nobody can answer, for there is neither knowledge nor a module that finds answers."""
+
+from lumen.language.actions import AskQuestion
+from lumen.language.diagnostics import WARNING, Code
+from lumen.language.modules import ANSWERS
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.walk import action_sites
+
+ASKS_NOBODY = Code("asks-nobody", "knowledge", WARNING, "`ask` stands where nothing can answer")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report an `ask` of a project that has no passages and no module `answers`."""
+    if draft.settings is None or draft.knowledge or ANSWERS in draft.settings.modules:
+        return
+    for name, machine in draft.behaviors.items():
+        for site in action_sites(machine):
+            if isinstance(site.step.action, AskQuestion):
+                message = "nobody can answer this: knowledge/ is empty, and lumen.yaml has no module `answers`"
+                hint = "write knowledge/NAME.yaml with a question and its answer, or do what stands in `else`"
+                draft.report("behaviors", name)(ASKS_NOBODY, (*site.step.where, "ask"), message, hint, key=True)
