@@ -2,6 +2,7 @@
 
 import logging
 import struct
+import time
 from collections.abc import Iterator
 from random import Random
 
@@ -10,6 +11,7 @@ import pytest
 
 from lumen.bus import connect
 from lumen.buses.outbox import OutgoingMessage
+from lumen.buses.polled import PolledConnection
 from lumen.buses.properties import MessageProperties, read_properties
 from lumen.buses.publisher import Publisher
 from tests.attack.messages import PROPERTIES, HostileMessage, Stranger, encoded, header, nested
@@ -109,3 +111,18 @@ def test_an_answer_that_amqp_cant_carry_costs_that_answer(broker: RabbitMQ, capl
     until(lambda: publisher.unsendable.counts)
     assert "messages on `lumen.carried` are dropped: AMQP can't carry it" in caplog.text
     bus.close()
+
+
+def test_a_connection_with_nothing_to_say_sleeps(broker: RabbitMQ) -> None:
+    """Each turn that ended early left a timer behind, which ended another turn."""
+    connection = PolledConnection(pika.URLParameters(broker.url))
+    connection.open_channel()
+    for _ in range(100):
+        connection.wake()
+        connection.turn(0.25)
+    turns, until = 0, time.monotonic() + 0.75
+    while time.monotonic() < until:
+        connection.turn(0.25)
+        turns += 1
+    connection.close()
+    assert turns < 10

@@ -3,6 +3,7 @@
 import sys
 import time
 from collections.abc import Callable, Mapping
+from math import inf
 
 from lumen.app.claiming import CLAIM_INTERVAL
 from lumen.app.node import ROUNDING, Node
@@ -29,6 +30,9 @@ class House:
         self.nodes = dict(nodes)
         self._going, self._tell, self._together = dict(nodes), tell, together
         self._now = 0.0
+        self._napping = False
+        for node in nodes.values():
+            node.wake = self._wake
 
     @property
     def going(self) -> tuple[str, ...]:
@@ -74,6 +78,7 @@ class House:
         began = self._now
         try:
             while not self.over and (seconds is None or self._now - began < seconds - ROUNDING):
+                self.nap(inf if seconds is None else began + seconds - self._now)
                 self.tick()
                 scheduler()
         finally:
@@ -85,6 +90,21 @@ class House:
         """End all that go on."""
         for name in self.going:
             self._end(name)
+
+    def nap(self, most: float = inf) -> None:
+        """Sleep while nothing is due in any of them: on the clock of the first, until something comes for one."""
+        self._napping = True
+        try:
+            going = list(self._going.values())
+            ticks = going[0].doze(min(most, *(node.rest() for node in going)))
+            for node in going:
+                node.pass_over(ticks)
+        finally:
+            self._napping = False
+
+    def _wake(self) -> None:
+        if self._napping and self._going:
+            next(iter(self._going.values())).ring()
 
     def _end(self, name: str) -> None:
         try:

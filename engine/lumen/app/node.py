@@ -27,6 +27,8 @@ from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 ROUNDING = 1e-6
 """How far the sum of many ticks may be off [s]."""
+NAP = 0.2
+"""How long it sleeps at most where nothing is due [s]: what nobody wakes it for waits no longer than that."""
 
 
 class Node:
@@ -35,8 +37,9 @@ class Node:
     With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
     begins when it has claimed what it is. `speed` is that of its time; those of the others have to be the same.
     What is in `before` is called at each tick with its time [s], before the parts; what is in `closing` when it ends.
-    With `leaps` it passes over ticks in which nothing happens. `paced` is called where it begins and ends to keep less
-    than real time, with how much.
+    With `leaps` it passes over ticks in which nothing happens, as `run` does in real time: there it sleeps until
+    something is due, a message has come, or somebody calls `wake`, from any thread. `paced` is called where it begins
+    and ends to keep less than real time, with how much.
     """
 
     def __init__(
@@ -57,6 +60,9 @@ class Node:
         self.leaps = False
         self.claimed: Callable[[], None] = lambda: None
         self.now, self._asked = clock.now(), time.monotonic()
+        self.wake: Callable[[], None] = self.hurry
+        self._napping = False
+        bus.arrived = lambda: self.wake()
         self._begun: list[Part] = []
         self._threads = ThreadWatch()
         self.pace = PaceWatch(clock)
@@ -120,6 +126,7 @@ class Node:
         sys.setswitchinterval(SWITCH_INTERVAL)
         try:
             while not self.over and (period is None or self.now - began < period - ROUNDING):
+                self.nap(inf if period is None else began + period - self.now)
                 self.tick()
                 scheduler()
         finally:
@@ -149,20 +156,53 @@ class Node:
         self._heed()
         return self.now
 
-    def _leap(self) -> None:
-        """Pass over the ticks before the next in which something happens, where all parts know when that is."""
+    def nap(self, most: float = inf) -> None:
+        """Sleep through the ticks before the next in which something happens, for so long [s] at most, until woken."""
+        self._napping = True  # before it looks: what comes afterwards wakes it
+        try:
+            self.pass_over(self.doze(min(most, self.rest())))
+        finally:
+            self._napping = False
+
+    def hurry(self) -> None:
+        """Let a nap end."""
+        if self._napping:
+            self.ring()
+
+    def ring(self) -> None:
+        """Let the clock's sleep end, where it can."""
+        getattr(self._clock, "hurry", lambda: None)()
+
+    def rest(self) -> float:
+        """For how long nothing happens in it unless something comes [s]; 0 where that is not known."""
+        if self.presence and not self.presence.settled:
+            return 0.0
         until = inf
         for part in self._begun:
             until = min(until, part.quiet_until(self.now))
             if until < self.now + 2 * TICK_PERIOD:
-                return
-        if until < inf:
-            self.now = to_the_nanosecond(
-                self.now + (ceil((until - self.now) / TICK_PERIOD - ROUNDING) - 1) * TICK_PERIOD
-            )
+                return 0.0
+        return until - self.now
+
+    def doze(self, rest: float) -> int:
+        """Sleep through a rest of at most NAP, until woken, where the clock can; how many ticks that were."""
+        doze: Callable[[float], float] | None = getattr(self._clock, "doze", None)
+        if doze is None or rest < 2 * TICK_PERIOD:
+            return 0
+        return int((doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
+
+    def pass_over(self, ticks: int) -> None:
+        """Let the time of so many ticks pass, in which nothing happens."""
+        if ticks > 0:
+            self.now = to_the_nanosecond(self.now + ticks * TICK_PERIOD)
             self._clock.wait(self.now)
             for part in self._begun:
                 part.leap(self.now)
+
+    def _leap(self) -> None:
+        """Pass over the ticks before the next in which something happens, where all parts know when that is."""
+        if (rest := self.rest()) < inf:
+            self.pass_over(ceil(rest / TICK_PERIOD - ROUNDING) - 1)
 
     def use(self, project: Project, but: Part | None = None) -> None:
         """Let the bus and all parts go by another bundle, but the one that has it already."""
@@ -200,6 +240,7 @@ class Node:
         for part in self.parts:
             if part not in self._begun and self._ready(part):
                 self._check_speed()
+                part.wake = lambda: self.wake()
                 part.begin(now)
                 self._begun.append(part)
 

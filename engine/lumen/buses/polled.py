@@ -46,6 +46,7 @@ class PolledConnection:
         self._loop = IOLoop()
         self._loop.activate_poller()
         self._error: BaseException | None = None
+        self._alarm: object = None
         self.channel: Any = None
         self._connection: Any = None
         try:
@@ -105,14 +106,19 @@ class PolledConnection:
 
     def turn(self, seconds: float) -> None:
         """Let the connection live: at most so long, or until something happens or `wake` is called."""
-        timer = self._loop.call_later(seconds, lambda: None)
+        if not seconds:
+            self._loop.call_later(0.0, lambda: None)
+        elif self._alarm is None:  # one for many turns: a timer that is removed would still wake it
+            self._alarm = self._loop.call_later(seconds, self._rung)
         self._connection.flush()
         self._loop.poll()
         self._loop.process_timeouts()
-        self._loop.remove_timeout(timer)
         self._connection.flush()
         if self._error:
             raise self._error
+
+    def _rung(self) -> None:
+        self._alarm = None
 
     def wake(self) -> None:
         """From any thread: let `turn` return."""

@@ -33,6 +33,8 @@ class ValidatedBus:
     unchecked where they begin with `avatar` or `lumen`, else they don't pass. What has an alias is sent and heard under
     that, too. `use` takes another bundle of the project while messages flow.
 
+    `arrived` is called, on any thread, when a subscriber has taken a message.
+
     On a bus in this process a message of ours comes back as it went, with its id the very same object, which nobody
     else can make: that one is not checked again for each subscriber.
     """
@@ -44,6 +46,7 @@ class ValidatedBus:
         self._routed: frozenset[str] = frozenset()
         self._passed: str | None = None
         self._aliases, self._listening = Aliases(), list[_Listening]()
+        self.arrived: Callable[[], None] = _nothing
         self.use(project)
 
     @property
@@ -101,6 +104,7 @@ class ValidatedBus:
                 self._on_refused(message.key, reason)
                 raise Refused(reason)
             handler(message)
+            self.arrived()
 
         listening = _Listening(pattern, checked, self._bus.subscribe(pattern, checked))
         self._listening.append(listening)
@@ -171,7 +175,7 @@ class _Listening:
 
 
 def _nothing() -> None:
-    """Ends a subscription that there is not."""
+    """Ends a subscription that there is not; nobody waits for what arrives."""
 
 
 def by_key(project: Project) -> dict[str, Route]:

@@ -28,6 +28,8 @@ class TypedVisitorPart(Part):
     `greeting` is what whoever types is told at the beginning.
     """
 
+    patient = True
+
     def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str) -> None:
         self.needs = visitor.needs
         self._visitor, self._narrator, self._greeting = visitor.actor, narrator, greeting
@@ -70,5 +72,6 @@ class TypedVisitorPart(Part):
         while sys.stdin and (line := sys.stdin.readline(MAX_LINE_CHARACTERS)):
             typed = True
             self._lines.put(line.strip())
+            self.wake()
         if typed:
             self._lines.put(None)

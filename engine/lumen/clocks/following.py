@@ -44,6 +44,11 @@ class FollowingClock:
         """Let the `wait` that is going on return: something can't wait. From any thread."""
         self._bell.ring()
 
+    def doze(self, until: float) -> float:
+        """Wait until then, or until `hurry`; when that was [s]."""
+        self.wait(until)
+        return self.now()
+
     def wait(self, until: float) -> None:
         self._bell.sleep(max(0.0, (until - self.now()) / self._rate))
 

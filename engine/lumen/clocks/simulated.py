@@ -42,6 +42,16 @@ class SimulatedClock:
         """Let the `wait` that is going on return: something can't wait. From any thread."""
         self._bell.ring()
 
+    def doze(self, until: float) -> float:
+        """Sleep until the world is to live on, or until `hurry`; until when that is due by now, at most `until` [s].
+
+        As fast as it can there is nothing to sleep for.
+        """
+        if not self.speed:
+            return self._now
+        self._bell.sleep(max(0.0, self._due + (until - self._now) / self.speed - self._monotonic()))
+        return min(until, self._now + max(0.0, self._monotonic() - self._due) * self.speed)
+
     def wait(self, until: float) -> None:
         until = to_the_nanosecond(until)
         dt = until - self._now

@@ -2,13 +2,15 @@
 
 import hashlib
 import os
+import stat
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from lumen.loading.chosen_model import choice
 from lumen.loading.chosen_robot import CHOSEN_ROBOT, as_robot
+from lumen.loading.kept_contents import KeptContents
 from lumen.loading.packaged import MAIN_FILE
-from lumen.loading.regular_files import MEGABYTE, read_regular
+from lumen.loading.regular_files import MEGABYTE
 
 FLEET_FILE = "fleet.yaml"
 """Says which houses there are, and whom a robot trusts: linted with a project, and of no bundle."""
@@ -73,13 +75,14 @@ class Unreadable(bytes):
     """Stands in place of the content of a file that can't be read; its text is the reason, in words."""
 
 
-def read_files(root: Path, robot: str = "") -> dict[str, bytes]:
+def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) -> dict[str, bytes]:
     """The content of every file that counts, by its path from the project's root, sorted; nothing here raises.
 
     Links within the project are followed. Of what lies outside nothing is read, not even which files a folder holds:
     that folder itself is `Unreadable`. They are read as that `robot` of several does, where one is named.
+    What is in `kept` and was not touched is not read again.
     """
-    read = _Reader(root)
+    read = _Reader(root, kept)
     found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}
     for folder in dict.fromkeys((*_READ, *_robots_own(root))):
         endings = endings_in(folder)
@@ -149,7 +152,8 @@ def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
 class _Reader:
     """Reads files of a project, and counts what they hold together."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, kept: KeptContents | None = None) -> None:
+        self._kept = kept or KeptContents()
         self._root, self._real, self._left = root, os.path.realpath(root), MAX_PROJECT_BYTES
 
     def leads_out(self, name: str) -> bool:
@@ -161,9 +165,10 @@ class _Reader:
         """The content, None where there is no such file."""
         path = self._root / name
         try:
-            if path.is_symlink() and self.leads_out(name):
+            entry = os.lstat(path)
+            if stat.S_ISLNK(entry.st_mode) and self.leads_out(name):
                 return Unreadable(LEADS_OUT)
-            content = read_regular(path, MAX_FILE_BYTES)
+            content = self._kept.read(path, entry, MAX_FILE_BYTES)
         except FileNotFoundError:
             return Unreadable(b"the file it links to is not there") if path.is_symlink() else None
         except OSError as error:

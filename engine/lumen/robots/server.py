@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from functools import partial
 from itertools import count
+from math import inf
 from typing import Any
 
 from lumen.errors import BusError
@@ -90,9 +91,9 @@ class RobotServer:
         return {sense: self._broadcasts[sense].count for sense in Sense if sense in self._broadcasts}
 
     @property
-    def samples(self) -> bool:
-        """Whether it has readings to publish."""
-        return bool(self._routes)
+    def due(self) -> float:
+        """When it next has a reading to publish [s]."""
+        return min((self._next[sense] for sense in self._routes if not self._broadcasts[sense].count.off), default=inf)
 
     @property
     def waiting(self) -> bool:

@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
 from lumen.loading.files import PROJECT_FOLDERS, Unreadable, fingerprint, read_files
+from lumen.loading.kept_contents import KeptContents
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
 SHORT_QUIET_FRACTION = 0.3
 """The part of the quiet period for which a single file that is whole and good has to stay as it is."""
 MAX_READ_PERIOD = 1.0
-HINT_DEBOUNCE = 5
+HINT_DEBOUNCE = 10
 """How long the operating system's notices are gathered [ms]."""
 EARLY = 5.0
 """How long after its beginning a watcher has what judges made ready [s]: until then an exhibition has enough to do."""
@@ -58,9 +59,9 @@ class FileWatcher(Generic[T]):
     The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
     once a second. `files` are those before, `hash` that of the bundle that runs where it is another. `results` yields
     what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
-    says whether there is something more urgent. `noticed` is called when a change shows, before it has settled,
-    `early` once, EARLY after the beginning, with the files that run. Without `hints` only who asks is served. The
-    files are read as that `robot` of several does.
+    says whether there is something more urgent. `done` is called when there is a result, `noticed` when a change shows,
+    before it has settled, `early` once, EARLY after the beginning, with the files that run. Without `hints` only who
+    asks is served. The files are read as that `robot` of several does.
 
     With `good` one file that ends as it did before is judged at once: where that is said of what came of it, a part of
     the quiet period is enough (docs/decisions/080).
@@ -79,12 +80,14 @@ class FileWatcher(Generic[T]):
         noticed: Callable[[], None] = lambda: None,
         early: Callable[[WatchedFiles], None] = lambda files: None,
         good: Callable[[T], bool] | None = None,
+        done: Callable[[], None] = lambda: None,
         robot: str = "",
     ) -> None:
         self._robot = robot
         self._root, self._files, self._hash, self._good = root, files, hash or fingerprint(files), good
         self._judge, self._leisure, self._noticed, self._quiet, self._watching = judge, leisure, noticed, quiet, hints
-        self._early = early
+        self._early, self._done = early, done
+        self._kept = KeptContents()
         self._stop, self._hint = threading.Event(), threading.Event()
         self._asked: queue.SimpleQueue[object] = queue.SimpleQueue()
         self.results: queue.SimpleQueue[T] = queue.SimpleQueue()
@@ -140,7 +143,7 @@ class FileWatcher(Generic[T]):
             now = time.monotonic()
             judged = self._judged(SavedFiles(asked.files, (), now, now, asked.asked))
             if judged is not None:
-                self.results.put(judged)
+                self._tell(judged)
         elif callable(asked):
             self._files = asked()
             self._hash = fingerprint(self._files)
@@ -148,7 +151,7 @@ class FileWatcher(Generic[T]):
             self._look(asked)
 
     def _look(self, asked: object = None) -> None:
-        saved = SavedFiles(read_files(self._root, self._robot), (), time.monotonic(), 0.0, asked)
+        saved = SavedFiles(self._read(), (), time.monotonic(), 0.0, asked)
         judged: T | None = None
         if new := fingerprint(saved.files) != self._hash:
             self._noticed()
@@ -161,9 +164,16 @@ class FileWatcher(Generic[T]):
         if not asked or self._watching:
             self._files, self._hash = saved.files, fingerprint(saved.files)
         if judged is not None:
-            self.results.put(judged)
+            self._tell(judged)
             with _as_others_need():
                 self._leisure(judged, self._urgent)
+
+    def _read(self) -> WatchedFiles:
+        return read_files(self._root, self._robot, self._kept)
+
+    def _tell(self, judged: T) -> None:
+        self.results.put(judged)
+        self._done()
 
     def _judged(self, saved: SavedFiles) -> T | None:
         """What comes of these files; None where we fail on them."""
@@ -180,7 +190,7 @@ class FileWatcher(Generic[T]):
         since, judged = time.monotonic(), self._judged_at_once(saved)
         while not self._stop.is_set():
             self._hint.clear()
-            again = read_files(self._root, self._robot)
+            again = self._read()
             if again != saved.files:
                 saved = saved._replace(files=again)
                 since, judged = time.monotonic(), self._judged_at_once(saved)

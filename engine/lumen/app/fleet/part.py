@@ -76,6 +76,8 @@ class ReloadTaker:
 class FleetPart(Part):
     """The agent of this robot; it stands beside the reload, whose `needs` it has."""
 
+    patient = True
+
     def __init__(
         self,
         fleet: Fleet,

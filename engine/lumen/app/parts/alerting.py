@@ -35,6 +35,8 @@ class AlertPart(Part, Observer):
     robot.
     """
 
+    patient = True
+
     def __init__(
         self,
         desk: AlertDesk,

@@ -24,6 +24,8 @@ END_TIMEOUT = 5.0
 class ConsolePart(Part):
     """Has `lumen console` run for the project in `root` on the bus at `url`; `tell` hears what it says."""
 
+    patient = True
+
     def __init__(self, root: Path, url: str, tell: Callable[[str], None]) -> None:
         self._root, self._url, self._tell = root, url, tell
         self._process: subprocess.Popen[str] | None = None

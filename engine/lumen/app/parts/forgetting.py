@@ -28,6 +28,8 @@ class ForgettingPart(Part):
     there is one.
     """
 
+    patient = True
+
     def __init__(
         self, project: Project, bus: Bus, *forget: Callable[[PersonName], None], needs: Sequence[str] = ()
     ) -> None:

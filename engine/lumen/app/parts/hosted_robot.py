@@ -82,6 +82,9 @@ class HostedRobotPart(RobotPart):
             if BRAIN not in self._others.parts and (kind == "error" or not separator):
                 self._narrator.answered(event)
 
+    def quiet_until(self, now: float) -> float:
+        return now if self._host.waiting else super().quiet_until(now)
+
     def use(self, project: Project) -> None:
         self._host.use(project)
         if self.faces:

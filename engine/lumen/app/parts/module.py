@@ -45,6 +45,7 @@ class ModulePart(Part):
             self._modules[robot] = make_module(name, other, bus, lambda text: tell(name, text), None)
             self._presences.append(presence_of(other, bus, (name,), dict))
         self._awaited = awaited and name == EYES
+        self.patient = not self._awaited
 
     def begin(self, now: float) -> None:
         for module in self._modules.values():

@@ -15,6 +15,8 @@ MAX_PENDING_TROUBLES = 100
 class ModuleTroublesPart(Part):
     """Tells line by line what modules can't do; those of this process, `own`, say so themselves."""
 
+    patient = True
+
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str, str], None], own: Sequence[str] = ()) -> None:
         self._tell, self._own = tell, own
         self._messages: deque[Message] = deque(maxlen=MAX_PENDING_TROUBLES)

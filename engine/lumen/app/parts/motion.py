@@ -3,6 +3,7 @@
 import logging
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from math import inf
 
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
@@ -54,6 +55,9 @@ class MotionPart(Part):
         self._robot.poll()
         if (time := self._robot.time()) is not None:
             self._tracking.tick(time)
+
+    def quiet_until(self, now: float) -> float:
+        return now if self._asked or self._tracking.on else inf
 
     def use(self, project: Project) -> None:
         before, self._project = self._project, project

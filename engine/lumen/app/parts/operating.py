@@ -53,6 +53,8 @@ class OperatorPart(Part, Observer):
     which the recorder hears by itself; empty where nothing is recorded.
     """
 
+    patient = True
+
     def __init__(
         self,
         behavior: LiveBehavior,

@@ -1,6 +1,7 @@
 """What a node is made of."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from math import inf
 
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -9,11 +10,14 @@ from lumen.language.projects import Project
 class Part:
     """Something that lives in a node's loop; it begins when the parts that it `needs` are there.
 
-    What a part does not care about it leaves as it is here: nothing.
+    What a part does not care about it leaves as it is here: nothing. A `patient` one does nothing by itself but look
+    whether something has come or is over: that may wait for NAP, or for `wake`, which may be called from any thread.
     """
 
     name = ""
     needs: Sequence[str] = ()
+    patient = False
+    wake: Callable[[], None] = staticmethod(lambda: None)
 
     @property
     def over(self) -> bool:
@@ -33,7 +37,7 @@ class Part:
 
     def quiet_until(self, now: float) -> float:
         """Until when nothing happens in it unless something happens elsewhere [s]; `now` where nobody knows."""
-        return now
+        return inf if self.patient else now
 
     def leap(self, now: float) -> None:
         """It is `now` [s] after a time in which nothing happened."""

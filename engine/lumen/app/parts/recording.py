@@ -32,6 +32,8 @@ class RecordingPart(Part):
     Raises UsageError where `file` can't be written.
     """
 
+    patient = True
+
     def __init__(
         self,
         project: Project,

@@ -64,8 +64,9 @@ class RobotPart(Part, Observer):
 
     def quiet_until(self, now: float) -> float:
         server = self.server  # where nobody is told what it senses, only controllers ask, and the brain knows of these
-        busy = server.waiting or (server.samples and not self._silent) or (self.faces and self.faces.busy)
-        return now if busy or not getattr(self.robot, "idle", False) else inf
+        if server.waiting or (self.faces and self.faces.busy) or not getattr(self.robot, "idle", False):
+            return now
+        return inf if self._silent else max(now, server.due)
 
     def leap(self, now: float) -> None:
         if self.faces:

@@ -1,6 +1,7 @@
 """The visitor: walks, speaks and touches in a simulated hall, as a story says or as somebody makes them do."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import inf
 from typing import Any
 
 from lumen.app.causes import innermost
@@ -53,7 +54,9 @@ class VisitorPart(Part):
             self.player.tick(now)
 
     def quiet_until(self, now: float) -> float:
-        return self.player.quiet_until(now) if self.player and not self.actor.walking else now
+        if self.actor.walking:
+            return now
+        return self.player.quiet_until(now) if self.player else inf
 
     def use(self, project: Project) -> None:
         self.actor.use(project)

@@ -15,6 +15,8 @@ class RefusalPart(Part):
     `tell` takes the kind of an alert and its text: places and codes, no more of what is in the files.
     """
 
+    patient = True
+
     def __init__(self, reloader: Reloader, tell: Callable[[str, str], None]) -> None:
         self._reloader, self._tell = reloader, tell
         self._last: ReloadReport | None = None

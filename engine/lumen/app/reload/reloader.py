@@ -41,7 +41,8 @@ class Reloader:
 
     `worker` judges them; else another process does. `quiet` [s] and `budget` [s] are those of the watcher and of
     stories; `applied` is told of each bundle that becomes active. `seen` is the hash of files that are there and not to
-    be taken until they change, where those are not the ones that run.
+    be taken until they change, where those are not the ones that run. `wake` is called, on any thread, when files have
+    been judged.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class Reloader:
         self._notifier = ReloadNotifier(behavior, narrator, self._records)
         self._queue = MigrationQueue(behavior, self._notifier, self._records, applied)
         self._bus = behavior.loop.bus
+        self.wake: Callable[[], None] = lambda: None
         self._came: deque[Message] = deque(maxlen=WAITING)
         project = behavior.loop.project
         self._worker = worker or ValidationWorker(Path(project.root))
@@ -78,6 +80,7 @@ class Reloader:
             noticed=self._worker.begin,
             early=self._validator.warm,
             good=lambda judged: isinstance(judged, Validation) and judged.good,
+            done=lambda: self.wake(),
         )
         self._undo = self._bus.subscribe(command_key(behavior.project.robot), self._came.append)
         self._watcher.start()

@@ -80,6 +80,11 @@ class RobotHost:
             self._look(self._hall, now)
         return events
 
+    @property
+    def waiting(self) -> bool:
+        """Whether something has come, or is to be told, at the next tick."""
+        return bool(self._visitor_messages or self._happened)
+
     def notice(self, event: Event) -> None:
         """Tell everybody of something at the next tick, as if the robot had noticed it."""
         self._happened.append(event)

@@ -1,0 +1,122 @@
+"""An exhibition in which nothing is due sleeps, and whatever comes wakes it: of naps of an hour nobody notices any."""
+
+import threading
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.app import node as naps
+from lumen.app.exhibition import Exhibition
+from lumen.app.house import House
+from lumen.app.house_setup import set_up_house
+from lumen.app.setup import Setup, set_up
+from lumen.clocks.real import RealClock
+from lumen.runtime.loop import TICK_PERIOD
+
+NAMES = ("ana", "ben")
+MAIN = """
+name: Asleep
+behavior: sleeper
+languages: [en]
+ROBOT
+routes:
+  heard: {key: "lumen.{robot}.audio.speech.recognition", direction: in, schema: speech.recognition, event: heard}
+"""
+BEHAVIOR = """
+initial: asleep
+on: {heard: {target: .awake}}
+states:
+  asleep: {after: {300ms: dreaming}}
+  dreaming: {}
+  awake: {}
+"""
+
+
+def project(root: Path, robot: str = "robot: {name: NAO, model: nao}") -> Path:
+    (root / "behaviors").mkdir()
+    (root / "lumen.yaml").write_text(MAIN.replace("ROBOT", robot), "utf-8")
+    (root / "behaviors/sleeper.yaml").write_text(BEHAVIOR, "utf-8")
+    return root
+
+
+@pytest.fixture
+def long(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Naps that last an hour if nobody wakes it."""
+    monkeypatch.setattr(naps, "NAP", 3600.0)
+
+
+@pytest.fixture(params=["simulated", "real"])
+def sleeper(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Exhibition]:
+    """One that waits to be spoken to, in real time."""
+    loaded = lumen.load(project(tmp_path))
+    setup = set_up("recording", loaded, "1")
+    if request.param == "real":
+        setup = Setup(setup.robot, RealClock(), setup.hall)
+    show = Exhibition(loaded, setup, "memory://napping", reload="auto")
+    show.start()
+    yield show
+    show.close()
+
+
+def ticks_of(show: Exhibition) -> Sequence[float]:
+    ticks: list[float] = []
+    show.node.before.append(ticks.append)
+    return ticks
+
+
+def lived_until(show: Exhibition, state: str) -> None:
+    """Naps and ticks until it is in that state; within the time that a test has."""
+    while state not in show.configuration:
+        show.node.nap()
+        show.node.tick()
+
+
+def test_while_nothing_is_due_it_ticks_seldom(sleeper: Exhibition) -> None:
+    ticks = ticks_of(sleeper)
+    sleeper.run(1.0)
+    assert 2 < len(ticks) < 0.5 / TICK_PERIOD
+    assert "dreaming" in sleeper.configuration
+
+
+def test_a_timer_is_on_time(sleeper: Exhibition, long: None) -> None:
+    began, ticks = sleeper.now, ticks_of(sleeper)
+    lived_until(sleeper, "dreaming")
+    assert len(ticks) < 5
+    assert sleeper.now - began >= 0.3 - TICK_PERIOD
+
+
+def test_a_message_wakes_it(sleeper: Exhibition, long: None) -> None:
+    lived_until(sleeper, "dreaming")
+    hear = threading.Timer(0.1, lambda: sleeper.send("heard", {"result": "hello"}))
+    hear.start()
+    lived_until(sleeper, "awake")
+    hear.join()
+
+
+def test_a_saved_file_wakes_it(sleeper: Exhibition, long: None) -> None:
+    lived_until(sleeper, "dreaming")
+    behavior = Path(sleeper.project.root) / "behaviors/sleeper.yaml"
+    behavior.write_text(BEHAVIOR.replace("dreaming: {}", "dreaming: {always: [{target: awake}]}"), "utf-8")
+    lived_until(sleeper, "awake")
+
+
+def test_what_one_robot_of_a_house_hears_wakes_all(tmp_path: Path, long: None) -> None:
+    root = project(tmp_path, "robots: {ana: {model: nao}, ben: {model: nao}}")
+    projects = {name: lumen.load(root, robot=name) for name in NAMES}
+    setups = set_up_house("recording", projects, "1", dict.fromkeys(NAMES))
+    shows = {name: Exhibition(projects[name], setups[name], "memory://asleep") for name in NAMES}
+    house = House({name: show.node for name, show in shows.items()})
+    house.start()
+    house.run(0.4)
+    assert all("dreaming" in show.configuration for show in shows.values())
+    hear = threading.Timer(0.1, lambda: shows["ben"].send("heard", {"result": "hello"}))
+    hear.start()
+    while "awake" not in shows["ben"].configuration:
+        house.nap()
+        house.tick()
+    hear.join()
+    assert "awake" not in shows["ana"].configuration
+    assert shows["ana"].now == pytest.approx(shows["ben"].now, abs=TICK_PERIOD)
+    house.close()
