@@ -13,6 +13,7 @@ import pytest
 from lumen.cli.main import main
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
+from tests.relay import Relay
 from tests.waiting import until
 
 PATIENCE = 120.0
@@ -23,13 +24,24 @@ class Hall:
     """The two robots' processes on one broker, and what people ask of them."""
 
     def __init__(self, root: Path, url: str, capsys: pytest.CaptureFixture[str]) -> None:
-        self.root, self.bus, self._capsys = root, ["--bus", url], capsys
+        self.root, self.url, self._capsys = root, url, capsys
         self.running: list[Guarded[bytes]] = []
 
-    def begin(self, *flags: str) -> tuple[Guarded[bytes], Path]:
+    def begin(self, *flags: str, url: str = "") -> tuple[Guarded[bytes], Path]:
         """A process of `lumen run`, and the file with what it says."""
         told = self.root / f"told-{len(self.running)}.txt"
-        line = [sys.executable, "-m", "lumen", "run", self.root, "--robot", "recording", *self.bus, *flags]
+        line = [
+            sys.executable,
+            "-m",
+            "lumen",
+            "run",
+            self.root,
+            "--robot",
+            "recording",
+            "--bus",
+            url or self.url,
+            *flags,
+        ]
         with told.open("wb") as file:
             process = Guarded(line, stdin=DEVNULL, stdout=file, stderr=STDOUT)
         self.running.append(process)
@@ -42,7 +54,7 @@ class Hall:
     def call(self, verb: str, *flags: str) -> tuple[int, str]:
         """Its exit code, and all that it says."""
         self._capsys.readouterr()
-        code = main([verb, *flags, str(self.root), *self.bus])
+        code = main([verb, *flags, str(self.root), "--bus", self.url])
         said = self._capsys.readouterr()
         return code, said.out + said.err
 
@@ -54,14 +66,20 @@ class Hall:
     def both(self) -> bool:
         return ["configuration" in one for one in self.status().values()] == [True, True]
 
+    def stands_in(self, name: str, state: str) -> bool:
+        return self.status()[name]["configuration"] == [state]
+
+    def close(self) -> None:
+        for process in self.running:
+            if process.poll() is None:
+                self.end(process)
+
 
 @pytest.fixture
 def hall(two: Path, broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> Iterator[Hall]:
     one = Hall(two, broker.url, capsys)
     yield one
-    for process in one.running:
-        if process.poll() is None:
-            one.end(process)
+    one.close()
 
 
 def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,3 +121,27 @@ def test_a_robot_whose_process_is_killed_is_told_and_the_other_goes_on(hall: Hal
     assert [line.split()[1] for line in lines] == ["ana"]
     assert hall.call("say", "I am here", "--robot-name", "ben") == (0, "said\n")
     assert not hall.status()["ben"]["stopped"]
+
+
+def test_what_they_have_in_common_outlives_the_loss_of_the_broker(
+    stage: Path, broker: RabbitMQ, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ben hears what Ana assigned while he was cut off; and a replay takes each of his steps again."""
+    hall, wire = Hall(stage, broker.url, capsys), Relay(broker.port)
+    try:
+        hall.begin("--robot-name", "ana")
+        ben, _ = hall.begin("--robot-name", "ben", url=broker.url.replace(f":{broker.port}", f":{wire.port}"))
+        until(hall.both, PATIENCE)
+        assert hall.call("goto", "busy", "--yes", "--robot-name", "ana")[0] == 0
+        until(lambda: hall.stands_in("ben", "watching"), PATIENCE)
+        wire.refuse()
+        assert hall.call("goto", "free", "--yes", "--robot-name", "ana")[0] == 0
+        wire.mend()
+        until(lambda: hall.both() and hall.stands_in("ben", "waiting"), PATIENCE)
+        hall.end(ben, signal.SIGTERM)
+        capsys.readouterr()
+        assert main(["replay", "--project", str(stage), "--robot-name", "ben"]) == 0
+        assert "the same" in capsys.readouterr().out
+    finally:
+        hall.close()
+        wire.close()

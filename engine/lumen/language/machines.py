@@ -155,6 +155,7 @@ class MachineDefinition:
     `phrases`, `answers` and `lists` are its own and those of its `words` files; `borrowed` says of those from which
     file each comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the
     names of their behaviours. `robots` are those of the house, where it has several: events can be sent to them.
+    `shared` are the keys that these have in common, in the context under the key of that name.
     """
 
     id: str
@@ -172,6 +173,7 @@ class MachineDefinition:
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
     robots: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
 
     def __getstate__(self) -> dict[str, Any]:
         """What it says, for another process: what was made of it here is none of its fields."""

@@ -21,6 +21,7 @@ from lumen.language.retention import JournalRetention, RecordingSettings
 from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.routing_keys import default_key
+from lumen.language.shared import SharedKey
 from lumen.language.show import Show
 from lumen.language.stories import Story
 
@@ -49,7 +50,7 @@ class Project:
     desks; `journal` is how long it is kept what happened, `record` what is recorded of the bus, `console` where its
     pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their
     aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot,
-    `knowledge` the passages by name.
+    `knowledge` the passages by name, `shared` what the robots of the house have in common.
     """
 
     root: str
@@ -87,6 +88,7 @@ class Project:
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False
     house: str = ""
+    shared: Mapping[str, SharedKey] = field(default_factory=dict)
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
     @property

@@ -72,18 +72,25 @@ OPERATOR_REQUEST, OPERATOR_ANSWER = "lumen.{robot}.operator.request", "lumen.ope
 """What operators ask, and the answers, which are told apart by their `correlation_id`."""
 TOLD = "lumen.{robot}.event"
 """Where a robot hears what others of its house tell it."""
+SHARED_KEY = "lumen.{house}.shared"
+"""Where the robots of a house tell what they have in common."""
 INTERNAL_ALIASES: Mapping[str, str] = {
     CONFIG_COMMAND: "lumen.config.command",
     CONFIG_STATUS: "lumen.config.status",
     OPERATOR_REQUEST: "lumen.operator.request",
 }
 """What these are called where there is one robot."""
-INTERNAL_KEYS = (*INTERNAL_ALIASES.values(), *INTERNAL_ALIASES, OPERATOR_ANSWER, TOLD)
+INTERNAL_KEYS = (*INTERNAL_ALIASES.values(), *INTERNAL_ALIASES, OPERATOR_ANSWER, TOLD, SHARED_KEY)
 
 
 def key_of_robot(key: str, robot: str) -> str:
     """The key with the robot's name in it."""
     return key.replace("{robot}", robot)
+
+
+def key_of_house(key: str, house: str) -> str:
+    """The key with the house's name in it."""
+    return key.replace("{house}", house)
 
 
 def default_key(route: str, robot: str) -> str:

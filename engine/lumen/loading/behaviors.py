@@ -10,6 +10,7 @@ from typing import Any
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
 from lumen.loading.actions import Actions
 from lumen.loading.buttons import buttons
 from lumen.loading.document_report import DocumentReport
@@ -36,15 +37,19 @@ def build_machine(
     name: str,
     words: WordFiles = MappingProxyType({}),
     known: Collection[str] = (),
+    shared: Mapping[str, SharedKey] = MappingProxyType({}),
+    performed: Collection[str] = (),
 ) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
     `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `words` are the
-    words files that it may name, `known` the names of all, those that can't be read among them.
+    words files that it may name, `known` the names of all, those that can't be read among them; `shared` what robots
+    have in common, which the behaviours `performed` by one can read.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
-    return MachineDefinition(**_Builder(data, report, name, words, known or words.keys()).fields())
+    common = shared if name in performed and SHARED not in (data.get("context") or {}) else {}
+    return MachineDefinition(**_Builder(data, report, name, words, known or words.keys(), common).fields())
 
 
 def fingerprint(data: Any) -> str:
@@ -57,12 +62,18 @@ class _Builder:
     """Reads one file: first the tree of its states, then what stands in each."""
 
     def __init__(
-        self, data: Mapping[str, Any], report: DocumentReport, name: str, words: WordFiles, known: Collection[str]
+        self,
+        data: Mapping[str, Any],
+        report: DocumentReport,
+        name: str,
+        words: WordFiles,
+        known: Collection[str],
+        shared: Mapping[str, SharedKey],
     ) -> None:
-        self.data, self.report, self.files = data, report, words
+        self.data, self.report, self.files, self.shared = data, report, words, shared
         self.words = known_words(data, report, words, known)
         self.outline = BehaviorOutline(data, name, report)
-        self.rounds = Rounds(self.outline, report, data.get("context") or {})
+        self.rounds = Rounds(self.outline, report, data.get("context") or {}, shared=bool(shared))
         names = {*self.outline.entries, *self.outline.aliases}
         self.expressions = Expressions(report, data, self.words, names, self.rounds)
         self.actions = Actions(report, self.expressions, data.get("units") or {})
@@ -77,20 +88,29 @@ class _Builder:
         return {
             "id": self.outline.root.alias,
             "states": {state.path: state for entry in self.outline.entries.values() for state in self.states(entry)},
-            "context": {**(data.get("context") or {}), **dict.fromkeys(self.rounds.keys.values(), NOTHING_YET)},
-            "types": {k: v for k, v in (data.get("types") or {}).items() if self.expressions.key(k, ("types", k))},
+            "context": {
+                **(data.get("context") or {}),
+                **dict.fromkeys(self.rounds.keys.values(), NOTHING_YET),
+                **({SHARED: first_values(self.shared)} if self.shared else {}),
+            },
+            "types": {
+                **{k: v for k, v in (data.get("types") or {}).items() if self.expressions.key(k, ("types", k))},
+                **({SHARED: shared_schema(self.shared)} if self.shared else {}),
+            },
             "events": dict(data.get("events") or {}),
             "properties": build_properties(data, self.report, self.expressions.expression),
             **self.words.tables,
             "words": self.words.files,
             "borrowed": self.words.borrowed,
             "renamed": {was: now for was in data.get("renamed") or {} if (now := self.renamed(was))},
-            "hash": fingerprint([data, *self.borrowed()] if self.words.files else data),
+            "hash": fingerprint([data, *self.borrowed()] if self.words.files or self.shared else data),
+            "shared": tuple(self.shared),
         }
 
     def borrowed(self) -> Iterator[Any]:
-        """What the words files say that it names, as data."""
+        """What other files say that it uses, as data."""
         yield from (self.files[name].data for name in self.words.files if name in self.files)
+        yield from ([name, key.type, key.initial] for name, key in self.shared.items())
 
     def states(self, entry: OutlinedState) -> Iterator[State]:
         """The state, and what its `for` adds to it."""

@@ -39,7 +39,7 @@ class Expressions:
         self, report: DocumentReport, data: Mapping[str, Any], words: KnownWords, states: Iterable[str], rounds: Rounds
     ) -> None:
         self.report, self.rounds = report, rounds
-        self.keys = frozenset(data.get("context") or ())
+        self.keys = frozenset((*(data.get("context") or ()), *rounds.known))
         names: dict[str, Any] = {
             "context": {key: {} for key in self.keys},
             **{key: tuple(table) if words.whole else None for key, table in words.tables.items()},

@@ -136,6 +136,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         robots=settings.robots,
         told_apart=settings.told_apart,
         house=settings.house,
+        shared=settings.shared,
         body=body,
         hall=settings.hall,
         behavior=settings.behavior,
@@ -189,7 +190,11 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
     found.words = _built(words)
     known = found.names[WORDS_FOLDER]
     contents = {name: found.files[f"{WORDS_FOLDER}/{name}.yaml"] for name in known}
-    return _each(found, "behaviors", partial(build_machine, words=words, known=known), around=contents)
+    settings = found.settings
+    shared = settings.shared if settings else {}
+    performed = {robot.behavior for robot in settings.robots.values()} if settings and shared else set()
+    build = partial(build_machine, words=words, known=known, shared=shared, performed=performed)
+    return _each(found, "behaviors", build, around=(contents, shared, performed))
 
 
 def _each(

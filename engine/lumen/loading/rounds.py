@@ -13,6 +13,7 @@ from typing import Any
 from lumen.language.actions import Assign, Expression, PlacedAction
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.machines import ForEach, State, StateKind, Transition
+from lumen.language.shared import SHARED
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 
@@ -29,10 +30,13 @@ _WITHIN = (("states",), ("on",), ("after",), ("at",))
 
 
 class Rounds:
-    """The `for`s of one document, by the paths of their states."""
+    """The `for`s of one document, by the paths of their states; what is `shared` is known everywhere."""
 
-    def __init__(self, outline: BehaviorOutline, report: DocumentReport, context: Mapping[str, Any]) -> None:
+    def __init__(
+        self, outline: BehaviorOutline, report: DocumentReport, context: Mapping[str, Any], *, shared: bool = False
+    ) -> None:
         self.report = report
+        self.known = {SHARED: f"context.{SHARED}"} if shared else {}
         self.by_place: dict[NodePath, tuple[str, str]] = {}
         self.keys: dict[str, str] = {}
         for entry in outline.entries.values():
@@ -43,7 +47,7 @@ class Rounds:
 
     def variables(self, where: NodePath) -> dict[str, str]:
         """What the names of entries mean in an expression that stands there."""
-        found = {}
+        found = dict(self.known)
         for place, (name, key) in self.by_place.items():
             if where[: len(place)] == place and where[len(place) : len(place) + 1] in _WITHIN:
                 found[name] = f"context.{key}.entry"
@@ -84,7 +88,7 @@ class Rounds:
                 BAD_FOR, where, f"{entry.title} never comes to a second entry: nothing in it is final", hint, key=True
             )
         outer = [p for p, (other, _) in self.by_place.items() if other == name and entry.where[: len(p)] == p]
-        if name in _TAKEN or outer:
+        if name in _TAKEN or name in self.known or outer:
             what = "what a `for` around it calls its entry" if outer else "a name that every expression knows"
             self.report(BAD_FOR, (*where, "as"), f"`{name}` is {what}", "choose another name")
             return False

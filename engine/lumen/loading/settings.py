@@ -19,6 +19,7 @@ from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
 from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
 from lumen.language.routes import Route
+from lumen.language.shared import SharedKey
 from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.alerts import build_alerts
@@ -26,6 +27,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
 from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
+from lumen.loading.shared_keys import build_shared
 from lumen.loading.show import build_show
 from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
 
@@ -52,6 +54,7 @@ class Settings:
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False
     house: str = ""
+    shared: Mapping[str, SharedKey] = field(default_factory=dict)
     model: str = ""
     hall: str = ""
     behavior: str = ""
@@ -95,6 +98,7 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         robots=robots,
         told_apart=several,
         house=build_house(data),
+        shared=build_shared(data, robots, report),
         model=own.model,
         hall=data.get("hall", ""),
         behavior=own.behavior,

@@ -37,6 +37,7 @@ from lumen.loading import (
     schedules,
     settings,
     shapes,
+    shared_keys,
     signal_bindings,
     terms,
     transitions,
@@ -52,8 +53,8 @@ from lumen.rules.checks import CHECKS
 LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, house, keyframes,
     knowledge, known_words, life, linking, markdown, messages, misplaced, numbers, outline, poses, project, role_names,
-    roles, rounds, rulebook, schedules, settings, shapes, signal_bindings, terms, transitions, units, variables,
-    yaml_errors, yaml_reader,
+    roles, rounds, rulebook, schedules, settings, shapes, shared_keys, signal_bindings, terms, transitions, units,
+    variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 

@@ -10,6 +10,7 @@ from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
 from lumen.language.actions import Template, context_key
 from lumen.language.diagnostics import NodePath, Place, Related
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.language.shared import SHARED
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
@@ -87,7 +88,7 @@ class _Expressions:
 
     def variables(self, where: NodePath) -> dict[str, Any]:
         """What stands for entries there, each with its schema."""
-        found: dict[str, Any] = {}
+        found: dict[str, Any] = {SHARED: self.machine.types[SHARED]} if self.machine.shared else {}
         for depth in range(len(where) if self.loops else 0):
             node = value_at(self.report, where[:depth])
             loop = node.get("for") if isinstance(node, Mapping) and where[depth] != "for" else None
@@ -109,7 +110,7 @@ class _Expressions:
         """Where the context keys stand whose types don't fit."""
         if finding.code == TYPE_MISMATCH:
             keys = [*re.findall(r"\bcontext\.(\w+)", part), *([context_key(spot.key)] if spot.key else [])]
-            for key in dict.fromkeys(k for k in keys if k in self.machine.context):
+            for key in dict.fromkeys(k for k in keys if k in (self.report.document.data.get("context") or ())):
                 place = self.report.document.place(("context", key), key=True)
                 yield Related(place, f"`{key}` begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}")
 

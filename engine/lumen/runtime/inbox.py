@@ -9,6 +9,7 @@ from lumen.language.causes import PEOPLE, Cause, CauseKind
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routing_keys import TOLD, key_of_robot
+from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 
@@ -47,7 +48,9 @@ class Inbox:
 
     def hear_robots(self, project: Project) -> None:
         """Listen to what other robots of the house tell this one, where it has any."""
-        self._known = {t.event for state in project.machine.states.values() for t in state.transitions if t.event}
+        self._known = {t.event for state in project.machine.states.values() for t in state.transitions if t.event} - {
+            SHARED_EVENT
+        }
         self._robots = set(project.robots)
         key = key_of_robot(TOLD, project.robot)
         if project.told_apart and self._told is None:

@@ -23,6 +23,7 @@ from lumen.runtime.performer import Performer
 from lumen.runtime.regulation import Regulation
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
+from lumen.runtime.shared_board import SharedBoard
 from lumen.runtime.tracking import LocalTracking, TrackingService
 from lumen.runtime.wall_clock_watch import WallClockWatch
 
@@ -65,7 +66,7 @@ class BehaviorLoop:
         self.rescue: Rescue = lambda _: None
         self.wall_clock: WallClockWatch | None = None
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
-        self.inbox = Inbox(bus)
+        self.inbox, self.board = Inbox(bus), SharedBoard(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
         self.regulation = Regulation(project, bus)
         self.performer = Performer(robot, bus, self._track)
@@ -144,6 +145,7 @@ class BehaviorLoop:
             self._recover(error, now)
         for emission in self.runtime.advance(now, self._gather(now)):
             self._perform(emission.commands, now, step=emission.step)
+        self.board.tell(self.runtime.snapshot, now)
         self._life.tick(self.project, self.runtime.snapshot, now)
         return now
 
@@ -159,10 +161,11 @@ class BehaviorLoop:
     def quiet_until(self, now: float) -> float:
         """Until when nothing happens unless something comes from outside [s]; `now` where that is not known."""
         pending = self._events or self.performer.events or not (self.inbox.empty and self.performer.questions.empty)
+        pending = pending or not self.board.empty
         if pending or self.tracking.on or self.performer.navigator.busy:
             return now
         event = due(self.runtime.snapshot)
-        return max(now, min(event.at if event else inf, self.runtime.approvals.due))
+        return max(now, min(event.at if event else inf, self.runtime.approvals.due, self.board.due))
 
     def leap(self, now: float) -> None:
         """It is `now` [s] after a time in which nothing happened."""
@@ -205,6 +208,7 @@ class BehaviorLoop:
     def _listen(self, project: Project) -> None:
         self.inbox.listen(project)
         self.performer.questions.listen(project)
+        self.board.listen(project)
 
     def _today(self) -> date:
         """The day on the exhibition's clock."""
@@ -243,7 +247,8 @@ class BehaviorLoop:
         happened = [*happened, *self.runtime.approvals.tick(now)]
         own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]
         own.sort(key=lambda event: event.name not in CAUSES)
-        return [*own, *self.performer.questions.drain(now), *self.inbox.drain(now)]
+        heard_of = [*self.performer.questions.drain(now), *self.board.drain(self.runtime.snapshot, now)]
+        return [*own, *heard_of, *self.inbox.drain(now)]
 
     def _perform(
         self, commands: Sequence[Command], now: float, project: Project | None = None, step: int | None = None

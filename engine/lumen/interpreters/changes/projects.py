@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 _PARTS = (
     "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
-    "life", "gestures", "knowledge",
+    "life", "gestures", "knowledge", "shared",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents")
 
@@ -67,6 +67,7 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from _named("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
     yield from _named("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
     yield from _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes)
+    yield from _named("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
     yield from _named("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
     for found in _named("passage", "passage", Risk.COSMETIC, "{}", old.knowledge, new.knowledge):

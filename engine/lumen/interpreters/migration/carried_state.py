@@ -17,6 +17,7 @@ from lumen.interpreters.statechart.values import Halted, Timer
 from lumen.language.actions import Template
 from lumen.language.machines import StateKind
 from lumen.language.nanoseconds import nanoseconds
+from lumen.language.shared import SHARED
 
 
 class CarriedContext(NamedTuple):
@@ -26,10 +27,21 @@ class CarriedContext(NamedTuple):
     notes: tuple[str, ...]
 
 
+def carried_shared(new: Chart, values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What the robots have in common: each key that is still there keeps its value where that is of its type."""
+    common = dict(new.definition.context[SHARED])
+    for key in common.keys() & values.keys():
+        if fits(changed := {**common, key: values[key]}, new.checks[SHARED]):
+            common = changed
+    return common
+
+
 def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> CarriedContext:
     """Every key still declared keeps its value where that is of the key's type; others have their first values."""
     first, names = new.definition.context, identity.keys()
     kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
+    if new.definition.shared and isinstance(common := values.get(SHARED), Mapping):
+        kept[SHARED] = carried_shared(new, common)
     for state in new.definition.states.values():
         if (loop := state.for_each) and loop.key in kept:
             kept[loop.key] = carried_round(old.definition, new.definition, loop, kept[loop.key])

@@ -13,6 +13,7 @@ from lumen.interpreters.statechart.type_checks import fits
 from lumen.interpreters.statechart.values import Step, Timer, awaited
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import CLOCK_SET, Event
+from lumen.language.shared import SHARED, SHARED_EVENT
 
 
 def process(context: ExecutionContext, event: Event) -> Step:
@@ -28,6 +29,8 @@ def process(context: ExecutionContext, event: Event) -> Step:
     else:
         if event.name.startswith(CONTROLLER_EVENT):
             _become(context, event)
+        elif event.name == SHARED_EVENT:
+            _learn(context, event)
         context.unforwarded = event if context.invocations.children else None
         take_enabled(context, context.configuration.candidates(event.name))
     return complete(context)
@@ -46,6 +49,17 @@ def _become(context: ExecutionContext, event: Event) -> None:
             context.assign(key, value if fits(value, check) else round(value))
         except ActionError as error:
             context.raise_error(str(error), ("context", key))
+
+
+def _learn(context: ExecutionContext, event: Event) -> None:
+    """What another robot says of what is theirs becomes the context's, before anybody hears of it."""
+    known = context.machine.chart.definition.shared
+    news = {key: value for key, value in event.data.items() if key in known} if isinstance(event.data, Mapping) else {}
+    if news:
+        try:
+            context.assign(SHARED, {**context.data[SHARED], **news})
+        except ActionError as error:
+            context.raise_error(str(error), ("context", SHARED))
 
 
 def _end_timer(context: ExecutionContext, event: Event) -> None:

@@ -24,6 +24,7 @@ from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import State, Transition
 from lumen.language.nanoseconds import nanoseconds
+from lumen.language.shared import SHARED_EVENT
 
 T = TypeVar("T")
 
@@ -144,9 +145,10 @@ class FastPaths:
     def _find(self, names: frozenset[str], name: str) -> FastPath | None:
         """The path of an event in a configuration; kept, but for the robot's answers: each has a name of its own.
 
-        What says where the robot is, or what a controller makes of the context, changes more than the states.
+        What says where the robot is, or what a controller or another robot makes of the context, changes more than
+        the states.
         """
-        if ".command." in name or name in (ARRIVED, LEFT) or name.startswith(CONTROLLER_EVENT):
+        if ".command." in name or name in (ARRIVED, LEFT, SHARED_EVENT) or name.startswith(CONTROLLER_EVENT):
             return None
         make_room(self.paths)
         paths = self.paths.setdefault(name, {})

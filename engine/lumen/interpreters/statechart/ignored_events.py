@@ -15,6 +15,7 @@ from lumen.language.actions import Expression
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, StateKind
+from lumen.language.shared import SHARED_EVENT
 
 _TIMED = ("after.", "at.")
 _OWN = (*_TIMED, "done.do.", "done.state.", "done.invoke.", "error.do.", "error.invoke.")
@@ -53,7 +54,7 @@ def ignored(machine: MachineDefinition, step: Step) -> IgnoredEvent | None:
         for own in (part.event, *part.raised):
             if own and own.name.startswith(_OWN) and (false := tuple(_refused(prefix, definition, part, own))):
                 return IgnoredEvent(own, (), false)
-    if event.sendid or ".command." in event.name or event.name.startswith((*_OWN, CONTROLLER_EVENT)):
+    if event.sendid or ".command." in event.name or event.name.startswith((*_OWN, CONTROLLER_EVENT, SHARED_EVENT)):
         return None
     if any(part.raised for _, _, part in parts):
         return None

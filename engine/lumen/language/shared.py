@@ -1,0 +1,30 @@
+"""What the robots of a house have in common: values that all of them read, each written by one of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+SHARED = "shared"
+"""What expressions call all of them, and the key of the context that holds them."""
+SHARED_EVENT = "shared.changed"
+"""What a behaviour hears of values that another robot has given them: its data are these, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class SharedKey:
+    """A key of `shared:`: the robot that alone assigns it, the JSON type of its values, and the first of them."""
+
+    owner: str
+    type: str
+    initial: Any
+
+
+def shared_schema(keys: Mapping[str, SharedKey]) -> dict[str, Any]:
+    """The JSON Schema of all of them together."""
+    properties = {name: {"type": key.type} for name, key in keys.items()}
+    return {"type": "object", "properties": properties, "required": list(keys), "additionalProperties": False}
+
+
+def first_values(keys: Mapping[str, SharedKey]) -> dict[str, Any]:
+    """What they hold before any robot has assigned one."""
+    return {name: key.initial for name, key in keys.items()}

@@ -1,0 +1,36 @@
+"""`shared:` of lumen.yaml, from its data to the keys that all robots of a house read."""
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from lumen.interpreters.json_schema import JsonSchema
+from lumen.language.diagnostics import ERROR, Code, did_you_mean
+from lumen.language.shared import SharedKey
+from lumen.loading.complaints import WRONG_VALUE
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import finite
+
+UNKNOWN_OWNER = Code("unknown-owner", "robot", ERROR, "a key of `shared` belongs to a robot that is not in the house")
+
+FIRST: Mapping[str, Any] = {"string": "", "number": 0, "integer": 0, "boolean": False}
+"""What a key holds first where lumen.yaml does not say, by its type."""
+
+
+def build_shared(data: Mapping[str, Any], robots: Collection[str], report: DocumentReport) -> dict[str, SharedKey]:
+    """The keys by name; those that can't be used are reported and left out."""
+    found = {}
+    for name, row in data.get("shared", {}).items():
+        owner, kind = row["owner"], row["type"]
+        initial = row.get("initial", FIRST[kind])
+        if owner not in robots:
+            hint = did_you_mean(owner, robots, "there are")
+            report(UNKNOWN_OWNER, ("shared", name, "owner"), f"there is no robot `{owner}`", hint)
+        elif not JsonSchema({"type": kind}).fits(initial):
+            message, hint = (
+                f"`{name}` can't begin as {initial!r}: it is a {kind}",
+                f"write one, such as {FIRST[kind]!r}",
+            )
+            report(WRONG_VALUE, ("shared", name, "initial"), message, hint)
+        elif isinstance(initial, bool | str) or finite(initial, report, ("shared", name, "initial")):
+            found[name] = SharedKey(owner, kind, initial)
+    return found

@@ -1,0 +1,47 @@
+"""What robots have in common: who may assign it, and whether its name is free."""
+
+from collections.abc import Iterator
+
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
+from lumen.language.actions import Assign
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.machines import MachineDefinition
+from lumen.language.shared import SHARED
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.walk import action_sites
+
+NOT_OWNER = Code("not-owner", "robot", ERROR, "a robot assigns a key of `shared` that belongs to another one")
+SHARED_TAKEN = Code(
+    "shared-taken", "robot", ERROR, "a behaviour has a key `shared` of its own beside that of the house"
+)
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what this robot's behaviour does with the keys of others, and what none may do."""
+    settings = draft.settings
+    machine = draft.behaviors.get(settings.behavior) if settings else None
+    if settings is None or machine is None or not settings.shared:
+        return
+    report = draft.report("behaviors", settings.behavior)
+    if SHARED in (report.document.data.get("context") or {}):
+        hint = "call it otherwise: `shared` is what lumen.yaml says of all robots"
+        report(SHARED_TAKEN, ("context", SHARED), "this `shared` hides that of the house", hint, key=True)
+        return
+    for way, where in _assigned(machine):
+        key = way.partition(".")[2]
+        if key not in settings.shared:
+            message = f"`shared` has no `{key}`" if key else "`shared` can't be assigned as a whole"
+            hint = did_you_mean(f"{SHARED}.{key}", [f"{SHARED}.{name}" for name in settings.shared], "lumen.yaml has")
+            report(UNKNOWN_CONTEXT_KEY, where, message, hint, key=True)
+        elif (owner := settings.shared[key].owner) != settings.robot:
+            hint = f"let `{owner}` assign it: `send: {{to: {owner}, event: …}}` asks for that"
+            report(NOT_OWNER, where, f"`{key}` is `{owner}`'s, and `{settings.robot}` assigns it", hint, key=True)
+
+
+def _assigned(machine: MachineDefinition) -> Iterator[tuple[str, NodePath]]:
+    """The keys of what all have in common that a behaviour assigns, and where."""
+    for site in action_sites(machine):
+        if isinstance(site.step.action, Assign):
+            for way in site.step.action.values:
+                if way.partition(".")[0] == SHARED:
+                    yield way, (*site.step.where, "assign", way)

@@ -1,0 +1,112 @@
+"""What the robots of a house have in common, at the edge: own values told, those of others heard."""
+
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping
+from math import inf
+from time import time
+from typing import Any
+
+from lumen.errors import BusError
+from lumen.interpreters.json_schema import JsonSchema
+from lumen.interpreters.statechart import Snapshot
+from lumen.language.causes import Cause
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.routing_keys import SHARED_KEY, key_of_house
+from lumen.language.shared import SHARED, SHARED_EVENT
+from lumen.ports import Bus, Message
+
+RETELL_PERIOD = 10.0
+"""How often a robot tells its values though they are as they were [s]: a broker keeps none of them."""
+MAX_WAITING_TOLD = 1_000
+
+_log = logging.getLogger(__name__)
+
+
+class SharedBoard:
+    """A robot's view of what its house has in common: it tells what it owns, and hears what others do.
+
+    What is heard waits for `drain`, which makes one event of what differs from what the behaviour knows.
+    """
+
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+        self._project: Project | None = None
+        self._undo: Callable[[], None] | None = None
+        self._key = ""
+        self._waiting: deque[tuple[Mapping[str, Any], Cause]] = deque(maxlen=MAX_WAITING_TOLD)
+        self._told: dict[str, Any] | None = None
+        self._next, self._asked = -inf, False
+
+    def listen(self, project: Project) -> None:
+        """Listen for this project, whose robot tells its values at the next tick, and asks for those of the others."""
+        self._project, self._told = project, None
+        key = key_of_house(SHARED_KEY, project.house) if project.shared else ""
+        if key != self._key:
+            if self._undo:
+                self._undo()
+            self._key, self._undo = key, self._bus.subscribe(key, self._hear) if key else None
+
+    @property
+    def empty(self) -> bool:
+        """Whether nothing has arrived, and nobody asks."""
+        return not self._waiting and not self._asked
+
+    @property
+    def due(self) -> float:
+        """When the values are told again [s]."""
+        return self._next if self._key else inf
+
+    def drain(self, snapshot: Snapshot, now: float) -> list[Event]:
+        """What others have told and the behaviour does not know yet, as events at `now` [s]."""
+        events, known = list[Event](), dict(snapshot.context.get(SHARED, {}))
+        while self._waiting:
+            values, cause = self._waiting.popleft()
+            if news := {key: value for key, value in values.items() if known.get(key) != value}:
+                known |= news
+                events.append(Event(SHARED_EVENT, news, now, cause=cause))
+        return events
+
+    def tell(self, snapshot: Snapshot, now: float) -> None:
+        """Tell the robot's own values where they have changed, somebody asks, or it is time to."""
+        project = self._project
+        if project is None or not self._key:
+            return
+        values = snapshot.context.get(SHARED, {})
+        own = {name: values[name] for name, key in project.shared.items() if key.owner == project.robot}
+        first = self._told is None
+        if own == self._told and not self._asked and now < self._next:
+            return
+        self._told, self._asked, self._next = own, False, now + RETELL_PERIOD
+        if not own and not first:
+            return
+        try:
+            body = {"from": project.robot, "values": own, "asks": first}
+            self._bus.publish(self._key, body, ttl=RETELL_PERIOD)
+        except BusError as error:
+            _log.warning("what the house has in common can't be told: %s", error)
+
+    def _hear(self, message: Message) -> None:
+        """Only values of the type that they are to have, from the robot whose they are."""
+        project = self._project
+        match message.body:
+            case {"from": str(robot), "values": dict(values), "asks": bool(asks)} if project:
+                pass
+            case _:
+                _log.warning("what came on %s tells no values", message.key)
+                return
+        if robot == project.robot:
+            return
+        self._asked = self._asked or asks
+        owned = {name: key for name, key in project.shared.items() if key.owner == robot}
+        news = {name: value for name, value in values.items() if name in owned}
+        if wrong := [name for name in values if name not in owned or not _fits(owned[name].type, values[name])]:
+            _log.warning("%s tells `%s`, which is not its own, or of another type", robot[:60], wrong[0][:60])
+            return
+        if news:
+            self._waiting.append((news, Cause("message", message.id, message.key, robot, time())))
+
+
+def _fits(kind: str, value: object) -> bool:
+    return JsonSchema({"type": kind}).fits(value)
