@@ -15,7 +15,8 @@ from typing import Any
 
 import yaml
 
-from lumen.interpreters.retrieval.calibration import AnswerRates, Sample, Thresholds, calibrate, left_out, outcome
+from lumen.interpreters.retrieval.calibration import AnswerRates, Sample, calibrate, left_out, outcome
+from lumen.interpreters.retrieval.ranking import Thresholds
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.scorers import METHODS
 from lumen.language.projects import Project

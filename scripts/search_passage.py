@@ -24,7 +24,7 @@ from lumen.language.commands import Posture
 from lumen.language.robots import Body
 from lumen.motion import Motion
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.model import Variation
+from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world import CONTROL_PERIOD
 
 MISS, EFFORT, BUMP, TIME, BEYOND, WORST = 2.0, 0.4, 1.0, 0.01, 1.0, 0.3

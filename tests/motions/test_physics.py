@@ -9,7 +9,7 @@ import pytest
 
 from lumen.motion import Motion
 from lumen.ports import Perform
-from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.robot import SimulatedRobot
 from tests.motions.making import ROOT, SHIPPED, nao
 

@@ -6,7 +6,8 @@ from datetime import date
 import answers
 import pytest
 
-from lumen.interpreters.retrieval.calibration import NEVER, Ranked, Sample, Thresholds, calibrate, left_out, outcome
+from lumen.interpreters.retrieval.calibration import NEVER, Sample, calibrate, left_out, outcome
+from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.scorers import METHODS
 from lumen.interpreters.retrieval.words import stems

@@ -13,7 +13,8 @@ from lumen.language.roles import BaseKind
 from lumen.loading.bodies import build_body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.yaml_reader import parse
-from lumen.robots.simulation.model import Variation, physics
+from lumen.robots.simulation.model_terms import Variation
+from lumen.robots.simulation.world_model import physics
 
 MODELS = Path(__file__).parents[2] / "models"
 WEIGHTS = {"greeter": (30.0, 40.0), "lantern": (1.0, 2.0), "sprout": (2.0, 3.0)}

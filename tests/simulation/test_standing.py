@@ -10,7 +10,7 @@ from lumen.language.commands import Look, Posture, Rest, Wake
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.balance import LEAN
-from lumen.robots.simulation.model import Variation
+from lumen.robots.simulation.model_terms import Variation
 from tests.simulation.conftest import MODELS, Do, until_answered
 
 STANDING = ("Stand", "StandInit", "StandZero", "Crouch")

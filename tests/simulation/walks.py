@@ -16,7 +16,7 @@ from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from tests.simulation.conftest import MODELS, answer
 
 START = (3.0, -3.0)

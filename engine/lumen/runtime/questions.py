@@ -5,16 +5,19 @@ from collections import deque
 from collections.abc import Callable
 from datetime import date
 from time import time
+from typing import TYPE_CHECKING
 
 from lumen.errors import BusError
-from lumen.interpreters.retrieval.calibration import Thresholds
-from lumen.interpreters.retrieval.retriever import Retriever
+from lumen.interpreters.retrieval.ranking import Thresholds
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask
 from lumen.language.events import Event
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
+
+if TYPE_CHECKING:
+    from lumen.interpreters.retrieval.retriever import Retriever
 
 ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
 SAFE = {"en": Thresholds(0.622, 0.132), "id": Thresholds(0.415, 0.263)}
@@ -107,7 +110,9 @@ class Questions:
     def _take(self, message: Message) -> None:
         self._came.append((message, time()))
 
-    def _passages(self, project: Project, language: str) -> Retriever:
+    def _passages(self, project: Project, language: str) -> "Retriever":
+        from lumen.interpreters.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
+
         today = self.today()
         known = (project.knowledge, project.robot, language, today)
         if self._retriever is None or self._known != known:

@@ -7,7 +7,7 @@ from pathlib import Path
 from uuid import uuid4
 
 MAX_FILES = 64
-"""How many files of a kind are kept: those that were made or read last."""
+"""How many files of a kind are kept where nothing else is said: those that were made or read last."""
 
 
 class CacheFolder:
@@ -17,8 +17,8 @@ class CacheFolder:
     send any file with it. A folder that others may write is not used.
     """
 
-    def __init__(self, kind: str) -> None:
-        self._folder = _own() / kind
+    def __init__(self, kind: str, most: int = MAX_FILES) -> None:
+        self._folder, self._most = _own() / kind, most
 
     def read(self, name: str) -> bytes | None:
         """What is kept under that name, None where nothing is."""
@@ -39,7 +39,7 @@ class CacheFolder:
                 return
             draft.write_bytes(content)
             os.replace(draft, self._folder / name)
-            for old in sorted(self._folder.iterdir(), key=_used, reverse=True)[MAX_FILES:]:
+            for old in sorted(self._folder.iterdir(), key=_used, reverse=True)[self._most :]:
                 old.unlink(missing_ok=True)
         except OSError:
             with suppress(OSError):

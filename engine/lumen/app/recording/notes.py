@@ -7,7 +7,6 @@ import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 
 from lumen.errors import LumenError
@@ -26,6 +25,8 @@ NOTES = "lumen"
 
 def notes_of(project: Project) -> RecordedNotes:
     """Who and what is recorded, from now on."""
+    from importlib.metadata import version  # with all that reads mail: few record
+
     said = {
         "exhibition": project.name,
         "robot": project.robot,

@@ -5,19 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
+
 MAX_WRONG = 0.02
 """The share of all questions that may be answered wrongly."""
 
 STEPS = 40
 """Thresholds that are tried of each kind."""
-
-
-class Ranked(NamedTuple):
-    """The passage that is most like a question, how much, and by how much more than the next one."""
-
-    passage: str
-    score: float
-    margin: float
 
 
 class Sample(NamedTuple):
@@ -30,17 +24,6 @@ class Sample(NamedTuple):
     def is_right(self) -> bool:
         """Whether its answer would be right."""
         return self.wanted == self.ranked.passage
-
-
-class Thresholds(NamedTuple):
-    """A question is answered if its score is at least `least`, and so much better than the next one."""
-
-    least: float
-    margin: float
-
-    def allow(self, ranked: Ranked) -> bool:
-        """Whether it is answered."""
-        return ranked.score >= self.least and ranked.margin >= self.margin
 
 
 class AnswerRates(NamedTuple):

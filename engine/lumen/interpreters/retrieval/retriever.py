@@ -4,7 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import date
 from typing import NamedTuple
 
-from lumen.interpreters.retrieval.calibration import Ranked, Sample, Thresholds
+from lumen.interpreters.retrieval.calibration import Sample
+from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
 from lumen.interpreters.retrieval.scorers import Method, combined
 from lumen.interpreters.retrieval.words import words
 from lumen.language.knowledge import Passage

@@ -16,7 +16,7 @@ from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.leg_geometry import read_legs
 from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.odometry import Odometry
 from lumen.robots.simulation.sensors import BodySensors

@@ -10,7 +10,8 @@ from dm_control.locomotion.walkers.initializers import WalkerInitializer
 
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES
-from lumen.robots.simulation.model import ROBOT_PREFIX, alone
+from lumen.robots.simulation.model import alone
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from lumen.robots.simulation.observables import NaoObservables
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.robots.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, title
-from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from lumen.robots.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.robot import SimulatedRobot
 from lumen.robots.simulation.shots import (

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from lumen.language.roles import Roles
-from lumen.robots.simulation.model import ROBOT_PREFIX
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 
 NEWTONS_PER_KILOGRAM = 9.81
 """ALMemory counts these forces in kilograms: newtons divided by this."""

@@ -1,37 +1,20 @@
 """The robot in its hall, as one dm_control model."""
 
-import copy
 import re
-from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
 
 import mujoco
 from dm_control import mjcf
-from dm_control.mujoco import wrapper
 
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import BaseKind
-from lumen.loading.memoization import memoize
 from lumen.loading.packaged_models import mjcf_path
 from lumen.robots.simulation.added_servos import add_servos
 from lumen.robots.simulation.backlash import loosen
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE, Variation
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
-
-ROBOT_PREFIX = "nao"
-"""What the names of the robot's elements begin with in the hall: `nao/` and its own name."""
-
-STAGE_SITE = "stage"
-"""The site of the hall where the robot stands."""
-
-
-@dataclass(frozen=True, slots=True)
-class Variation:
-    """How this robot and its hall differ from the model: factors of all masses and of the ground's friction."""
-
-    mass: float = 1.0
-    friction: float = 1.0
 
 
 def load(
@@ -92,30 +75,6 @@ def alone(body: Body, models: Path) -> mjcf.RootElement:
     robot.model = ROBOT_PREFIX
     _differ(robot, body)
     return robot
-
-
-def physics(
-    body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
-) -> mjcf.Physics:
-    """The hall with the robot on its stage, to be lived in.
-
-    A second robot of the same body and the same files in `models` is a copy of what was compiled for the first: a few
-    milliseconds instead of 300. Raises RobotError as `load` does, and where MuJoCo can't build it.
-    """
-    folders = {models, (models / hall).parent}
-    files = {path: _version(path) for folder in folders for path in folder.rglob("*") if path.is_file()}
-    compiled = memoize(
-        ("simulation", hall, backlash),
-        (body, files, variation),
-        lambda: compile_world(load(body, models, hall, variation, backlash=backlash)),
-    )
-    return mjcf.Physics.from_model(wrapper.MjModel(copy.copy(compiled)))
-
-
-def _version(path: Path) -> tuple[int, int, int]:
-    """What tells a file from what it was before."""
-    status = path.stat()
-    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:

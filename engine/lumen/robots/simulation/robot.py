@@ -34,7 +34,7 @@ from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.model import Variation
+from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.playback import SpeechActivity
 from lumen.robots.simulation.sensors import BodySensors

@@ -5,14 +5,14 @@ from math import cos, sin
 from pathlib import Path
 from typing import NamedTuple
 
-from dm_control import mjcf
-from dm_control.mujoco import wrapper
+from dm_control.mujoco import Physics, wrapper
 
 from lumen.language.house import StartPose
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.robots.simulation.model import ROBOT_PREFIX, STAGE_SITE, compile_world, place, read_hall
+from lumen.robots.simulation.model import compile_world, place, read_hall
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE
 from lumen.robots.simulation.robot import SimulatedRobot
 from lumen.robots.simulation.visitor_figure import VisitorFigure
 from lumen.robots.simulation.world import CONTROL_PERIOD, World
@@ -72,7 +72,7 @@ class SharedHall:
             self._ticks += 1
 
 
-def _physics(robots: Mapping[str, HallRobot], prefixes: Mapping[str, str], models: Path, hall: str) -> mjcf.Physics:
+def _physics(robots: Mapping[str, HallRobot], prefixes: Mapping[str, str], models: Path, hall: str) -> Physics:
     world = read_hall(models, hall)
     stage = world.find("site", STAGE_SITE)
     x, y, z = stage.pos if stage.pos is not None else (0.0, 0.0, 0.0)
@@ -85,4 +85,4 @@ def _physics(robots: Mapping[str, HallRobot], prefixes: Mapping[str, str], model
             quat=(cos(half), 0.0, 0.0, sin(half)),
         )
         place(world, hall, each.body, each.models, site, backlash=each.imperfections.backlash, prefix=prefixes[name])
-    return mjcf.Physics.from_model(wrapper.MjModel(compile_world(world)))
+    return Physics.from_model(wrapper.MjModel(compile_world(world)))

@@ -10,7 +10,7 @@ from lumen.interpreters.gait.legs import SIDE_ROLES
 from lumen.language.imperfections import Imperfections
 from lumen.language.robots import Body
 from lumen.ports import Sole, Strain
-from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
+from lumen.robots.simulation.model_terms import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.robot import SimulatedRobot
 
 CONTACT_FORCE = 1.0

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-from dm_control import mjcf
+from dm_control.mujoco import Physics
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES, BaseKind
-from lumen.robots.simulation.backlash import PLAY_SUFFIX
 from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.model import ROBOT_PREFIX, Variation, physics
+from lumen.robots.simulation.model_terms import PLAY_SUFFIX, ROBOT_PREFIX, Variation
+from lumen.robots.simulation.world_model import physics
 
 CONTROL_PERIOD = 0.01
 """Time between two commands to the joints [s]."""
@@ -40,7 +40,7 @@ class World:
         variation: Variation | None = None,
         *,
         backlash: bool = False,
-        shared: mjcf.Physics | None = None,
+        shared: Physics | None = None,
         prefix: str = ROBOT_PREFIX,
     ) -> None:
         self.body, self.prefix = body, prefix

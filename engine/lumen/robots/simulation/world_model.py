@@ -1,0 +1,87 @@
+"""The robot in its hall as MuJoCo has it: compiled once for the same files, and kept on the disk."""
+
+import copy
+import hashlib
+import os
+import zlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import dm_control
+import mujoco
+import numpy as np
+from dm_control.mujoco import Physics, wrapper
+
+from lumen.language.robots import Body
+from lumen.loading.memoization import memoize
+from lumen.robots.simulation.model_terms import Variation
+from lumen.upkeep.cache_folder import CacheFolder
+
+KEPT = 16
+"""How many compiled worlds are kept on the disk, of 3 MB each."""
+MAX_BYTES = 32_000_000
+"""Of the files of a world that is kept: of more nobody reads each byte at a start."""
+BINARY = "world.mjb"
+_LEVEL = 1
+
+
+def physics(
+    body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
+) -> Physics:
+    """The hall with the robot on its stage, to be lived in.
+
+    A second robot of the same body and the same files in `models` is a copy of what was compiled for the first, in this
+    process or an earlier one. Raises RobotError as `model.load` does, and where MuJoCo can't build it.
+    """
+    folders = {models, (models / hall).parent}
+    files = {path: _version(path) for folder in folders for path in _files(folder)}
+
+    def compiled() -> mujoco.MjModel:
+        from lumen.robots.simulation.model import compile_world, load
+
+        return compile_world(load(body, models, hall, variation, backlash=backlash))
+
+    def made() -> mujoco.MjModel:
+        if variation or sum(size for _, size, _ in files.values()) > MAX_BYTES:
+            return compiled()
+        digest = hashlib.sha256(repr((body, Path(hall).name, backlash, mujoco.__version__, _engine())).encode())
+        for path in sorted(files):
+            digest.update(f"{os.path.relpath(path, models)} {files[path][1]} ".encode("utf-8", "surrogatepass"))
+            digest.update(path.read_bytes())
+        return _kept(digest.hexdigest(), compiled)
+
+    found = memoize(("simulation", hall, backlash), (body, files, variation), made)
+    return Physics.from_model(wrapper.MjModel(copy.copy(found)))
+
+
+def _kept(name: str, compiled: Callable[[], mujoco.MjModel]) -> mujoco.MjModel:
+    """What was compiled under that name before, to the bit, else now."""
+    folder = CacheFolder("worlds", KEPT)
+    if packed := folder.read(name):
+        try:
+            return mujoco.MjModel.from_binary_path(BINARY, {BINARY: zlib.decompress(packed)})
+        except (ValueError, zlib.error):  # whatever is in the file: it is made anew
+            pass
+    made = compiled()
+    content = np.zeros(mujoco.mj_sizeModel(made), np.uint8)
+    mujoco.mj_saveModel(made, None, content)
+    folder.write(name, zlib.compress(content.tobytes(), _LEVEL))
+    return made
+
+
+@cache
+def _engine() -> tuple[object, ...]:
+    """What builds worlds: an edited file, or another dm_control, builds others."""
+    own = Path(__file__).parent
+    return Path(dm_control.__path__[0]).stat().st_mtime_ns, *((path.name, _version(path)) for path in _files(own))
+
+
+def _files(folder: Path) -> list[Path]:
+    return [path for path in folder.rglob("*") if path.suffix != ".pyc" and path.is_file()]
+
+
+def _version(path: Path) -> tuple[int, int, int]:
+    """What tells a file from what it was before."""
+    status = path.stat()
+    return status.st_ino, status.st_size, status.st_mtime_ns
