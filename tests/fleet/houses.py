@@ -37,10 +37,17 @@ def changed(root: Path, old: str = "Hello! I am Nao.", new: str = "Welcome! I am
 
 
 def ordered(
-    signer: Signer, wanted: str, version: int = 1, *, centre: str = "one", term: int = 1, house: str = HOUSE
+    signer: Signer,
+    wanted: str,
+    version: int = 1,
+    *,
+    centre: str = "one",
+    term: int = 1,
+    house: str = HOUSE,
+    trying: str = "",
 ) -> dict[str, str]:
     """An order, signed."""
-    text = DesiredState(centre, term, version, house, {ROBOT: wanted} if wanted else {}).text()
+    text = DesiredState(centre, term, version, house, {ROBOT: wanted} if wanted else {}, trying).text()
     return {"order": text, "signature": signer.sign(ORDER, text.encode())}
 
 
@@ -51,6 +58,7 @@ class Taker:
         self.known = {fingerprint(files): dict(files)}
         self.running, self.on_probation = fingerprint(files), False
         self.offered: list[tuple[dict[str, bytes], Callable[[Any], None]]] = []
+        self.tried: list[tuple[dict[str, bytes], Callable[[Any], None]]] = []
         self.installed: list[str] = []
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
@@ -59,6 +67,9 @@ class Taker:
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         self.known[fingerprint(files)] = dict(files)
         self.offered.append((dict(files), answer))
+
+    def attempt(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        self.tried.append((dict(files), answer))
 
     def install(self, files: Mapping[str, bytes]) -> None:
         self.installed.append(fingerprint(files))

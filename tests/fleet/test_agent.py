@@ -1,6 +1,7 @@
 """The agent of a robot: what it takes, what it refuses and tells, and how it gets there after everything."""
 
 import base64
+import json
 import random
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,6 +16,7 @@ from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory, keep, remember
 from lumen.app.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
 from lumen.errors import UsageError
+from lumen.interpreters.fleet.presence import presence_from
 from lumen.loading.files import FLEET_FILE, fingerprint, read_files
 from lumen.runtime.home import Home, home_of
 from tests.fleet.houses import House, changed, ordered, project
@@ -55,6 +57,43 @@ def test_a_bundle_is_fetched_checked_taken_proved_and_installed(house: House) ->
     assert (said.bundle, said.state, said.version, said.played, said.same) == (hash, "proved", 1, 9, 7)
     assert {*house.taker.installed} == {house.taker.running}
     assert FLEET_FILE not in house.taker.offered[-1][0]
+
+
+def test_a_bundle_is_tried_and_not_taken(house: House) -> None:
+    """Fetched, fitted to the house, judged; what comes of it is told, and what the robot runs is as it was."""
+    files, before = changed(house.root), house.taker.running
+    hash = fingerprint(files)
+    house.agent.order(ordered(house.signer, "", trying=hash))
+    house.agent.tick()
+    assert house.agent.presence(1.0, {}).wants == hash
+    house.agent.bundle(only(files, house.signer))
+    house.agent.tick()
+    ((tried, answer),) = house.taker.tried
+    assert tried["behaviors/hello.yaml"] == files["behaviors/hello.yaml"]
+    assert FLEET_FILE not in tried
+    answer({"verdict": "dry run", "visits": {"visits": 9, "same": 7, "differing": 2}})
+    house.agent.tick()
+    said = house.agent.presence(1.0, {})
+    assert said.tried == {"bundle": hash, "verdict": "differ", "played": 9, "same": 7, "why": ""}
+    assert presence_from(said.robot, json.loads(json.dumps(said.to_json()))) == said
+    assert (said.bundle, said.state, said.wants, house.taker.offered) == (before, "proved", "", [])
+    house.agent.order(ordered(house.signer, "", version=2))
+    house.agent.tick()
+    assert house.agent.presence(1.0, {}).tried == {}
+    answer({"verdict": "dry run"})  # too late: nobody asks any more
+    assert house.agent.presence(1.0, {}).tried == {}
+
+
+def test_what_would_be_refused_is_told_by_place_and_code(house: House) -> None:
+    files = changed(house.root)
+    house.agent.order(ordered(house.signer, "", trying=fingerprint(files)))
+    house.agent.tick()
+    house.agent.bundle(only(files, house.signer))
+    house.agent.tick()
+    wrong = {"severity": "error", "file": "behaviors/hello.yaml", "line": 7, "code": "unknown-state", "message": "Budi"}
+    house.taker.tried[0][1]({"verdict": "refused", "diagnostics": [wrong]})
+    said = house.agent.presence(1.0, {}).tried
+    assert (said["verdict"], said["why"]) == ("refused", "behaviors/hello.yaml:7: unknown-state")
 
 
 def test_what_is_the_houses_own_in_lumen_yaml_stays(house: House) -> None:

@@ -67,6 +67,8 @@ class Hall:
             agent.tick()
             if agent.state == "checking":
                 self.takers[name].take(agent)
+            for _, answer in self.takers[name].tried:
+                answer({"verdict": "dry run", "visits": {"visits": 2, "same": 2, "differing": 0}})
             said = agent.presence(1.0, {"falls": self.falls.get(name, 0), "visits": 1, "errors": 0})
             self.bus.publish(presence_key(*name.split("/")), said.to_json() | {"clock": self.now})
         self.served.tick()
@@ -109,6 +111,21 @@ def test_a_bundle_comes_to_all_robots_by_the_steps_of_the_rollout(hall: Hall) ->
     assert row["since"].endswith("Z")
     assert [step["most"] for step in hall.status()["rollout"]["steps"]] == [1, 3, 6]
     assert hall.status()["proved"] == [hash]
+
+
+def test_all_try_a_bundle_before_a_rollout_and_with_it(hall: Hall) -> None:
+    hash = hall.publish(changed(hall.root))
+    hall.ask("try", bundle=hash)
+    hall.until(lambda: hall.status()["trying"] == {"bundle": hash, "same": 6, "differ": 0, "refused": 0})
+    assert hall.have(hash) == 0
+    assert hall.status()["robots"][0]["tried"]["played"] == 2
+    hall.ask("rollout", bundle=hash, **PLAN | {"try": True})
+    with pytest.raises(UsageError, match="a rollout is under way"):
+        hall.ask("try", bundle=hash)
+    assert not hall.status()["rollout"]["tried"]
+    hall.until(lambda: hall.status()["rollout"]["tried"])
+    hall.until(lambda: hall.status()["rollout"]["state"] == "finished")
+    assert hall.status()["trying"] is None
 
 
 def test_a_fall_sends_all_back_and_the_reason_is_told(hall: Hall) -> None:

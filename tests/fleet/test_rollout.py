@@ -171,12 +171,52 @@ def test_a_paused_rollout_waits_and_goes_on() -> None:
     until(world, lambda: world.on(NEW) == 6)
 
 
+TRIED = RolloutPlan(PLAN.steps, PLAN.pause, PLAN.abort_if, try_first=True)
+
+
+def test_all_try_a_bundle_before_the_first_one_takes_it() -> None:
+    world, most = World(20, 14, TRIED), []
+    world.robots["h1/nao1"].on = False  # who is not there is not waited for
+    world.roll(NEW)
+    until(world, lambda: world.centre.rollout.tried or most.append(world.on(NEW)))
+    assert {*most} == {0}
+    there = [name for name, row in world.heard.items() if name != "h1/nao1"]
+    assert all(world.heard[name].presence.tried["bundle"] == NEW for name in there)
+    until(world, lambda: state_of(world) == FINISHED, 800)
+    assert world.centre.trying == ""
+
+
+def test_where_one_would_refuse_it_a_person_decides() -> None:
+    world = World(20, 15, TRIED)
+    world.robots["h0/nao3"].refuses = frozenset((NEW,))
+    world.roll(NEW)
+    until(world, lambda: state_of(world) == PERSON)
+    assert world.centre.rollout.reason == "1 of 20 would refuse it: h0/nao3 (a:1: b)"
+    assert world.on(NEW) == 0
+    world.approve()
+    until(world, lambda: world.on(NEW) == 2)
+
+
+def test_robots_that_are_there_and_try_nothing_are_told() -> None:
+    world = World(20, 16, TRIED)
+    robot = world.robots["h0/nao3"]
+    robot.presence = lambda now, said=robot.presence: replace(said(now), tried={})  # type: ignore[method-assign]
+    world.roll(NEW)
+    world.keep(decide(world.centre, "paused"))
+    world.keep(decide(world.centre, "going"))
+    assert not world.centre.rollout.tried
+    until(world, lambda: state_of(world) == PERSON)
+    assert world.centre.rollout.reason == "not tried by all after 10 min: h0/nao3"
+    world.keep(abort(world.centre, "by a person"))
+    assert (world.centre.trying, world.on(NEW)) == ("", 0)
+
+
 DEEDS = ("on", "off", "cut", "mend", "kill", "restart", "clock", "roll", "abort", "approve", "stranger", "wait", "fall")
 
 
 def misfortune(count: int, seed: int, deeds: list[tuple[str, int]]) -> None:
     """Whatever happens: no more robots than the step has run a bundle that no finished rollout has proved."""
-    world = World(count, seed)
+    world = World(count, seed, TRIED if seed % 3 == 0 else PLAN)
     names, houses, bundles = list(world.robots), list(world.fleet.houses), [NEW, NEXT, "d" * 64]
     for deed, number in deeds:
         robot = world.robots[names[number % len(names)]]

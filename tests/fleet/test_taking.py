@@ -37,11 +37,15 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
     directory.begin(loaded, read_files(root))
     try:
         show.start()
-        show.send("face", {"x": 160, "y": 120})
-        until(lambda: show.tick() and "greeting" in show.configuration, every=0.0)
-        bus.publish("fleet.desired.itb", ordered(signer, fingerprint(files)))
+        bus.publish("fleet.desired.itb", ordered(signer, "", trying=fingerprint(files)))
         until(lambda: show.tick() and heard.bodies[-1]["wants"], every=0.0)
         bus.publish("fleet.bundle.itb", messages_of(files, signer)[0])
+        until(lambda: show.tick() and heard.bodies[-1]["tried"], every=0.0)
+        assert heard.bodies[-1]["tried"]["verdict"] == "same"
+        assert show.project.hash == loaded.hash
+        show.send("face", {"x": 160, "y": 120})
+        until(lambda: show.tick() and "greeting" in show.configuration, every=0.0)
+        bus.publish("fleet.desired.itb", ordered(signer, fingerprint(files), 2))
         until(lambda: show.tick() and heard.bodies[-1]["state"] == "waiting", every=0.0)
         assert "greeting" in show.configuration
         assert show.project.hash == loaded.hash

@@ -4,7 +4,7 @@ import random
 from dataclasses import dataclass, field, replace
 
 from lumen.interpreters.fleet.orders import NOT, DesiredState, FollowedOrder, heed
-from lumen.interpreters.fleet.presence import PROBATION, PROVED, ROLLED_BACK, RobotPresence
+from lumen.interpreters.fleet.presence import PROBATION, PROVED, REFUSED, ROLLED_BACK, SAME, RobotPresence
 from lumen.interpreters.fleet.rollout import begin, decide, step
 from lumen.interpreters.fleet.state import PERSON, CentreState, HeardPresence, state_from_json, state_to_json
 from lumen.language.fleet import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
@@ -29,6 +29,7 @@ class SimulatedRobot:
     skew: float = 0.0
     told: list[str] = field(default_factory=list)
     fails: frozenset[str] = frozenset()
+    refuses: frozenset[str] = frozenset()
     falls: int = 0
 
     def hear(self, order: DesiredState) -> None:
@@ -54,11 +55,15 @@ class SimulatedRobot:
             self.state, self.taken = PROBATION, now
 
     def presence(self, now: float) -> RobotPresence:
+        trying = self.followed.trying
+        verdict = REFUSED if trying in self.refuses else SAME
+        tried = {"bundle": trying, "verdict": verdict, "played": 0, "same": 0, "why": "a:1: b"} if trying else {}
         at = self.followed
         counts = {"hours": 0.1 + (now - self.taken) / 3600.0, "falls": float(self.falls)}
         return RobotPresence(
             self.name, self.bundle, self.state, self.about, "", "", at.centre, at.term, at.version,
             counts, {"hours": 10.0, "falls": 0.0}, now + self.skew,
+            tried=tried,
         )  # fmt: skip
 
 
@@ -84,7 +89,11 @@ class World:
         found = []
         for house, row in self.fleet.houses.items():
             wanted = {r: w for r in row.robots if (w := self.centre.wanted.get(f"{house}/{r}"))}
-            found.append(DesiredState(self.centre.centre, self.centre.term, self.centre.version, house, wanted))
+            found.append(
+                DesiredState(
+                    self.centre.centre, self.centre.term, self.centre.version, house, wanted, self.centre.trying
+                )
+            )
         return found
 
     def delay(self) -> float:

@@ -33,6 +33,7 @@ WHATS: Mapping[str, str] = {
     "check": "say whether a RabbitMQ has what it needs",
     "serve": "be the centre",
     "publish": "send a project to the centre as a bundle",
+    "try": "have all robots try a bundle, which none of them takes",
     "rollout": "let the robots have a bundle, step by step",
     "log": "say what happened: incidents, and what was counted with each bundle",
     "status": "say how houses, robots and the rollout are",
@@ -56,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "name",
         nargs="?",
         metavar="NAME",
-        help="rollout, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
+        help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
     )
     add("--project", metavar="DIR", help="the folder of fleet.yaml; default: this one")
     add("--bus", metavar="URL", help="the broker; default: LUMEN_BUS, then the one in fleet.yaml")
@@ -65,6 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--then", metavar="TO", action="append", default=[], help="rollout: the next step; may be said again")
     add("--pause", metavar="30min", help="rollout: how long each step is watched")
     add("--abort-if", metavar="TEXT", help="rollout: send all back where this holds, as in fleet.yaml")
+    add("--try", dest="try_first", action="store_true", help="rollout: all robots try it before the first one takes it")
     add("--against", metavar="HASH", help="diff: the bundle to compare with; default: the one that was proved last")
     add("-o", "--output", metavar="DIR", type=Path, default=Path("brokers"), help="init: where to (default: brokers)")
     add(
@@ -93,6 +95,8 @@ def run(options: argparse.Namespace) -> int:
             answer = _publish(options, root)
         case "rollout":
             answer = _asked(options, root, {"bundle": _named(options), **_plan(options)})
+        case "try":
+            answer = _asked(options, root, {"bundle": _named(options)})
         case "diff":
             return _diff(options, root)
         case "pin" | "unpin":
@@ -191,6 +195,7 @@ def _plan(options: argparse.Namespace) -> dict[str, Any]:
         if pause is None:
             raise UsageError(f"--pause takes a duration such as 30min or 90s, not `{options.pause}`")
         plan["pause"] = pause
+    plan |= {"try": True} if options.try_first else {}
     return plan | ({"abort-if": options.abort_if} if options.abort_if is not None else {})
 
 

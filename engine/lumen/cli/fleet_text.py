@@ -12,13 +12,14 @@ SHORT = 12
 def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
     """The rollout, each robot, and what is wrong."""
     yield from _rollout(found["rollout"])
+    yield from _trial(found["trying"])
     rows = [
         [
             f"{row['house']}/{row['name']}",
             row["bundle"][:SHORT] or "-",
             f"{row['state']}{', pinned' if row['pinned'] else ''}",
             row["since"] or "-",
-            row["trouble"],
+            row["trouble"] or _outcome(row.get("tried"), found["trying"]),
         ]
         for row in found["robots"]
     ]
@@ -30,6 +31,12 @@ def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
             yield f"!! {found[name]}"
     if found["centre"]["overruled"]:
         yield f"!! this centre orders nothing: {found['centre']['overruled']}"
+
+
+def _trial(trying: Mapping[str, Any] | None) -> Iterator[str]:
+    if trying is not None:
+        counts = ", ".join(f"{name}: {count}" for name, count in trying.items() if name != "bundle")
+        yield f"all robots try {trying['bundle'][:SHORT]} ({counts})"
 
 
 def log_lines(found: Mapping[str, Any]) -> Iterator[str]:
@@ -48,6 +55,13 @@ def log_lines(found: Mapping[str, Any]) -> Iterator[str]:
         yield table(("bundle", "robots", "hours", *names), rows)
 
 
+def _outcome(tried: Mapping[str, Any] | None, trying: Mapping[str, Any] | None) -> str:
+    if not tried or not trying or tried["bundle"] != trying["bundle"]:
+        return ""
+    why = f": {tried['why']}" if tried["why"] else ""
+    return f"tried: {tried['verdict']}, {tried['same']} of {tried['played']} visits as they were{why}"
+
+
 def _rollout(rollout: Mapping[str, Any] | None) -> Iterator[str]:
     if rollout is None:
         yield "no rollout"
@@ -55,7 +69,7 @@ def _rollout(rollout: Mapping[str, Any] | None) -> Iterator[str]:
     reason = f": {rollout['reason']}" if rollout["reason"] else ""
     yield f"rollout of {rollout['bundle'][:SHORT]} is {rollout['state']}{reason}"
     for i, step in enumerate(rollout["steps"]):
-        now = i == rollout["step"] and not step["done"]
+        now = i == rollout["step"] and not step["done"] and rollout["tried"]
         watched = f", watched {rollout['watched'] / 60:.0f} of {rollout['pause'] / 60:.0f} min" if now else ""
         mark = "ok" if step["done"] else "->" if now else "  "
         yield f"{mark} {step['to']}: at most {step['most']} robots{watched}"

@@ -54,11 +54,15 @@ class StepTarget:
 
 @dataclass(frozen=True, slots=True)
 class RolloutPlan:
-    """Its steps, how long each is watched [s], and what sends all back; `abort_if` is empty where nothing does."""
+    """Its steps, how long each is watched [s], and what sends all back; `abort_if` is empty where nothing does.
+
+    With `try_first` all robots try the bundle before the first one takes it.
+    """
 
     steps: tuple[StepTarget, ...] = (StepTarget(share=1.0),)
     pause: float = DEFAULT_PAUSE
     abort_if: str = ""
+    try_first: bool = False
 
 
 @dataclass(frozen=True, slots=True)

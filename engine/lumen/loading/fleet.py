@@ -61,7 +61,10 @@ def _rollout(data: Mapping[str, Any], report: DocumentReport) -> RolloutPlan:
     steps = tuple(row for row in rows if row is not None)
     pause = duration(data, "pause", report, where)
     return RolloutPlan(
-        steps or RolloutPlan().steps, DEFAULT_PAUSE if pause is None else pause, str(data.get("abort-if", ""))
+        steps or RolloutPlan().steps,
+        DEFAULT_PAUSE if pause is None else pause,
+        str(data.get("abort-if", "")),
+        bool(data.get("try", False)),
     )
 
 

@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from lumen.app.fleet.bundle import BadBundleError, BundleParts
-from lumen.app.fleet.house_keys import at_home
+from lumen.app.fleet.bundle_trial import BundleTrial, FileTrier, refusal
+from lumen.app.fleet.house_keys import as_started, fitted
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.signing import ORDER, verified
@@ -29,26 +30,18 @@ from lumen.interpreters.fleet.presence import (
     WAITING,
     RobotPresence,
 )
-from lumen.loading.files import belongs, fingerprint
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.files import fingerprint
 
 MOST_TRIES = 2
 """How often a process may end while a bundle is on probation, until the robot goes without it."""
 
 
-class FileTaker(Protocol):
+class FileTaker(FileTrier, Protocol):
     """What takes files for a behaviour that runs."""
-
-    @property
-    def running(self) -> str:
-        """The hash of the files that run."""
 
     @property
     def on_probation(self) -> bool:
         """Whether they have not proved themselves yet."""
-
-    def files(self, hash: str) -> Mapping[str, bytes] | None:
-        """The files of that hash, where they ran here."""
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         """Have files taken between two visits; `answer` hears each verdict."""
@@ -86,6 +79,7 @@ class FleetAgent:
         self._asked = memory.order
         self.played = 0, 0
         self._parts = BundleParts()
+        self.trial = BundleTrial(taker, folder, tell)
         if memory.trying:
             memory.tries += 1
             self._save(memory)
@@ -117,19 +111,20 @@ class FleetAgent:
 
     def bundle(self, body: Any) -> None:
         """A message brings a bundle, which may be the one that is wanted."""
-        if not self.wants or not isinstance(body, Mapping) or body.get("hash") != self.wants:
+        wants = self.wants or self.trial.wants
+        if not wants or not isinstance(body, Mapping) or body.get("hash") != wants:
             return
         try:
-            files = self._parts.take(body, self.wants, self._key)
+            files = self._parts.take(body, wants, self._key)
         except BadBundleError as error:
             self._refuse(str(error))
             return
         if files is None:
             return
         if why := self._folder.keep(files):
-            self._refuse(f"bundle {self.wants[:12]} can't be kept: {why}")
+            self._refuse(f"bundle {wants[:12]} can't be kept: {why}")
             return
-        self.wants = ""
+        self.wants = self.trial.wants = ""
 
     def tick(self) -> None:
         """Go on towards what is wanted."""
@@ -140,6 +135,7 @@ class FleetAgent:
             self._proved()
         if self.state in (CHECKING, WAITING, PROBATION):
             return
+        self.trial.tick(memory.followed.trying, self.running)
         back = wanted.startswith(NOT) and self.running == wanted[1:]
         goal = (memory.before if back else "") if wanted.startswith(NOT) else wanted
         self._goal = goal
@@ -173,8 +169,9 @@ class FleetAgent:
         trouble = (self.trouble or next(iter(self._told), ""))[:MAX_TEXT]
         about = self._goal or self.running
         return RobotPresence(
-            name, self.running, self.state, about, trouble, self.wants, at.centre, at.term, at.version,
-            dict(memory.now), dict(memory.past), time.time(), memory.since, *self.played,
+            name, self.running, self.state, about, trouble, self.wants or self.trial.wants,
+            at.centre, at.term, at.version, dict(memory.now), dict(memory.past), time.time(), memory.since,
+            *self.played, self.trial.said,
         )  # fmt: skip
 
     def _go(self, goal: str, *, own: bool) -> None:
@@ -188,12 +185,9 @@ class FleetAgent:
         if not kept:
             self.state, self.wants = FETCHING, goal
             return
-        files = dict(kept)
+        here = self._taker.files(self._taker.running)
         try:
-            here = self._taker.files(self._taker.running)
-            files |= {path: mark for path, mark in (here or {}).items() if not belongs(path)}  # as --model was said
-            if not own:
-                files[MAIN_FILE] = at_home(files.get(MAIN_FILE, b""), (here or {}).get(MAIN_FILE, b""))
+            files = as_started(kept, here or {}) if own else fitted(kept, here or {})
         except UsageError as error:
             self._fail(REFUSED, str(error))
             return
@@ -224,7 +218,7 @@ class FleetAgent:
             case {"verdict": "unchanged"}:
                 self.state = PROVED
             case {"verdict": str(said)} if said != "judging":
-                self._fail(REFUSED, _reason(verdict))
+                self._fail(REFUSED, refusal(verdict))
 
     def _played(self, verdict: Mapping[str, Any]) -> None:
         match verdict.get("visits"):
@@ -238,9 +232,8 @@ class FleetAgent:
         self.state = PROVED
         self._save(memory)
         self._install()
-        wanted = memory.followed.wanted
-        kept = {memory.before, self._offered, self._goal, *memory.names.values(), wanted.removeprefix(NOT)}
-        self._folder.prune(kept)
+        ordered = memory.followed.wanted.removeprefix(NOT), memory.followed.trying
+        self._folder.prune({memory.before, self._offered, self._goal, *memory.names.values(), *ordered})
         self._tell(f"bundle {self._goal[:12]} has proved itself")
 
     def _install(self) -> None:
@@ -267,12 +260,3 @@ class FleetAgent:
             self._told.add(why)
             self._tell(why)
             self._incident("refused", why[:MAX_TEXT])
-
-
-def _reason(verdict: Mapping[str, Any]) -> str:
-    """Why files were refused: where lint found an error, else the reason. Recorded visits may name people."""
-    found = [row for row in verdict.get("diagnostics", ()) if row.get("severity") == "error"]
-    if found:
-        row = found[0]
-        return f"{row.get('file')}:{row.get('line')}: {row.get('code')}"
-    return str(verdict.get("reason") or verdict["verdict"])

@@ -149,7 +149,8 @@ class Centre:
         for name, house in self.fleet.houses.items():
             rows = ((robot, self.state.wanted.get(f"{name}/{robot}", "")) for robot in house.robots)
             wanted = {robot: want for robot, want in rows if want}
-            text = DesiredState(self.state.centre, self.state.term, self.state.version, name, wanted).text()
+            state = self.state
+            text = DesiredState(state.centre, state.term, state.version, name, wanted, state.trying).text()
             self._publish(
                 desired_key(name), {"order": text, "signature": self._signer.sign(ORDER, text.encode())}, 60.0
             )

@@ -18,7 +18,7 @@ from lumen.language.fleet import RolloutPlan, step_target
 from lumen.ports import Bus, Message
 
 MAX_STEPS = 20
-ASKED = ("status", "publish", "rollout", "pause", "go", "abort", "pin", "unpin", "take-over", "files")
+ASKED = ("status", "publish", "rollout", "try", "pause", "go", "abort", "pin", "unpin", "take-over", "files")
 
 
 class CentreDesk:
@@ -60,6 +60,12 @@ class CentreDesk:
                 hash = self._named(name)
                 begun = begin(state, centre.fleet, hash, self._plan(body), now)
                 centre.change(begun, f"{by} begins a rollout of {hash[:12]}")
+                return {"bundle": hash}
+            case {"ask": "try", "bundle": str(name)}:
+                if state.rollout and state.rollout.under_way:
+                    raise UsageError("a rollout is under way: abort it, or let it end")
+                hash = self._named(name)
+                centre.change(state.attempt(hash), f"{by} has all robots try {hash[:12]}")
                 return {"bundle": hash}
             case {"ask": "pause"}:
                 centre.change(decide(state, PAUSED, f"by {by}"), f"{by} pauses the rollout")
@@ -111,6 +117,7 @@ class CentreDesk:
             steps,
             float(pause) if isinstance(pause, int | float) and 0.0 <= pause < 1e9 else usual.pause,
             condition if isinstance(condition, str) else usual.abort_if,
+            bool(said.get("try", usual.try_first)),
         )
 
     def _pin(self, robot: str, by: str, *, on: bool) -> None:

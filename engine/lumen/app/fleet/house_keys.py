@@ -1,8 +1,11 @@
 """lumen.yaml of a bundle, as it is in a house: what is the house's own stays."""
 
 import re
+from collections.abc import Mapping
 
 from lumen.errors import UsageError
+from lumen.loading.files import belongs
+from lumen.loading.packaged import MAIN_FILE
 
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules", "alerts",
@@ -12,6 +15,16 @@ HOUSE_KEYS = (
 
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 _KEY = re.compile(r"""["']?([\w-]+)["']?\s*:""")
+
+
+def fitted(bundle: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
+    """The files of a bundle for a house where the files `here` run. Raises UsageError."""
+    return {**as_started(bundle, here), MAIN_FILE: at_home(bundle.get(MAIN_FILE, b""), here.get(MAIN_FILE, b""))}
+
+
+def as_started(files: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Files with what was said when those `here` were started, as with --model."""
+    return {**files, **{path: mark for path, mark in here.items() if not belongs(path)}}
 
 
 def at_home(shared: bytes, own: bytes) -> bytes:

@@ -5,8 +5,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 from lumen.interpreters.fleet.counting import rates
-from lumen.interpreters.fleet.rollout import FRESH, allowed
+from lumen.interpreters.fleet.rollout import allowed
 from lumen.interpreters.fleet.state import CentreState, HeardPresence, Rollout
+from lumen.interpreters.fleet.trying import FRESH, counted
 from lumen.language.fleet import Fleet
 
 MOST_SKEW = 30.0
@@ -33,6 +34,7 @@ def overview(fleet: Fleet, state: CentreState, heard: Mapping[str, HeardPresence
         "rollout": rollout,
         "centre": {"name": state.centre, "term": state.term, "version": state.version, "overruled": state.overruled},
         "proved": list(state.proved),
+        "trying": {"bundle": state.trying, **counted(state.trying, heard)} if state.trying else None,
     }
 
 
@@ -58,6 +60,7 @@ def _robot(name: str, state: CentreState, heard: HeardPresence | None, fleet: Fl
         "heard": _iso(heard.at),
         "played": said.played,
         "same": said.same,
+        "tried": dict(said.tried),
         "measures": rates([said.now], fleet.measures),
         "before": rates([said.before], fleet.measures),
     }
@@ -77,6 +80,7 @@ def _rollout(rollout: Rollout, state: CentreState, fleet: Fleet) -> dict[str, An
         "state": rollout.state,
         "reason": rollout.reason,
         "step": rollout.at,
+        "tried": rollout.tried or not rollout.plan.try_first,
         "steps": steps,
         "assigned": list(rollout.assigned),
         "exposed": len(state.exposed),

@@ -60,6 +60,9 @@ class ReloadTaker:
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
         self._reloader.offer(files, answer)
 
+    def attempt(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        self._reloader.offer(files, answer, dry=True)
+
     def install(self, files: Mapping[str, bytes]) -> None:
         project, hash = self._behavior.loop.project, fingerprint(files)
         if project.told_apart and not all_have(self._root, hash, project.robots):

@@ -132,11 +132,15 @@ class Reloader:
         """Whether the files that run have not stood their probation yet."""
         return self._queue.rollback_guard.left(self._behavior.loop.clock.now()) is not None
 
-    def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
-        """Have files taken that do not lie in the project's folder, between two visits; `answer` hears each verdict."""
+    def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None], *, dry: bool = False) -> None:
+        """Have files taken that do not lie in the project's folder, between two visits; `answer` hears each verdict.
+
+        `dry` ones are only judged: nothing of what runs or waits changes.
+        """
+        verb = "dry-run" if dry else "reload"
         self._watcher.give(
             as_robot(files, self._running.one_of_several),
-            ReloadRequest("reload", now=False, answer=answer, between=True),
+            ReloadRequest(verb, now=False, answer=answer, between=True),
         )
 
     def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
@@ -224,8 +228,12 @@ class Reloader:
         order = validation.saved.asked if isinstance(validation.saved.asked, ReloadRequest) else None
         who, orders, queue = "command" if order else "files", [order] if order else [], self._queue
         if not validation.good or validation.project is None:
+            report = self._verdict("refused", who, validation, validation.fault)
+            if order and order.verb == "dry-run":
+                order.answer({**report.to_json(), "lines": list(report.lines())})
+                return
             queue.drop()
-            self._notifier.tell(self._verdict("refused", who, validation, validation.fault), orders)
+            self._notifier.tell(report, orders)
             return
         project = live(self._running, validation.project)
         same = validation.running is self._running

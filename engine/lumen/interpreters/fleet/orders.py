@@ -13,7 +13,8 @@ NOT = "!"
 class DesiredState:
     """What each robot of a house is to run, by its name: a hash, or `!HASH`.
 
-    A `centre` counts its orders by `version`. Whoever takes over from another centre begins a higher `term`.
+    A `centre` counts its orders by `version`. Whoever takes over from another centre begins a higher `term`. `trying`
+    is a bundle that each robot is to try and not to take, empty where there is none.
     """
 
     centre: str
@@ -21,6 +22,7 @@ class DesiredState:
     version: int
     house: str
     robots: Mapping[str, str] = field(default_factory=dict)
+    trying: str = ""
 
     def text(self) -> str:
         """As JSON text, which is what is signed."""
@@ -39,18 +41,22 @@ def desired_from(text: str) -> DesiredState | None:
             "centre": str(centre), "term": int(term), "version": int(version), "house": str(house),
             "robots": dict(robots),
         } if all(isinstance(want, str) for want in robots.values()):  # fmt: skip
-            return DesiredState(centre, term, version, house, robots)
+            return DesiredState(centre, term, version, house, robots, str(data.get("trying", "")))
     return None
 
 
 @dataclass(frozen=True, slots=True)
 class FollowedOrder:
-    """The last order that a robot heeded; `wanted` is what it is to run, empty where it may run what it does."""
+    """The last order that a robot heeded; `wanted` is what it is to run, empty where it may run what it does.
+
+    `trying` is the bundle that it is to try.
+    """
 
     centre: str = ""
     term: int = 0
     version: int = 0
     wanted: str = ""
+    trying: str = ""
 
     def to_json(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in self.__slots__}
@@ -63,6 +69,7 @@ def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[Fo
     """
     wanted = desired.robots.get(robot, "")
     newer = replace(followed, centre=desired.centre, term=desired.term, version=desired.version, wanted=wanted)
+    newer = replace(newer, trying=desired.trying)
     if not followed.centre or desired.term > followed.term:
         return newer, ""
     if desired.term < followed.term:

@@ -13,6 +13,10 @@ PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN = (
 STATES = (PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN)
 """How far a robot is with the bundle that it is to have; `edited`: somebody changed its files by hand."""
 
+SAME, DIFFER = "same", "differ"
+TRIED = (SAME, DIFFER, REFUSED)
+"""What comes of a bundle that a robot tries: its last visits come out as they were, some do not, or it is refused."""
+
 HOURS = "hours"
 """The measure that is always counted: how long a bundle has run [h]."""
 
@@ -22,6 +26,8 @@ class RobotPresence:
     """`bundle` runs; with the bundle `about` the robot is as far as `state` says, `trouble` says why no farther.
 
     `centre`, `term` and `version` are of the order that it follows. `wants` is the hash of a bundle that it lacks.
+    `tried` is what came of a bundle that was tried and not taken, empty where none was: `bundle`, `verdict` (one of
+    `TRIED`), how many visits were `played` and how many came out the `same`, and `why` it is refused.
     `played` of its last visits were played with the bundle, and `same` of them came out as they were.
     `now` and `before` are counts since `bundle` runs, and of the bundle before. `clock` is what its clock says [s since
     1970].
@@ -42,6 +48,7 @@ class RobotPresence:
     since: float = 0.0
     played: int = 0
     same: int = 0
+    tried: Mapping[str, Any] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in self.__slots__ if name != "robot"}
@@ -61,8 +68,16 @@ def presence_from(robot: str, body: Any) -> RobotPresence | None:
         and all(_number(time) for time in times.values())
         and all(_measures(each) for each in measures.values())
         and texts["state"] in STATES
+        and _tried(tried := body.get("tried", {}))
     )
-    return RobotPresence(robot, **texts, **counts, **times, **measures) if sound else None
+    return RobotPresence(robot, **texts, **counts, **times, **measures, tried=dict(tried)) if sound else None
+
+
+def _tried(data: Any) -> bool:
+    match data:
+        case {"bundle": str(bundle), "verdict": verdict, "played": int(played), "same": int(same), "why": str(why)}:
+            return verdict in TRIED and max(len(bundle), len(why)) <= MAX_TEXT and 0 <= same <= played
+    return bool(data == {})
 
 
 def measures_from(data: Any) -> dict[str, float] | None:

@@ -4,25 +4,22 @@ What holds at every moment, whatever is late, lost, killed or doubled: no more r
 proved than the step at hand allows. So a robot that was told to have it counts until it was heard to be back.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import zip_longest
 
 from lumen.interpreters.fleet.conditions import holds
 from lumen.interpreters.fleet.counting import rates
 from lumen.interpreters.fleet.orders import NOT
-from lumen.interpreters.fleet.presence import PROVED, REFUSED, ROLLED_BACK, RobotPresence
-from lumen.interpreters.fleet.state import ABORTED, FINISHED, GOING, PERSON, CentreState, HeardPresence, Rollout
+from lumen.interpreters.fleet.presence import PROVED, REFUSED, ROLLED_BACK
+from lumen.interpreters.fleet.state import ABORTED, FINISHED, GOING, PERSON, CentreState, Rollout
+from lumen.interpreters.fleet.trying import HeardRobots, begin_steps, fresh, tried
 from lumen.language.fleet import Fleet, RolloutPlan, StepTarget
 
-FRESH = 60.0
-"""For how long a robot counts as there after it was heard [s]."""
 LONGEST_LOOK = 30.0
 """How much time one look may count [s]: a clock that is set, or a centre that was dead, hurries nothing."""
 PATIENCE = 900.0
 """For how long beyond twice its pause a step may fail to be proved before a person is asked [s]."""
-
-HeardRobots = Mapping[str, HeardPresence]
 
 
 def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
@@ -36,6 +33,8 @@ def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> Ce
         return abort(state, why)
     if rollout.state != GOING:
         return state
+    if rollout.plan.try_first and not rollout.tried:
+        return tried(state, rollout, fleet, heard, now, passed)
     state = _assigned(state, rollout, fleet, heard, now)
     assert state.rollout
     return _judged(state, state.rollout, fleet, heard, now, passed)
@@ -50,6 +49,8 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
     for target in plan.steps:
         if not fleet.members(target):
             raise ValueError(f"no robot belongs to the step `{target}`")
+    if plan.try_first:
+        state = state.attempt(bundle)
     return replace(state, rollout=Rollout(bundle, plan, begun=now, version=state.version))
 
 
@@ -59,7 +60,7 @@ def abort(state: CentreState, why: str) -> CentreState:
     if rollout is None or not rollout.under_way:
         return state
     other = f"{NOT}{rollout.bundle}"
-    state = state.want({robot: rollout.prior.get(robot, other) for robot in rollout.assigned})
+    state = state.want({robot: rollout.prior.get(robot, other) for robot in rollout.assigned}).attempt("")
     exposed = {
         robot: (bundle, version or state.version) if bundle == rollout.bundle else (bundle, version)
         for robot, (bundle, version) in state.exposed.items()
@@ -72,6 +73,8 @@ def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         raise ValueError("no rollout is under way")
+    if rollout.plan.try_first and not rollout.tried and rollout.state == PERSON and decision == GOING:
+        return begin_steps(state, replace(rollout, reason=why))
     settled = rollout.state == PERSON and decision == GOING
     if settled:  # what nobody knew a person has said: this step is good
         return _onward(state, replace(rollout, state=GOING, reason=why))
@@ -95,12 +98,6 @@ def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
 def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
     """How many robots may run the bundle in that step: as many as this step or one before it has."""
     return max(_size(target, fleet) for target in plan.steps[: at + 1])
-
-
-def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
-    """What a robot said of itself where that was just now, else None."""
-    found = heard.get(robot)
-    return found.presence if found and abs(now - found.at) <= FRESH else None
 
 
 def _size(target: StepTarget, fleet: Fleet) -> int:
@@ -229,4 +226,5 @@ def _onward(state: CentreState, rollout: Rollout) -> CentreState:
     if rollout.at + 1 < len(rollout.plan.steps):
         return replace(state, rollout=replace(rollout, at=rollout.at + 1, watched=0.0, waited=0.0))
     proved = tuple(dict.fromkeys((*state.proved, rollout.bundle)))
-    return _released(replace(state, proved=proved, rollout=replace(rollout, state=FINISHED)), {})
+    state = replace(state, proved=proved, rollout=replace(rollout, state=FINISHED))
+    return _released(state.attempt(""), {})

@@ -17,7 +17,7 @@ class Rollout:
 
     `watched` is for how long most of them have run it [s], `waited` for how long this step has been under way, both
     counted while the centre lived. `reason` says why it stands as it does. `prior` is what was wanted of the assigned
-    before, `version` that of the orders before it.
+    before, `version` that of the orders before it. `tried` is whether the robots were waited for that try it first.
     """
 
     bundle: str
@@ -31,6 +31,7 @@ class Rollout:
     begun: float = 0.0
     version: int = 0
     prior: Mapping[str, str] = field(default_factory=dict)
+    tried: bool = False
 
     @property
     def under_way(self) -> bool:
@@ -43,7 +44,8 @@ class CentreState:
 
     `wanted` is what each robot is to run (a hash, or `!HASH`), by HOUSE/ROBOT. `exposed` are the robots that may run a
     bundle that is not proved, with the bundle and the version that took it back, 0 while none did. `proved` are bundles
-    whose rollout was finished. `pinned` robots take part in none; `looked` is when it was looked last [s].
+    whose rollout was finished. `pinned` robots take part in none; `looked` is when it was looked last [s]. `trying` is
+    the bundle that all are to try.
     """
 
     centre: str
@@ -56,6 +58,11 @@ class CentreState:
     rollout: Rollout | None = None
     looked: float = 0.0
     overruled: str = ""
+    trying: str = ""
+
+    def attempt(self, bundle: str) -> "CentreState":
+        """With a bundle that all robots try and do not take, or (empty) none any more: another version."""
+        return self if bundle == self.trying else replace(self, trying=bundle, version=self.version + 1)
 
     def want(self, wanted: Mapping[str, str]) -> "CentreState":
         """With something else wanted of some robots: another version."""

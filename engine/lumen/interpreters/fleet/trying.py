@@ -1,0 +1,75 @@
+"""Before the first robot takes a bundle all of them try it: linted for their bodies, played on their own last visits.
+
+No visit leaves its house: what comes back is whether they came out as they were.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from lumen.interpreters.fleet.presence import REFUSED, TRIED, RobotPresence
+from lumen.interpreters.fleet.state import GOING, PERSON, CentreState, HeardPresence, Rollout
+from lumen.language.fleet import Fleet
+
+FRESH = 60.0
+"""For how long a robot counts as there after it was heard [s]."""
+TRYING = 600.0
+"""How long robots that are there may try a bundle, before a person is asked [s]."""
+
+HeardRobots = Mapping[str, HeardPresence]
+
+
+def tried(
+    state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float, passed: float
+) -> CentreState:
+    """The state a moment later: the first step begins once all that are there have tried the bundle, and none refuses.
+
+    Where one refuses it, or they take too long, a person decides. Other visits than before are no reason: they may be
+    what the bundle is for.
+    """
+    there = _there(state, rollout, fleet, heard, now)
+    came = outcomes(rollout.bundle, there)
+    rollout = replace(rollout, waited=rollout.waited + passed)
+    missing = [robot for robot in there if robot not in came]
+    if there and not missing:
+        if refused := [f"{robot} ({row['why']})" for robot, row in came.items() if row["verdict"] == REFUSED]:
+            return _ask(state, rollout, f"{len(refused)} of {len(came)} would refuse it: {', '.join(refused[:5])}")
+        return begin_steps(state, rollout)
+    if rollout.waited > TRYING:
+        whom = ", ".join(missing[:5]) or "nobody is there"
+        return _ask(state, rollout, f"not tried by all after {rollout.waited / 60.0:.0f} min: {whom}")
+    return replace(state, rollout=rollout)
+
+
+def begin_steps(state: CentreState, rollout: Rollout) -> CentreState:
+    """What was tried goes on with its first step."""
+    return replace(state, rollout=replace(rollout, state=GOING, tried=True, waited=0.0, version=state.version))
+
+
+def outcomes(bundle: str, there: Mapping[str, RobotPresence]) -> dict[str, Mapping[str, object]]:
+    """What came of it for each robot that has tried that bundle."""
+    return {robot: said.tried for robot, said in there.items() if said.tried.get("bundle") == bundle}
+
+
+def counted(bundle: str, heard: HeardRobots) -> dict[str, int]:
+    """How many robots have come to which verdict."""
+    rows = outcomes(bundle, {robot: row.presence for robot, row in heard.items()}).values()
+    return {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in TRIED}
+
+
+def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
+    """What a robot said of itself where that was just now, else None."""
+    found = heard.get(robot)
+    return found.presence if found and abs(now - found.at) <= FRESH else None
+
+
+def _there(
+    state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float
+) -> dict[str, RobotPresence]:
+    """Who may come to have the bundle, and was heard just now."""
+    wanted = dict.fromkeys(robot for target in rollout.plan.steps for robot in fleet.members(target))
+    found = ((robot, fresh(heard, robot, now)) for robot in wanted if robot not in state.pinned)
+    return {robot: said for robot, said in found if said}
+
+
+def _ask(state: CentreState, rollout: Rollout, why: str) -> CentreState:
+    return replace(state, rollout=replace(rollout, state=PERSON, reason=why))
