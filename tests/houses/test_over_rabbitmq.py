@@ -27,7 +27,7 @@ class Hall:
         self.root, self.url, self._capsys = root, url, capsys
         self.running: list[Guarded[bytes]] = []
 
-    def begin(self, *flags: str, url: str = "") -> tuple[Guarded[bytes], Path]:
+    def begin(self, *flags: str, url: str = "", robot: str = "recording") -> tuple[Guarded[bytes], Path]:
         """A process of `lumen run`, and the file with what it says."""
         told = self.root / f"told-{len(self.running)}.txt"
         line = [

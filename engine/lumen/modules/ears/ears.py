@@ -52,6 +52,6 @@ class Ears(Module):
 
 
 def _sphinx() -> Recogniser:
-    from lumen.modules.ears.sphinx import Sphinx  # nobody who brings another needs it
+    from lumen.modules.ears.shared_sphinx import SharedSphinx  # nobody who brings another needs it
 
-    return Sphinx()
+    return SharedSphinx()

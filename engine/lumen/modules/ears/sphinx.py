@@ -70,7 +70,7 @@ class Sphinx:
 
     def _prepare(self, sentences: Sequence[Sequence[str]]) -> None:
         """Make the model of what is expected now."""
-        if sentences is self._ready or not sentences:
+        if not sentences or sentences == self._ready:
             return
         self._common = self._common or self._commonest()
         for word in sorted({word for sentence in sentences for word in sentence}):
