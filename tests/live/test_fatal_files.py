@@ -14,7 +14,7 @@ from lumen.app.recovery.startup import startup_project
 from lumen.app.reload import validation_worker
 from lumen.app.reload.validation_worker import ValidationWorker, load_apart
 from lumen.errors import FatalFilesError
-from lumen.loading import files as project_files
+from lumen.loading import kept_contents
 from lumen.loading.files import read_files
 from tests.live.shows import Live
 
@@ -99,7 +99,7 @@ def test_a_start_on_them_is_refused_or_takes_the_last_good_ones(copy: Path, read
     assert startup_project(copy, run_directory, last_good=True, warn=told.append).hash == good.hash
     assert "THE FILES END THE PROCESS THAT READS THEM" in told[-1]
     [news] = run_directory.news
-    assert (news.verdict, run_directory.refused) == ("refused", project_files.fingerprint(read_files(copy)))
+    assert (news.verdict, run_directory.refused) == ("refused", kept_contents.fingerprint(read_files(copy)))
     assert "these files end the process" in news.reason
     run_directory.close(forget=False)
 
@@ -114,13 +114,13 @@ def test_where_no_process_can_be_begun_nothing_is_read_here(
 
 
 def test_who_reaches_an_exhibition_reads_no_file_but_the_main_one(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    usual, read = project_files.read_regular, list[str]()
+    usual, read = kept_contents.read_regular, list[str]()
 
     def noted(path: Path, most: int, *, follow: bool = True) -> bytes:
         read.append(path.name)
         return usual(path, most, follow=follow)
 
-    monkeypatch.setattr(project_files, "read_regular", noted)
+    monkeypatch.setattr(kept_contents, "read_regular", noted)
     assert reaching._keys(copy, None, "") == ("avatar.NAO.command", "avatar.NAO.stop")
     assert set(read) == {"lumen.yaml"}
     (copy / "lumen.yaml").write_text("[" * 60_000)

@@ -92,9 +92,8 @@ def test_files_with_errors_are_not_kept(copy: Path, cache: Path) -> None:
     assert not cache.exists()
 
 
-def test_the_oldest_go(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
-    monkeypatch.setattr(cache_folder, "MAX_FILES", 2)
-    kept = cache_folder.CacheFolder("projects")
+def test_the_oldest_go(cache: Path) -> None:
+    kept = cache_folder.CacheFolder("projects", 2)
     for number in range(4):
         kept.write(str(number), b"")
         os.utime(cache / str(number), (number, number))
