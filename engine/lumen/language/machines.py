@@ -42,6 +42,7 @@ class Transition:
     targetless transition. `reenter` is SCXML's `type="external"`. Where `exact`, the event's name has to be the whole
     descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`. Where it waits for
     somebody to `approve` it, the event waits: no step knows of that.
+    An `offer` is for a language model, too, which may raise its event.
     """
 
     source: str
@@ -55,6 +56,7 @@ class Transition:
     where: NodePath = field(default=(), compare=False)
     schedule: Schedule | None = None
     approve: Approval | None = None
+    offer: bool = False
 
     @property
     def timed(self) -> bool:

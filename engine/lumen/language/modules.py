@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-MEMORY, EYES, EARS, VOICE, SOCIAL, SHOW = MODULES = ("memory", "eyes", "ears", "voice", "social", "show")
-
-ANSWERS = "answers"
-"""The module that finds answers which no passage has."""
+MEMORY, EYES, EARS, VOICE, SOCIAL, SHOW, ANSWERS = MODULES = (
+    "memory", "eyes", "ears", "voice", "social", "show", "answers",
+)  # fmt: skip
 
 VISITOR_KEY = "visitor"
 """The key of a behaviour's context that holds the visitor's name, where the memory's options do not say another."""

@@ -134,7 +134,16 @@ class TransitionReader:
             return None
         paths = tuple(target.path for target in targets)
         approve = self._approval(row["approve"], (*where, "approve"), event) if "approve" in row else None
-        return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False), approve=approve)
+        return Transition(
+            entry.path,
+            event,
+            paths,
+            guard,
+            actions,
+            row.get("reenter", False),
+            approve=approve,
+            offer=row.get("offer", False),
+        )
 
     def _approval(self, data: Any, where: NodePath, event: str) -> Approval | None:
         """What has to be approved, None (and reported) where nothing can wait."""

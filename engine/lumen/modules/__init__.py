@@ -7,6 +7,7 @@ Each is a folder or a file, started by `lumen run` or as a process of its own:
     ears/       recordings that become texts, with PocketSphinx
     voice/      texts that become sound, with espeak-ng
     show/       lamps, screens and sound desks, which speak MQTT, OSC or DMX
+    answers/    a language model on a short leash, asked what no passage answers
     social.py   a stand-in for social media, which writes the posts into a file
 
 and what they share:

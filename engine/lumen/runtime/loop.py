@@ -9,6 +9,7 @@ from lumen.interpreters.explaining.pressing import pressed
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
 from lumen.interpreters.statechart import Step, due
+from lumen.interpreters.statechart.offers import offers
 from lumen.interpreters.wall_clock import local_time, moment
 from lumen.language.approvals import Autonomy
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
@@ -71,6 +72,7 @@ class BehaviorLoop:
         self.regulation = Regulation(project, bus)
         self.performer = Performer(robot, bus, self._track)
         self.performer.questions.today = self._today
+        self.performer.questions.offers = lambda: offers(self.project.machine, self.runtime.snapshot)
         self._cues = MotionCues()
         self._life = LifeDirector(robot)
         self._events: list[Event] = []
@@ -226,6 +228,7 @@ class BehaviorLoop:
         self._perform(commands, now)
 
     def _stepped(self, step: Step) -> None:
+        self.performer.questions.stepped(step)
         for observer in self.observers:
             observer.stepped(step)
 

@@ -2,13 +2,17 @@
 
 import logging
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import date
+from math import inf
 from time import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import BusError
+from lumen.interpreters.json_schema import JsonSchema
+from lumen.interpreters.replay.visits import home_of
 from lumen.interpreters.retrieval.ranking import Thresholds
+from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask
 from lumen.language.events import Event
@@ -26,22 +30,42 @@ STRICT = Thresholds(0.63, 0.27)
 """The same of languages for which nobody has set it."""
 MAX_ANSWERS = 100
 """Answers that wait for a tick; then the oldest are dropped."""
+MAX_PASSAGES = 3
+"""How many passages a language model is given."""
+FILLER_AFTER = 1.5
+"""When the filler is said where the project does not say [s]."""
+SAID = ("text", "language", "source", "confidence", "passage", "more")
+"""What is taken of an answer."""
 NOBODY = "nobody here knows the answer"
 
 _log = logging.getLogger(__name__)
+
+
+class OpenQuestion(NamedTuple):
+    """A question that the module was asked: what it was offered to raise, and when the filler is due [s]."""
+
+    offers: Mapping[str, Any]
+    language: str
+    filler_at: float
 
 
 class Questions:
     """Knows which questions are open; what is found comes as events, at the next tick.
 
     Passages are looked up here: that takes less than a millisecond, and no module has to be there for it. `today` is
-    the day on which they have to be true.
+    the day on which they have to be true, `offers` gives the events that a language model may raise now. `visit` is
+    the number of the visit. While it is `silenced` by somebody, the module is not asked, and what it says is ignored.
     """
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
         self.today: Callable[[], date | None] = lambda: None
-        self._open: set[str] = set()
+        self.offers: Callable[[], Mapping[str, Any]] = dict
+        self.visit, self._home = 0, ""
+        self.silenced = ""
+        self._fillers: Mapping[str, str] = {}
+        self._patience = FILLER_AFTER
+        self._open: dict[str, OpenQuestion] = {}
         self._came: deque[tuple[Message, float]] = deque(maxlen=MAX_ANSWERS)
         self._key = ""
         self._undo: Callable[[], None] = _nothing
@@ -50,11 +74,19 @@ class Questions:
 
     def listen(self, project: Project) -> None:
         """Hear what the module `answers` of this project says, where it has one."""
+        options = project.modules[ANSWERS].options if ANSWERS in project.modules else {}
+        filler = options.get("filler") or {}
+        self._fillers, self._patience = filler.get("say") or {}, float(filler.get("after", FILLER_AFTER))
+        self._home = home_of(project.machine) if ANSWERS in project.modules else ""
         key = project.key_of(ANSWER_ROUTE) if ANSWERS in project.modules else ""
         if key != self._key:
             undo, self._key = self._undo, key
             self._undo = self._bus.subscribe(key, self._take) if key else _nothing
             undo()
+
+    def stepped(self, step: Step) -> None:
+        """The behaviour took a step: one that comes home ends a visit."""
+        self.visit += bool(self._home) and self._home in step.entered
 
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
         """Begin to find the answer; the events of what is known at once: it, or that nobody knows."""
@@ -66,27 +98,35 @@ class Questions:
             }  # fmt: skip
             return [Event(f"answer.command.{id}", said, now)]
         if ANSWERS not in project.modules:
-            return [Event(f"error.command.{id}", {"reason": NOBODY}, now)]
+            return [_unanswered(id, now, NOBODY)]
+        if self.silenced:
+            return [_unanswered(id, now, f"{NOBODY}: {self.silenced} has silenced the language model")]
+        offers = {} if "@" in id else self.offers()
         body = {
             "id": id, "question": asked.question, "language": asked.language, "robot": project.robot,
-            "within": asked.within, "place": asked.place,
+            "within": asked.within, "place": asked.place, "visit": self.visit, "offers": offers,
+            "passages": retriever.nearest(asked.question, MAX_PASSAGES),
         }  # fmt: skip
         try:
             self._bus.publish(project.key_of(ASK_ROUTE), body, ttl=asked.within, origin=origin)
         except BusError as error:
-            return [Event(f"error.command.{id}", {"reason": str(error)}, now)]
-        self._open.add(id)
+            return [_unanswered(id, now, str(error))]
+        filler_at = now + self._patience if asked.language in self._fillers else inf
+        self._open[id] = OpenQuestion(offers, asked.language, filler_at)
         return []
 
     def cancel(self, id: str) -> bool:
         """Ignore from now on what is answered under that id; whether it was open."""
-        open, self._open = id in self._open, self._open - {id}
-        return open
+        return self._open.pop(id, None) is not None
+
+    def silence(self, by: str) -> None:
+        """Somebody silences the language model, also in the middle of an answer; or empty, lets it speak."""
+        self.silenced = by
 
     @property
     def empty(self) -> bool:
-        """Whether no answer has come since it was drained."""
-        return not self._came
+        """Whether nothing has come since it was drained, and nothing comes by itself."""
+        return not self._came and not any(one.filler_at < inf for one in self._open.values())
 
     def drain(self, now: float) -> list[Event]:
         """What was answered to open questions, each caused by its message; others' answers are a line in the log."""
@@ -98,14 +138,41 @@ class Questions:
             if not isinstance(id, str) or id not in self._open:
                 _log.info("an answer on %s is ignored: nobody waits for it", message.key)
                 continue
-            kind, said = "error", {"reason": NOBODY}
-            if body.get("text"):
-                kind, said = "answer", {key: value for key, value in body.items() if key != "id"}
-            if not (body.get("more") or body.get("filler")):
-                self._open.discard(id)
             cause = Cause("message", message.id, message.key, message.sender, at)
-            events.append(Event(f"{kind}.command.{id}", said, now, "", cause))
+            events.append(self._heard(id, body, now)._replace(cause=cause))
+        for id, one in list(self._open.items()):
+            if self.silenced:
+                del self._open[id]
+                events.append(_unanswered(id, now, f"{self.silenced} has silenced the language model"))
+            elif one.filler_at <= now:
+                self._open[id] = one._replace(filler_at=inf)
+                said = {"text": self._fillers.get(one.language, ""), "language": one.language, "source": "filler"}
+                events.append(Event(f"answer.command.{id}", {**said, "filler": True}, now))
         return events
+
+    def _heard(self, id: str, body: Mapping[str, Any], now: float) -> Event:
+        one = self._open[id]
+        if not self.silenced and body.get("text") and body.get("more"):
+            self._open[id] = one._replace(filler_at=inf)
+        else:
+            del self._open[id]
+        if self.silenced:
+            return _unanswered(id, now, f"{self.silenced} has silenced the language model")
+        if "raise" in body:
+            return self._raised(id, one.offers, body["raise"], now)
+        if body.get("text"):
+            said = {key: value for key, value in body.items() if key in SAID}
+            return Event(f"answer.command.{id}", said, now)
+        return Event(f"done.command.{id}", None, now)
+
+    def _raised(self, id: str, offers: Mapping[str, Any], raised: Any, now: float) -> Event:
+        """What a language model wants to happen, where that was offered and its data fits; else nothing is answered."""
+        match raised:
+            case {"event": str(event), "data": dict(data)} if event in offers:
+                if JsonSchema({"type": "object", **(offers[event] or {})}).fits(data):
+                    return Event(f"answer.command.{id}", {"raise": {"event": event, "data": data}}, now)
+        _log.warning("an answer wants an event that was not offered, or with other data: it is ignored")
+        return _unanswered(id, now, "an event was answered that is not offered")
 
     def _take(self, message: Message) -> None:
         self._came.append((message, time()))
@@ -123,3 +190,7 @@ class Questions:
 
 
 def _nothing() -> None: ...
+
+
+def _unanswered(id: str, now: float, reason: str) -> Event:
+    return Event(f"error.command.{id}", {"reason": reason}, now)

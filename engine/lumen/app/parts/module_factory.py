@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.language.modules import EARS, EYES, MEMORY, MODULES, SHOW, SOCIAL, VOICE
+from lumen.language.modules import ANSWERS, EARS, EYES, MEMORY, MODULES, SHOW, SOCIAL, VOICE
 from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.ports import Bus
@@ -41,4 +41,8 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
         from lumen.modules.show import ShowControl
 
         return ShowControl(project, bus, tell)
+    if name == ANSWERS:
+        from lumen.modules.answers import Answers
+
+        return Answers(project, bus, tell)
     raise UsageError(f"no module `{name}`: there are {', '.join(MODULES)}")

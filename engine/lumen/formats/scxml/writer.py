@@ -188,6 +188,8 @@ class _ScxmlWriter:
                     message = f"the transition on `{transition.event}` is left out: {error}"
                     self.report.lost(message, transition.where)
                     continue
+            if transition.offer:
+                self.report.lost("`offer` is left out: SCXML asks no language model", transition.where)
             if transition.approve:
                 self.report.lost("`approve` is left out: in SCXML nothing waits for a person", transition.where)
             attributes["target"] = self._ids(transition.targets)

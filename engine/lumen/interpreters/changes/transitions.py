@@ -61,6 +61,9 @@ class _TransitionComparison:
             how = "waits for approval now" if old.approve is None else "waits for approval in another way now"
             how = how if new.approve else "waits for no approval now"
             yield self.change(f"{self.title} {how} {trigger}")
+        if old.offer != new.offer:
+            how = "may be taken by a language model" if new.offer else "may be taken by no language model"
+            yield self.change(f"{self.title} {how} {trigger} now")
         if old.reenter != new.reenter:
             how = "is left and entered" if new.reenter else "stays active"
             yield self.change(f"{self.title} {how} {trigger} now")
@@ -105,8 +108,8 @@ def _trigger(transition: Transition) -> str:
 
 
 def _same(old: Sequence[Transition], new: Sequence[Transition]) -> bool:
-    return [(t.targets, t.guard, t.actions, t.approve) for t in old] == [
-        (t.targets, t.guard, t.actions, t.approve) for t in new
+    return [(t.targets, t.guard, t.actions, t.approve, t.offer) for t in old] == [
+        (t.targets, t.guard, t.actions, t.approve, t.offer) for t in new
     ]
 
 

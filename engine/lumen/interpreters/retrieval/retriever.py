@@ -60,6 +60,14 @@ class Retriever:
         first, second = sorted([*best.items(), ("", 0.0), ("", 0.0)], key=lambda each: -each[1])[:2]
         return Ranked(first[0], first[1], first[1] - second[1])
 
+    def nearest(self, question: str, count: int) -> list[str]:
+        """The answers of the passages that are most like the question, whether or not they answer it."""
+        best: dict[str, float] = {}
+        for name, score in zip(self._owners, self._score(question).tolist() if self._owners else (), strict=True):
+            best[name] = max(best.get(name, 0.0), score)
+        names = sorted(best, key=lambda name: -best[name])[:count]
+        return [self._passages[name].answer[self.language] for name in names if best[name] > 0.0]
+
     def samples(self, asked: Mapping[str, Sequence[str]], unanswered: Sequence[str]) -> list[Sample]:
         """What is most like each of these questions: by the passage that has its answer, and those without one."""
         found = [Sample(name, self.rank(text)) for name, texts in asked.items() for text in texts]

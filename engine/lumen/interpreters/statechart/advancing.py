@@ -20,12 +20,16 @@ from lumen.interpreters.statechart.spoken import rest_of
 from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
 from lumen.language.commands import Cancel
 from lumen.language.diagnostics import NodePath
+from lumen.language.events import Event
 
 
 class ActivityContext(ActionContext, Protocol):
     """The part of an `ExecutionContext` that activities use, besides what their actions do."""
 
     timers: tuple[Timer, ...]
+
+    def offers(self, event: str) -> bool:
+        """Whether an active state has a transition for just that event which is marked as an `offer`."""
 
     def evaluate_in(self, node: StateNode) -> None:
         """Let `state` in expressions be this one."""
@@ -146,6 +150,11 @@ class Advance:
         self, action: AskedQuestion, stands: QuestionPosition, id: str, said: Sentence | None
     ) -> Position | None:
         """A sentence of the answer came; or the answer is complete, its time is up, or a sentence has been said."""
+        if said and said.raises:
+            if not self.context.offers(said.raises):
+                return stands.fork()
+            self.context.raise_event(Event(said.raises, said.data, self.context.at))
+            return self.complete(stands)._replace(asked=None).fork()
         if said and said.filler:
             if stands.filler or stands.sentences:
                 return stands.fork()

@@ -23,12 +23,17 @@ MARKUP = str.maketrans(dict.fromkeys("\\^<>{}[]|`*_#~\n\r\t", " "))
 
 
 class Sentence(NamedTuple):
-    """What is to be said of an answer; `more` is still to come, and a `filler` answers nothing."""
+    """What is to be said of an answer; `more` is still to come, and a `filler` answers nothing.
+
+    An answer that is an event instead has its name in `raises`, and its `data`.
+    """
 
     text: str
     language: str = ""
     more: bool = False
     filler: bool = False
+    raises: str = ""
+    data: Any = None
 
 
 def compile_question(action: AskQuestion) -> Callable[[ActionContext], BodyCommand]:
@@ -58,7 +63,12 @@ def sentence_of(data: Any) -> Sentence | None:
 
     It is data: no template in it is filled in, and what a voice may take for orders is left out.
     """
-    if not isinstance(data, Mapping) or not isinstance(text := data.get("text"), str) or len(text) > MAX_SENTENCE:
+    if not isinstance(data, Mapping):
+        return None
+    if isinstance(raised := data.get("raise"), Mapping):
+        event = raised.get("event")
+        return Sentence("", raises=event, data=raised.get("data")) if isinstance(event, str) and event else None
+    if not isinstance(text := data.get("text"), str) or len(text) > MAX_SENTENCE:
         return None
     said = " ".join("".join(sign if sign.isprintable() else " " for sign in text.translate(MARKUP)).split())
     language = data.get("language")

@@ -181,6 +181,11 @@ class ExecutionContext:
         """`In()`: asks when it is called, so that a scope serves while states come and go."""
         return state in self.active
 
+    def offers(self, event: str) -> bool:
+        """Whether an active state has a transition for just that event which is marked as an `offer`."""
+        found = (transition.definition for group in self.configuration.candidates(event) for transition in group)
+        return any(one.offer and one.event == event for one in found)
+
     def assign(self, key: str, value: Any) -> None:
         """Give a context key another value; raises ActionError where it is of another type."""
         check = self.machine.chart.checks.get(key)

@@ -1,0 +1,37 @@
+"""The events that a language model may raise now: those of transitions that are marked as an `offer`."""
+
+from typing import Any
+
+from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard
+from lumen.interpreters.expressions.scope import no_draw
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.values import Snapshot
+from lumen.language.machines import MachineDefinition
+
+
+def offers(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
+    """Each event that the active states would take now and that is offered, with the JSON Schema of its data.
+
+    A guard that looks at the event's data is not asked: that comes with the event.
+    """
+    standing = compiled(machine).planner.configuration(snapshot.configuration)
+    found: dict[str, Any] = {}
+    for node in dict.fromkeys(n for leaf in standing.leaves for n in (leaf, *leaf.ancestors)):
+        scope = Scope(
+            snapshot.context, None, node.view(snapshot.language, snapshot.place), standing.known.__contains__,
+            snapshot.at, snapshot.language, machine.phrases, machine.answers, snapshot.epoch, snapshot.timezone,
+            machine.lists, no_draw,
+        )  # fmt: skip
+        for one in (transition.definition for transition in node.transitions):
+            if one.offer and (one.guard is None or _may_hold(one.guard.source, scope)):
+                found[one.event] = machine.events.get(one.event) or {}
+    return found
+
+
+def _may_hold(guard: str, scope: Scope) -> bool:
+    if "event" in guard:
+        return True
+    try:
+        return bool(compile_guard(guard)(scope))
+    except ExpressionError:
+        return False

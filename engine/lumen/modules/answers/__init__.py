@@ -1,0 +1,14 @@
+"""The module `answers`: a language model on a short leash, asked where no passage answers.
+
+answers.py        questions come in, sentences that may be said go out
+model_settings.py what lumen.yaml says of the model
+http_stream.py    a POST and what comes back, bounded in bytes and time
+chat.py           the pieces of a chat completion, streamed or whole
+prompt.py         what the model is told: passages and visitors' words are data
+sentence_check.py which sentences may be said
+allowance.py      how many questions it is asked
+"""
+
+from lumen.modules.answers.answers import Answers
+
+__all__ = ["Answers"]

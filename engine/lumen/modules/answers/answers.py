@@ -1,0 +1,122 @@
+"""The module `answers`: asks a language model what no passage answers, and lets only so much of it be said."""
+
+import json
+import logging
+import time
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from lumen.errors import ModuleError
+from lumen.interpreters.json_schema import JsonSchema
+from lumen.language.modules import ANSWERS
+from lumen.language.projects import Project
+from lumen.modules.answers.allowance import Allowance
+from lumen.modules.answers.chat import MAX_ARGUMENTS, Call, Chat
+from lumen.modules.answers.http_stream import answered
+from lumen.modules.answers.model_settings import ModelSettings
+from lumen.modules.answers.prompt import request, tool_name
+from lumen.modules.answers.sentence_check import refusal, sentences
+from lumen.modules.module import Module
+from lumen.ports import Bus, Message, MessageHandler
+
+MAX_SENTENCES = 2
+"""Of an answer that are said."""
+MAX_TEXT = 2_000
+"""Characters of an answer that are looked at."""
+
+_log = logging.getLogger(__name__)
+
+
+class Answers(Module):
+    """Answers each question of `lumen.NAO.ask`, sentence by sentence, on `lumen.NAO.answer`; an end without text last.
+
+    At most one event is raised, of those that the question says are offered, with data that fits its schema. Raises
+    ModuleError where lumen.yaml has no model.
+    """
+
+    name = ANSWERS
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
+        super().__init__(project, bus, tell)
+        self._model = ModelSettings.of(self.settings.options)
+        self._allowance = Allowance(self._model.hour, self._model.visitor)
+
+    def hears(self) -> Mapping[str, MessageHandler]:
+        return {"ask": self._ask}
+
+    def use(self, project: Project) -> None:
+        super().use(project)
+        self._model = ModelSettings.of(self.settings.options)
+        self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
+
+    def _ask(self, message: Message) -> None:
+        began = time.monotonic()
+        match message.body:
+            case {"id": str(id), "question": str(), "language": str(), "within": int() | float() as within}:
+                asked: Mapping[str, Any] = message.body
+            case _:
+                raise ModuleError(f"a body with `id`, `question`, `language` and `within` is expected on {message.key}")
+        try:
+            visit = asked.get("visit", 0)
+            if reason := self._allowance.refusal(visit if isinstance(visit, int) else 0, began):
+                raise ModuleError(reason)
+            self._answer(id, asked, began + min(float(within), 60.0))
+            self.well()
+        finally:
+            self.publish("answer", {"id": id})
+
+    def _answer(self, id: str, asked: Mapping[str, Any], deadline: float) -> None:
+        passages = [text for text in asked.get("passages") or () if isinstance(text, str)]
+        offers = {tool_name(name): (name, schema or {}) for name, schema in (asked.get("offers") or {}).items()}
+        tools = {name: {"type": "object", **schema} for name, (_, schema) in offers.items()}
+        body = request(self._model.name, asked, passages, tools)
+        chat, said = Chat(), 0
+        rest, whole = "", ""
+        with answered(self._model.url, body, self._model.secret(), deadline, self._wanted) as (kind, pieces):
+            for piece in chat.read(kind, pieces):
+                whole += piece.text
+                found, rest = sentences(rest + piece.text, ended=piece.ended)
+                for sentence in found:
+                    self._say(id, sentence, asked, passages)
+                    said += 1
+                    if said == MAX_SENTENCES:
+                        return
+                if piece.ended or len(whole) > MAX_TEXT:
+                    break
+        if not said:
+            self._raise(id, chat.calls, offers)
+
+    def _say(self, id: str, sentence: str, asked: Mapping[str, Any], passages: list[str]) -> None:
+        """Have a sentence said. Raises ModuleError where it may not be: nothing that comes after it is, either."""
+        if reason := refusal(sentence, asked["language"], passages, (self.project.robot,)):
+            raise ModuleError(f"a sentence of the language model is not said: {reason}")
+        body = {"id": id, "text": sentence, "language": asked["language"], "source": "model", "more": True}
+        self.publish("answer", body)
+
+    def _raise(self, id: str, calls: Iterable[Call], offers: Mapping[str, tuple[str, Mapping[str, Any]]]) -> None:
+        """Have the event of the first call raised, where it is offered and its data fits."""
+        for call in calls:
+            if call.name not in offers:
+                raise ModuleError(f"the language model calls `{call.name[:40]}`, which is not offered")
+            event, schema = offers[call.name]
+            data = _arguments(call)
+            if not JsonSchema({"type": "object", **schema}).fits(data):
+                raise ModuleError(f"the language model calls `{event}` with data that does not fit its schema")
+            self.publish("answer", {"id": id, "raise": {"event": event, "data": data}})
+            return
+
+    def _wanted(self) -> bool:
+        """Whether the answer still counts: nobody ends, and no other question waits."""
+        return not (self._ending or self._waiting)
+
+
+def _arguments(call: Call) -> dict[str, Any]:
+    found = call.arguments
+    if isinstance(found, str):
+        try:
+            found = json.loads(found or "{}") if len(found) <= MAX_ARGUMENTS else None
+        except (ValueError, RecursionError):
+            found = None
+    if not isinstance(found, dict):
+        raise ModuleError(f"the language model calls `{call.name[:40]}` with arguments that are no JSON object")
+    return found

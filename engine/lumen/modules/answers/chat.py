@@ -1,0 +1,96 @@
+"""The pieces of a chat completion as `/v1/chat/completions` gives them: streamed as events, or whole."""
+
+import json
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+from lumen.errors import ModuleError
+
+MAX_ARGUMENTS = 5_000
+"""Characters of the arguments of a call."""
+END = "[DONE]"
+
+
+class Piece(NamedTuple):
+    """Some more text; or that it `ended` in order, which one that was cut off did not."""
+
+    text: str = ""
+    ended: bool = False
+
+
+class Call(NamedTuple):
+    """A tool that the model calls, with its arguments: JSON in a text, or as some servers send them, an object."""
+
+    name: str
+    arguments: Any
+
+
+class Chat:
+    """Reads a completion; `calls` are those of it so far, whole when it has ended."""
+
+    def __init__(self) -> None:
+        self._names: dict[int, str] = {}
+        self._arguments: dict[int, Any] = {}
+
+    @property
+    def calls(self) -> list[Call]:
+        return [Call(name, self._arguments.get(at, "")) for at, name in sorted(self._names.items())]
+
+    def read(self, kind: str, pieces: Iterable[bytes]) -> Iterator[Piece]:
+        """What it says, piece by piece; what is not JSON raises ModuleError."""
+        if kind == "text/event-stream":
+            for data in _events(pieces):
+                if data.strip() == END:
+                    yield Piece(ended=True)
+                    return
+                yield from self._choice(_json(data), "delta")
+        else:
+            yield from self._choice(_json(b"".join(pieces).decode("utf-8", "replace")), "message")
+
+    def _choice(self, data: Any, key: str) -> Iterator[Piece]:
+        choices = data.get("choices") if isinstance(data, dict) else None
+        if not isinstance(choices, list):
+            raise ModuleError("the language model answers something else than a chat completion")
+        for choice in choices[:1]:
+            said = choice.get(key) if isinstance(choice, dict) else None
+            if isinstance(said, dict):
+                for at, call in enumerate(said.get("tool_calls") or ()):
+                    self._call(at, call)
+                if isinstance(text := said.get("content"), str) and text:
+                    yield Piece(text)
+            if isinstance(choice, dict) and choice.get("finish_reason"):
+                yield Piece(ended=True)
+
+    def _call(self, at: int, call: Any) -> None:
+        made = call.get("function") if isinstance(call, dict) else None
+        if not isinstance(made, dict):
+            return
+        at = call["index"] if type(call.get("index")) is int else at
+        if isinstance(name := made.get("name"), str) and name:
+            self._names[at] = name
+        arguments = made.get("arguments")
+        if isinstance(arguments, str) and isinstance(before := self._arguments.get(at, ""), str):
+            self._arguments[at] = (before + arguments)[: MAX_ARGUMENTS + 1]
+        elif arguments is not None:
+            self._arguments[at] = arguments
+
+
+def _events(pieces: Iterable[bytes]) -> Iterator[str]:
+    """The data of server-sent events; of one that was cut off nothing."""
+    held, data = b"", list[str]()
+    for piece in pieces:
+        *lines, held = (held + piece).split(b"\n")
+        for line in lines:
+            text = line.rstrip(b"\r").decode("utf-8", "replace")
+            if text.startswith("data:"):
+                data.append(text[5:].removeprefix(" "))
+            elif not text and data:
+                yield "\n".join(data)
+                data = []
+
+
+def _json(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        raise ModuleError("the language model answers no JSON") from None

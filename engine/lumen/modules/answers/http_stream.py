@@ -1,0 +1,114 @@
+"""A POST over HTTP whose answer is read as it comes: bounded in bytes and in time, however slowly the server drips."""
+
+import io
+import json
+import socket
+import ssl
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from http.client import HTTPException, HTTPResponse
+from typing import Any, cast
+from urllib.parse import urlsplit
+
+from lumen.errors import ModuleError
+
+MAX_BYTES = 200_000
+"""Of an answer, its head included; no answer of two sentences needs more."""
+LOOK = 0.1
+"""How often it is looked whether anybody still wants the answer [s]."""
+PIECE = 4_096
+
+
+@contextmanager
+def answered(
+    url: str, body: Any, secret: str, deadline: float, wanted: Callable[[], bool]
+) -> Iterator[tuple[str, Iterator[bytes]]]:
+    """The answer's type, and its bytes as they come, until `deadline` (`time.monotonic`) or nobody has `wanted` it.
+
+    Raises ModuleError, which says why there is none; no text of it holds the key. Redirects are not followed.
+    """
+    parts = urlsplit(url)
+    connection: socket.socket | None = None
+    try:
+        if parts.scheme not in ("http", "https") or not parts.hostname:
+            raise ModuleError("the address of the language model is no http:// or https:// address")
+        connection = _connected(parts.scheme, parts.hostname, parts.port, deadline)
+        connection.settimeout(max(deadline - time.monotonic(), LOOK))
+        connection.sendall(_request(parts.netloc.rpartition("@")[2], parts.path or "/", parts.query, body, secret))
+        response = HTTPResponse(cast(socket.socket, _Bounded(connection, deadline, wanted)), method="POST")
+        response.begin()
+        if response.status != 200:
+            raise ModuleError(f"the language model answers {response.status} {response.reason[:60]}".rstrip())
+        yield response.headers.get_content_type(), _pieces(response)
+    except ssl.SSLCertVerificationError:
+        raise ModuleError("the language model's certificate is not one that this machine trusts") from None
+    except TimeoutError:
+        raise ModuleError("the language model did not answer in time") from None
+    except (OSError, HTTPException, ValueError) as error:
+        raise ModuleError(f"the language model can't be reached: {type(error).__name__}") from None
+    finally:
+        if connection:
+            connection.close()
+
+
+def _connected(scheme: str, host: str, port: int | None, deadline: float) -> socket.socket:
+    left = max(deadline - time.monotonic(), LOOK)
+    plain = socket.create_connection((host, port or (443 if scheme == "https" else 80)), timeout=left)
+    if scheme == "http":
+        return plain
+    try:
+        return ssl.create_default_context().wrap_socket(plain, server_hostname=host)
+    except BaseException:
+        plain.close()
+        raise
+
+
+def _request(host: str, path: str, query: str, body: Any, secret: str) -> bytes:
+    data = json.dumps(body).encode()
+    lines = [
+        f"POST {path}{'?' if query else ''}{query} HTTP/1.1", f"Host: {host}", "Content-Type: application/json",
+        "Accept: text/event-stream, application/json", f"Content-Length: {len(data)}", "User-Agent: lumen",
+        "Connection: close", *([f"Authorization: Bearer {secret}"] if secret else []), "", "",
+    ]  # fmt: skip
+    return "\r\n".join(lines).encode("ascii") + data
+
+
+def _pieces(response: HTTPResponse) -> Iterator[bytes]:
+    while piece := response.read1(PIECE):
+        yield piece
+
+
+class _Bounded:
+    """A connection as HTTPResponse reads it: for so many bytes, until the deadline, and while it is wanted."""
+
+    def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool]) -> None:
+        self._reader = _BoundedReader(connection, deadline, wanted)
+
+    def makefile(self, mode: str) -> io.BufferedReader:
+        return io.BufferedReader(self._reader)
+
+
+class _BoundedReader(io.RawIOBase):
+    def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool]) -> None:
+        self._connection, self._deadline, self._wanted = connection, deadline, wanted
+        self._left = MAX_BYTES
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        while self._wanted():
+            left = self._deadline - time.monotonic()
+            if left <= 0:
+                raise TimeoutError
+            self._connection.settimeout(min(left, LOOK))
+            try:
+                count = self._connection.recv_into(buffer)
+            except TimeoutError:
+                continue
+            self._left -= count
+            if self._left < 0:
+                raise ModuleError(f"the language model sent more than {MAX_BYTES} bytes")
+            return count
+        raise ModuleError("nobody waits for the language model any more")

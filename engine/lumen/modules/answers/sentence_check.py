@@ -1,0 +1,116 @@
+"""Which sentences of a language model may be said: short ones, in the right language, that bring nothing of their own.
+
+What cannot be told is refused: then the robot says that it does not know.
+"""
+
+import re
+import unicodedata
+from collections.abc import Iterator, Sequence
+
+MAX_LENGTH = 300
+"""Characters of a sentence."""
+
+COMMON = {
+    "en": "a about also am an and any are as at be because but by can could do does for from good has have he hello"
+    " here hi how i if in is it its just like many may me more most my no not of on one only or our out please see she"
+    " so some sorry sure thank thanks that the their them then there these they this to too very was we welcome well"
+    " were what when where which who why will with yes you your yours",
+    "id": "ada adalah agar akan aku anda apa atau bagaimana bagi bahwa baik banyak belum bisa boleh bukan dalam dan"
+    " dapat dari dengan di dia halo hanya harus ini itu iya jadi jangan juga kalau kami kamu karena kata ke kita lagi"
+    " lebih maaf mana masih mereka oleh pada paling perlu punya saja sampai sangat satu saya sebagai sebuah sedang"
+    " selamat semua seperti siapa silakan sudah tapi telah tentu tentang terima kasih tetapi tidak untuk ya yang",
+    "de": "aber als am an auch auf aus bei bin bis das dass dem den der des die dies du ein eine einen er es für haben"
+    " hat hier ich ihr im in ist ja kann kein man mein mich mir mit nach nein nicht noch nur oder sehr sein sich sie"
+    " sind so und uns vom von vor war was wenn wer wie wir wo zu zum zur",
+    "fr": "à au aussi avec bien ce ces cette comme dans de des dont du elle en est et être il ils je la le les leur"
+    " mais me mes mon ne non nous on ou où oui par pas plus pour que qui sa se ses si son sont sur très tu un une vous",
+    "es": "a al como con de del donde el ella en es esta este esto están hay la las lo los me mi muy más no nos o para"
+    " pero por porque que quien se ser si sin sobre son su sus sí también te tu un una y yo él",
+}
+"""The words that are most common in a language: by them it is told from the others."""
+WORDS = {language: frozenset(words.split()) for language, words in COMMON.items()}
+
+NUMBER_WORDS = {
+    "en": "zero two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen"
+    " eighteen nineteen twenty thirty forty fifty sixty seventy eighty ninety hundred hundreds thousand thousands"
+    " million millions billion dozen half twice",
+    "id": "nol dua tiga empat lima enam tujuh delapan sembilan sepuluh sebelas belas puluh puluhan ratus ratusan"
+    " seratus ribu ribuan seribu juta jutaan sejuta miliar setengah",
+    "de": "null zwei drei vier fünf sechs sieben acht neun zehn elf zwölf zwanzig hundert tausend million",
+    "fr": "deux trois quatre cinq sept huit neuf dix onze douze vingt cent mille",
+    "es": "dos tres cuatro cinco seis siete ocho nueve diez once doce veinte cien mil",
+}
+NUMBERS = frozenset(word for words in NUMBER_WORDS.values() for word in words.split())
+"""Words for numbers, but for one, which is said of anything."""
+ADDRESS = re.compile(
+    r"[@/\\]|\w\.\w{2,}|\b(?:www|http|dot|titik|com|org|net|street|avenue|road|jalan|jl|straße|rue|calle)\b"
+    r"|\b(?:e-?mail|surel|phone|telepon|telefon|whatsapp)\b",
+    re.IGNORECASE,
+)
+_END = re.compile(r"[.!?…]+[\"'”’)]*(?=\s|$)")
+
+
+def sentences(text: str, *, ended: bool) -> tuple[list[str], str]:
+    """The whole sentences of a text, and what is left of it; where the text has `ended`, nothing is left."""
+    found, at = [], 0
+    for end in _END.finditer(text):
+        if end.end() == len(text) and not ended:
+            break  # 3.5 may go on
+        found.append(text[at : end.end()].strip())
+        at = end.end()
+    rest = text[at:]
+    if ended:
+        found, rest = [*found, rest.strip()], ""
+    return [one for one in found if any(sign.isalnum() for sign in one)], rest
+
+
+def refusal(sentence: str, language: str, passages: Sequence[str], known: Sequence[str] = ()) -> str:
+    """Why a sentence may not be said, empty where it may; `known` are words that may stand in it, too."""
+    if len(sentence) > MAX_LENGTH:
+        return "it is too long"
+    if reason := _other_language(sentence, language):
+        return reason
+    given = unicodedata.normalize("NFKC", " ".join((*passages, *known))).casefold()
+    sentence = unicodedata.normalize("NFKC", sentence)
+    there = frozenset(_words(given))
+    for found in ADDRESS.finditer(sentence):
+        around = next(w for w in re.finditer(r"\S+", sentence) if w.start() <= found.start() < w.end())
+        if around.group().strip(".,!?").casefold() not in given.split():
+            return "it holds an address that no passage has"
+    for word in _words(sentence.casefold()):
+        if (any(sign.isnumeric() for sign in word) or word in NUMBERS) and word not in there:
+            return f"it holds the number `{word[:20]}`, which no passage has"
+    for word in _names(sentence, WORDS.get(language, frozenset())):
+        if {word.casefold(), _bare(word)}.isdisjoint(there):
+            return f"it holds the name `{word[:20]}`, which no passage has"
+    return ""
+
+
+def _other_language(sentence: str, language: str) -> str:
+    wanted = WORDS.get(language)
+    if wanted is None:
+        return f"nobody here can tell whether it is in `{language}`"
+    if any(sign.isalpha() and not unicodedata.name(sign, "").startswith("LATIN") for sign in sentence):
+        return f"it is not in `{language}`"
+    said = _words(sentence.casefold())
+    counts = {other: sum(word in common for word in said) for other, common in WORDS.items()}
+    most = max(counts.values())
+    if counts[language] < most or (counts[language] == 0 and len(said) > 2):
+        return f"it is not in `{language}`"
+    return ""
+
+
+def _names(sentence: str, common: frozenset[str]) -> Iterator[str]:
+    """Words written with a capital, wherever they stand; the most common words begin sentences."""
+    for word in re.findall(r"[^\W_]+(?:['’-][^\W_]+)*", sentence):
+        if any(sign.isupper() for sign in word) and _bare(word) not in common:
+            yield word
+
+
+def _bare(word: str) -> str:
+    """`johann` of `Johann's`."""
+    return re.split(r"['’]", word)[0].casefold()
+
+
+def _words(text: str) -> list[str]:
+    return re.findall(r"[^\W_]+(?:['’-][^\W_]+)*", text)
