@@ -15,7 +15,7 @@ from lumen.app.reload import validation_worker
 from lumen.app.reload.validation_worker import ValidationWorker, load_apart
 from lumen.errors import FatalFilesError
 from lumen.loading import kept_contents
-from lumen.loading.files import read_files
+from lumen.loading.files import fingerprint, read_files
 from tests.live.shows import Live
 
 SORRY, FATAL, PARDON = "en: I am sorry, I did not understand that.", "en: FATAL", "en: Come again, please?"
@@ -99,7 +99,7 @@ def test_a_start_on_them_is_refused_or_takes_the_last_good_ones(copy: Path, read
     assert startup_project(copy, run_directory, last_good=True, warn=told.append).hash == good.hash
     assert "THE FILES END THE PROCESS THAT READS THEM" in told[-1]
     [news] = run_directory.news
-    assert (news.verdict, run_directory.refused) == ("refused", kept_contents.fingerprint(read_files(copy)))
+    assert (news.verdict, run_directory.refused) == ("refused", fingerprint(read_files(copy)))
     assert "these files end the process" in news.reason
     run_directory.close(forget=False)
 
