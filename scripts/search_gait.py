@@ -5,14 +5,14 @@
 Begins with what `models/NAME.yaml` has, or with what follows from the legs by rule, and draws each try near the best
 one so far, nearer and nearer: a random search, as NAO's brisk pace was found (docs/decisions/074). Robots differ in
 their masses, floors and noise. A try counts how far they come in the given time, less what they end aside of their way;
-where one falls, the whole try counts nothing. Two tries run at once. Each is kept in `.cache/search_gait/`: started
-again, the search goes on. `--write` puts the best into the file.
+where one falls, the whole try counts nothing. Two tries run at once (`--workers 1`: one after the other; what is found
+is the same). Each is kept in `.cache/search_gait/` by what it hangs on, the file's content and the software: started
+again, the search goes on. `--write` puts the best into the file, and another search begins there.
 """
 
 import argparse
 import json
 import sys
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,6 +26,10 @@ sys.path.insert(0, str(ROOT))
 from tests.simulation.bodies import shipped  # noqa: E402
 from tests.simulation.walks import any_robot, truth  # noqa: E402
 
+from lumen.app.work.tasks import engine  # noqa: E402
+from lumen.app.work.work_kit import UnpackedKit, WorkKit, name_of  # noqa: E402
+from lumen.app.work.workers import Workers, workers_of  # noqa: E402
+from lumen.errors import LumenError, UsageError  # noqa: E402
 from lumen.interpreters.gait import GaitParameters, paces_of  # noqa: E402
 from lumen.language.commands import Move  # noqa: E402
 from lumen.loading.bodies import GAIT_ANGLES, GAIT_LENGTHS  # noqa: E402
@@ -60,8 +64,8 @@ class Try(NamedTuple):
     upright: int
 
 
-def tried(name: str, pace: str, numbers: dict[str, float], robots: int, seconds: float) -> Try:
-    """Let robots walk with these numbers."""
+def tried(kit: UnpackedKit, name: str, pace: str, numbers: dict[str, float], robots: int, seconds: float) -> Try:
+    """A task: let robots walk with these numbers. The body is in the repository, beside this script."""
     body = shipped(name)
     body = replace(body, gait={**body.gait, pace: {**body.gait.get(pace, {}), **numbers}})
     paces = paces_of(read_legs(MassModel(body, MODELS).model, body), body.gait)
@@ -86,24 +90,27 @@ def drawn(best: dict[str, float], count: int, random: np.random.Generator) -> di
     return {name: round(value * (1 + spread * random.standard_normal()), 4) for name, value in best.items()}
 
 
-def search(options: argparse.Namespace) -> Try:
+def search(options: argparse.Namespace, workers: Workers, cache: Path = CACHE) -> Try:
     """Try after try, from where the last search ended; each is printed."""
+    if workers.address:
+        raise UsageError("--workers of this search are processes of this machine: write a number")
     body = shipped(options.model)
     start: GaitParameters = getattr(paces_of(read_legs(MassModel(body, MODELS).model, body), body.gait), options.pace)
-    kept = CACHE / f"{options.model}-{options.pace}-{options.robots}-{options.seconds:g}-{options.seed}.jsonl"
+    content = json.dumps([engine(), (MODELS / f"{options.model}.yaml").read_text("utf-8")]).encode()
+    run = f"{options.model}-{options.pace}-{options.robots}-{options.seconds:g}-{options.seed}"
+    kept = cache / f"{run}-{name_of(content)}.jsonl"
     kept.parent.mkdir(parents=True, exist_ok=True)
     tries = [Try(**json.loads(line)) for line in kept.read_text().splitlines()] if kept.exists() else []
     numbers = {name: value for name, value in asdict(start).items() if name in SEARCHED[options.pace]}
-    with ProcessPoolExecutor(AT_ONCE) as pool, kept.open("a", encoding="utf-8") as record:
+    with workers.crew(tried, WorkKit({}, {}), AT_ONCE) as crew, kept.open("a", encoding="utf-8") as record:
         while len(tries) < options.tries:
             random = np.random.default_rng((options.seed, len(tries)))
             best = max(tries, key=lambda one: one.score, default=Try(numbers, 0.0, 0))
             wanted = [drawn(best.numbers, len(tries), random) for _ in range(AT_ONCE)]
             if not tries:
                 wanted[0] = numbers
-            given = (options.model, options.pace)
-            more = [pool.submit(tried, *given, one, options.robots, options.seconds) for one in wanted]
-            for one in (future.result() for future in more):
+            tasks = [(options.model, options.pace, one, options.robots, options.seconds) for one in wanted]
+            for _, one in sorted(crew.results(tasks)):
                 tries.append(one)
                 record.write(json.dumps(one._asdict()) + "\n")
                 record.flush()
@@ -137,8 +144,14 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=8.0, help="that they walk")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--write", action="store_true", help="put the best into models/NAME.yaml")
+    parser.add_argument("--workers", metavar="N", default=str(AT_ONCE), help=f"processes (default: {AT_ONCE})")
     options = parser.parse_args()
-    best = search(options)
+    try:
+        best = search(options, workers_of(options.workers))
+    except LumenError as error:
+        sys.exit(str(error))
+    except KeyboardInterrupt:
+        sys.exit(130)
     file = MODELS / f"{options.model}.yaml"
     text = written(file.read_text("utf-8"), options.pace, best.numbers)
     if options.write:

@@ -3,12 +3,17 @@
     python scripts/search_passage.py models/passages/straddle-crouch.yaml --evaluations 500 --robots 4 -o found.yaml
 
 What may change are the numbers of the file: the angles of its poses, in whole degrees, and the times between its
-keyframes. What is written is the same file with other numbers; the posture that it ends in stays as it is.
+keyframes. What is written is the same file with other numbers; the posture that it ends in stays as it is. All cores
+work (`--workers N`, or a cluster). What each passage costs is kept in `.cache/search_passage/` by the content of all
+that it hangs on: the same command goes on where it was ended.
 """
 
 import argparse
+import json
 import re
-from collections.abc import Iterable, Sequence
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 from itertools import pairwise
 from math import ceil, floor, radians
 from pathlib import Path
@@ -18,14 +23,22 @@ import numpy as np
 import yaml
 
 import lumen
+from lumen.app.work.tasks import engine
+from lumen.app.work.work_kit import UnpackedKit, WorkKit, models_in, name_of
+from lumen.app.work.workers import Workers, workers_of
+from lumen.errors import LumenError
 from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Posture
 from lumen.language.robots import Body
+from lumen.loading.files import read_files
+from lumen.loading.lending import MODELS
 from lumen.motion import Motion
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world import CONTROL_PERIOD
+
+CACHE = Path(__file__).parent.parent / ".cache" / "search_passage"
 
 MISS, EFFORT, BUMP, TIME, BEYOND, WORST = 2.0, 0.4, 1.0, 0.01, 1.0, 0.3
 """The price of how far the torso's up ends from where it should, of the mean of the motors' load cubed, of what the
@@ -114,34 +127,95 @@ def cost(text: str, trials: Iterable[Trial], body: Body) -> float:
     return float(np.mean(costs)) + WORST * max(costs) + BEYOND * beyond
 
 
-def main() -> None:
+class KeptCosts:
+    """What passages cost, in a file of its own for each project, software and choice of robots."""
+
+    def __init__(self, folder: Path, *content: str) -> None:
+        self._file = folder / f"{name_of(json.dumps([engine(), *content]).encode())}.jsonl"
+        folder.mkdir(parents=True, exist_ok=True)
+        text = self._file.read_text("utf-8") if self._file.exists() else ""
+        whole, _, torn = text.rpartition("\n")
+        if torn:  # it was ended while it wrote
+            self._file.write_text(f"{whole}\n" if whole else "", "utf-8")
+        self._known: dict[str, float] = dict(map(json.loads, whole.splitlines()))
+
+    def of(self, texts: Sequence[str], compute: Callable[[list[str]], Iterable[tuple[int, float]]]) -> list[float]:
+        """The cost of each text; those that are not known are computed, and kept as they come."""
+        unknown = list(dict.fromkeys(text for text in texts if _name(text) not in self._known))
+        with self._file.open("a", encoding="utf-8") as file:
+            for number, found in compute(unknown):
+                self._known[_name(unknown[number])] = found
+                file.write(json.dumps([_name(unknown[number]), found]) + "\n")
+                file.flush()
+        return [self._known[_name(text)] for text in texts]
+
+
+def _name(text: str) -> str:
+    return name_of(text.encode())
+
+
+def cost_of(kit: UnpackedKit, text: str, passage: str, robots: int, seed: int) -> float:
+    """A task: what a passage costs, with so many robots that stand where the one in `passage` begins."""
+    body, trials = _trials(kit, passage, robots, seed)
+    return cost(text, trials, body)
+
+
+@cache
+def _trials(kit: UnpackedKit, passage: str, robots: int, seed: int) -> tuple[Body, list[Trial]]:
+    """Once in each process: the robots are long in coming to where they begin."""
+    project = kit.project()
+    assert project is not None  # who sends tasks has loaded it
+    motion = Motion.from_dict(yaml.safe_load(passage), "passage")
+    return project.body, [Trial(project.body, kit.root / MODELS, motion, seed + i) for i in range(robots)]
+
+
+def searched(args: argparse.Namespace, workers: Workers, kept: Path) -> float:
+    """Search, and write each better passage; the cost of the best one."""
     import cma  # only the search needs it
 
+    root, passage = args.passage.resolve().parents[2], args.passage.read_text("utf-8")
+    text = Text(passage, lumen.load(root).body)
+    options = {"seed": args.seed, "CMA_stds": text.reach, "verbose": -9}
+    search = cma.CMAEvolutionStrategy(text.numbers, args.sigma, options)
+    kit, given = WorkKit({"": read_files(root)}, models_in(root)), (passage, args.robots, args.seed)
+    costs = KeptCosts(kept, name_of(kit.packed()), *map(str, given))
+    with workers.crew(cost_of, kit, search.popsize) as crew:
+
+        def compute(texts: list[str]) -> Iterable[tuple[int, float]]:
+            return crew.results((one, *given) for one in texts)
+
+        (best,), used = costs.of([text.written(text.numbers)], compute), 1
+        print(f"as it stands: {best:.4f}", flush=True)
+        while used < args.evaluations:
+            asked = search.ask()
+            texts = [text.written(numbers) for numbers in asked]
+            found = costs.of(texts, compute)
+            search.tell(asked, found)
+            used += len(asked)
+            if min(found) < best:
+                best = min(found)
+                args.output.write_text(texts[int(np.argmin(found))], "utf-8")
+            middle = np.median(found)
+            print(f"after {used} evaluations: {best:.4f}, this generation's middle {middle:.4f}", flush=True)
+    return best
+
+
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("passage", type=Path)
     parser.add_argument("--evaluations", type=int, default=500)
     parser.add_argument("--robots", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--sigma", type=float, default=0.5, help="of how far around the search looks at first")
+    parser.add_argument("--workers", metavar="N", help="processes, or a cluster: dask://HOST:8786 (default: all cores)")
     parser.add_argument("-o", "--output", type=Path, default=Path("found.yaml"))
     args = parser.parse_args()
-    root = args.passage.resolve().parents[2]
-    body = lumen.load(root).body
-    text = Text(args.passage.read_text("utf-8"), body)
-    trials = [Trial(body, root / "models", Motion.load(args.passage), args.seed + i) for i in range(args.robots)]
-    best, used = cost(text.written(text.numbers), trials, body), 1
-    print(f"as it stands: {best:.4f}")
-    options = {"seed": args.seed, "CMA_stds": text.reach, "verbose": -9}
-    search = cma.CMAEvolutionStrategy(text.numbers, args.sigma, options)
-    while used < args.evaluations:
-        asked = search.ask()
-        costs = [cost(text.written(numbers), trials, body) for numbers in asked]
-        search.tell(asked, costs)
-        used += len(asked)
-        if min(costs) < best:
-            best = min(costs)
-            args.output.write_text(text.written(asked[int(np.argmin(costs))]), "utf-8")
-        print(f"after {used} evaluations: {best:.4f}, this generation's middle {np.median(costs):.4f}", flush=True)
+    try:
+        searched(args, workers_of(args.workers), CACHE)
+    except LumenError as error:
+        sys.exit(str(error))
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

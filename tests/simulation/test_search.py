@@ -3,9 +3,12 @@
 from pathlib import Path
 
 import pytest
-from search_passage import Text, Trial, cost
+from search_passage import KeptCosts, Text, Trial, cost, cost_of
 
+from lumen.app.work.work_kit import WorkKit, models_in
+from lumen.app.work.workers import Workers
 from lumen.language.robots import Body
+from lumen.loading.files import read_files
 from lumen.motion import Motion
 from tests.simulation.conftest import MODELS
 
@@ -29,3 +32,29 @@ def test_a_passage_that_ends_elsewhere_costs_more(body: Body) -> None:
     bad = cost(text.written([0.0] * text.angles + text.numbers[text.angles :]), trials, body)
     assert good < 0.3 < bad
     assert good == cost(text.written(text.numbers), trials, body)
+
+
+@pytest.mark.soak
+def test_two_processes_find_the_costs_that_one_finds() -> None:
+    """Each of them loads the project and stands a robot up, which takes seconds."""
+    passage, root = (MODELS / "passages/sitrelax-straddle.yaml").read_text("utf-8"), MODELS.parent
+    kit = WorkKit({"": read_files(root)}, models_in(root))
+    tasks = [(text, passage, 1, 1) for text in (passage, passage.replace("at: 1", "at: 2"))]
+    alone = list(Workers(1).results(cost_of, kit, tasks))
+    assert sorted(Workers(2).results(cost_of, kit, tasks)) == alone
+
+
+def test_what_was_computed_is_kept_by_what_it_hangs_on(tmp_path: Path) -> None:
+    asked: list[str] = []
+
+    def compute(texts: list[str]) -> list[tuple[int, float]]:
+        asked.extend(texts)
+        return [(number, float(len(text))) for number, text in reversed(list(enumerate(texts)))]
+
+    assert KeptCosts(tmp_path, "one").of(["a", "bb", "a"], compute) == [1.0, 2.0, 1.0]
+    (file,) = tmp_path.iterdir()
+    file.write_text(file.read_text() + '["torn')
+    assert KeptCosts(tmp_path, "one").of(["bb", "ccc"], compute) == [2.0, 3.0]
+    assert KeptCosts(tmp_path, "one").of(["ccc", "a"], compute) == [3.0, 1.0]
+    assert KeptCosts(tmp_path, "other").of(["a"], compute) == [1.0]
+    assert asked == ["a", "bb", "ccc", "a"]

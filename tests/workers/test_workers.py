@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,25 @@ def test_what_a_dead_worker_was_at_is_done_again_and_told(tmp_path: Path, caplog
     (told,) = caplog.messages
     assert told.startswith("a worker process ended before its time (was there too little memory?): ")
     assert told.endswith(" tasks are done again")
+
+
+@pytest.mark.slow
+def test_a_crew_stays_for_one_round_after_the_other_also_when_one_dies(tmp_path: Path) -> None:
+    squares = [(number, number**2) for number in range(6)]
+    with Workers(2).crew(square_or_die, KIT, 2) as crew:
+        first = sorted(crew.results([(number, str(tmp_path)) for number in range(6)]))  # the marker is there
+        there = active_children()
+        again = sorted(crew.results([(number, str(tmp_path)) for number in range(6)]))
+        assert active_children() == there
+        died = sorted(crew.results([(number, str(tmp_path / "died")) for number in range(6)]))
+        assert not {*active_children()} & {*there}
+    assert first == again == died == squares
+    assert active_children() == []
+
+
+def test_a_crew_of_one_is_this_process() -> None:
+    with Workers(1).crew(process, KIT, 5) as crew:
+        assert {found for round in range(2) for _, found in crew.results(TASKS)} == {os.getpid()}
 
 
 @pytest.mark.slow

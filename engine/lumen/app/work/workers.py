@@ -1,25 +1,22 @@
 """Tasks for workers: in this process, in others of this machine, or on a cluster; what comes of them is the same."""
 
-import logging
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import Executor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from itertools import chain, islice
 from typing import Any, TypeVar
 
 from lumen.app.work.cluster import SCHEME, cluster, cluster_address, lost_in_cluster
+from lumen.app.work.crew import AloneCrew, Crew, Staff, StaffedCrew
 from lumen.app.work.local_pool import local_pool, working_folder
-from lumen.app.work.tasks import TaskHead, do_task, engine
+from lumen.app.work.tasks import TaskHead, engine
 from lumen.app.work.work_kit import UnpackedKit, WorkKit, name_of
-from lumen.errors import UsageError, WorkersError
+from lumen.errors import UsageError
 
 Result = TypeVar("Result")
 MAX_WORKERS = 1024
-IN_FLIGHT = 256
-"""How many tasks are given away at once: what they carry is in memory, and a cluster may have as many workers."""
-_log = logging.getLogger(__name__)
 
 
 class Workers:
@@ -44,25 +41,26 @@ class Workers:
         """
         waiting = iter(tasks)
         first = list(islice(waiting, self.count if not self.address else 1))
-        waiting = chain(first, waiting)
-        with working_folder() as folder:
-            if not self.address and len(first) <= 1:
+        with self.crew(function, kit, len(first)) as crew:
+            yield from crew.results(chain(first, waiting))
+
+    @contextmanager
+    def crew(self, function: Callable[..., Result], kit: WorkKit, most: int) -> Iterator[Crew]:
+        """Those who do one round of such tasks after the other, `most` of them at a time; they go when it is closed."""
+        with working_folder() as folder, ExitStack() as staffed:
+            if not self.address and min(self.count, most) <= 1:
                 own = UnpackedKit(kit, "kit", folder)
-                yield from ((number, function(own, *task)) for number, task in enumerate(waiting))
+                yield AloneCrew(lambda task: function(own, *task))
                 return
             packed = kit.packed()
             name = name_of(packed)
-            numbered: Iterator[tuple[int, tuple[Any, ...]]] = enumerate(waiting)
-            for again in (False, True):
-                with self._opened(packed, len(first), folder) as (executor, blob, where, lost):
-                    work = _Work(executor, TaskHead(function, engine(), name, where), blob, lost)
-                    yield from work.done(numbered)
-                if not work.left:
-                    return
-                if not again:
-                    _log.warning("%s: %d tasks are done again", self._trouble(), len(work.left))
-                numbered = chain(work.left.items(), numbered)
-            raise WorkersError(f"{self._trouble()} a second time: {self._remedy()}")
+
+            def staff() -> Staff:
+                staffed.close()  # those who are lost
+                executor, blob, where, lost = staffed.enter_context(self._opened(packed, most, folder))
+                return Staff(executor, TaskHead(function, engine(), name, where), blob, lost)
+
+            yield StaffedCrew(staff, self._trouble(), self._remedy())
 
     @contextmanager
     def _opened(self, packed: bytes, tasks: int, folder: Any) -> Iterator[tuple[Executor, Any, str, Any]]:
@@ -83,41 +81,6 @@ class Workers:
 
     def _remedy(self) -> str:
         return "look into the logs of its workers" if self.address else "take fewer of them with --workers 1"
-
-
-class _Work:
-    """Tasks that are given to an executor, some at a time; `left` are those of which nothing came back."""
-
-    def __init__(self, executor: Executor, head: TaskHead, blob: Any, lost: Any) -> None:
-        self._executor, self._head, self._blob, self._lost = executor, head, blob, lost
-        self._futures: dict[Future[Any], int] = {}
-        self._broken = False
-        self.left: dict[int, tuple[Any, ...]] = {}
-
-    def done(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> Iterator[tuple[int, Any]]:
-        """What came of the tasks, as it comes; none is taken any more as soon as workers are lost."""
-        while True:
-            self._give(islice(tasks, 0 if self._broken else IN_FLIGHT - len(self._futures)))
-            if not self._futures:
-                return
-            for future in wait(self._futures, return_when=FIRST_COMPLETED).done:
-                number = self._futures.pop(future)
-                try:
-                    result = future.result()
-                except self._lost:
-                    self._broken = True
-                else:
-                    del self.left[number]
-                    yield number, result
-
-    def _give(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> None:
-        for number, task in tasks:
-            self.left[number] = task
-            try:
-                self._futures[self._executor.submit(do_task, self._head, self._blob, task)] = number
-            except self._lost:
-                self._broken = True
-                return
 
 
 def workers_of(text: str | None) -> Workers:

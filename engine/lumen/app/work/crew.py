@@ -1,0 +1,103 @@
+"""Those who do tasks, one round after the other: this process itself, or the workers of an executor."""
+
+import logging
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from itertools import chain, islice
+from typing import Any, NamedTuple, Protocol
+
+from lumen.app.work.tasks import TaskHead, do_task
+from lumen.errors import WorkersError
+
+IN_FLIGHT = 256
+"""How many tasks are given away at once: what they carry is in memory, and a cluster may have as many workers."""
+_log = logging.getLogger(__name__)
+
+
+class Crew(Protocol):
+    """Who does rounds of tasks."""
+
+    def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        """The number of each task of this round and what came of it, as they come."""
+
+
+class AloneCrew:
+    """This process itself."""
+
+    def __init__(self, do: Callable[[tuple[Any, ...]], Any]) -> None:
+        self._do = do
+
+    def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        yield from ((number, self._do(task)) for number, task in enumerate(tasks))
+
+
+class Staff(NamedTuple):
+    """An executor, what comes with each task, the kit as tasks get it, and what they raise whose worker is lost."""
+
+    executor: Executor
+    head: TaskHead
+    blob: Any
+    lost: tuple[type[BaseException], ...]
+
+    def give(self, task: tuple[Any, ...]) -> Future[Any]:
+        return self.executor.submit(do_task, self.head, self.blob, task)
+
+
+class StaffedCrew:
+    """Workers of an executor; `staff` opens one, in place of one whose workers are lost.
+
+    Raises WorkersError with `trouble` and `remedy` where a round loses them twice.
+    """
+
+    def __init__(self, staff: Callable[[], Staff], trouble: str, remedy: str) -> None:
+        self._open, self._trouble, self._remedy = staff, trouble, remedy
+        self._staff: Staff | None = None
+
+    def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        numbered: Iterator[tuple[int, tuple[Any, ...]]] = enumerate(tasks)
+        for again in (False, True):
+            self._staff = self._staff or self._open()
+            work = _Work(self._staff)
+            yield from work.done(numbered)
+            if not work.left:
+                return
+            self._staff = None
+            if not again:
+                _log.warning("%s: %d tasks are done again", self._trouble, len(work.left))
+            numbered = chain(work.left.items(), numbered)
+        raise WorkersError(f"{self._trouble} a second time: {self._remedy}")
+
+
+class _Work:
+    """Tasks that are given to an executor, some at a time; `left` are those of which nothing came back."""
+
+    def __init__(self, staff: Staff) -> None:
+        self._staff = staff
+        self._futures: dict[Future[Any], int] = {}
+        self._broken = False
+        self.left: dict[int, tuple[Any, ...]] = {}
+
+    def done(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> Iterator[tuple[int, Any]]:
+        """What came of the tasks, as it comes; none is taken any more as soon as workers are lost."""
+        while True:
+            self._give(islice(tasks, 0 if self._broken else IN_FLIGHT - len(self._futures)))
+            if not self._futures:
+                return
+            for future in wait(self._futures, return_when=FIRST_COMPLETED).done:
+                number = self._futures.pop(future)
+                try:
+                    result = future.result()
+                except self._staff.lost:
+                    self._broken = True
+                else:
+                    del self.left[number]
+                    yield number, result
+
+    def _give(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> None:
+        for number, task in tasks:
+            self.left[number] = task
+            try:
+                self._futures[self._staff.give(task)] = number
+            except self._staff.lost:
+                self._broken = True
+                return
