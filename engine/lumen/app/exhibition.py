@@ -123,6 +123,7 @@ class Exhibition:
                 if directory.home:
                     self.node.robot.foreign.record = directory.records.write
                     keep_hold(self.node.robot.server.hold, directory.home.folder)
+                    self._operator.model.keep(directory.home.folder)
             if shared:
                 log = DeduplicationLog(home_of(directory.root, project.one_of_several) / DEDUPLICATION_FILE)
                 self.node.robot.server.recall(log)

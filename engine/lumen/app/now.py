@@ -36,6 +36,7 @@ class PresentMoment(NamedTuple):
     heard: Spoken | None
     waiting: tuple[HeldEvent, ...]
     autonomy: Autonomy
+    model: str | None
     events: int
     commands: int
     status: Callable[[], Status]
@@ -49,6 +50,7 @@ def moment(
     *,
     position: int,
     approvals: Approvals,
+    model: str | None,
     events: int,
     status: Callable[[], Status],
 ) -> PresentMoment:
@@ -65,6 +67,7 @@ def moment(
         doings.heard,
         approvals.waiting,
         approvals.autonomy,
+        model,
         events,
         doings.commands,
         status,
@@ -98,6 +101,7 @@ class NowView:
             "buttons": [_button(one, now.project) for one in shown_buttons(now.project.machine, now.snapshot, now.at)],
             "waiting": [_held(held, bundle, time) for held in now.waiting],
             "autonomy": now.autonomy,
+            "model": now.model,
             "queues": {"events": now.events, "commands": now.commands},
             **bundle.constant,
         }

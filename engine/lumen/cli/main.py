@@ -35,6 +35,7 @@ VERBS = {
     "why": "say why something happened in an exhibition",
     "why-not": "say why something did not happen in an exhibition, and what would have made it",
     "goto": "let a running exhibition enter a state",
+    "model": "let the language model of a running exhibition answer visitors, or not",
     "reload": "let a running exhibition read its files again, or say which files run",
     "replay": "take the steps of a journal again, with the files that ran then or with others",
     "story": "make a story of a recorded visit, to be kept as a test",

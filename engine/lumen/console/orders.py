@@ -132,6 +132,12 @@ def _autonomy(fields: Fields, keys: RobotKeys, by: str) -> Order:
     return _question(ask="autonomy", level=level, by=by)(keys)
 
 
+def _model(fields: Fields, keys: RobotKeys, by: str) -> Order:
+    if not isinstance(on := fields.get("on"), bool):
+        raise UsageError("`on` is true or false")
+    return _question(ask="model", on=on, by=by)(keys)
+
+
 def _files(verb: str) -> Callable[[Fields, RobotKeys, str], Order]:
     def make(fields: Fields, keys: RobotKeys, by: str) -> Order:
         if not isinstance(now := fields.get("now", False), bool):
@@ -152,6 +158,7 @@ NEEDS = {
     "posture": Role.OPERATOR,
     "goto": Role.OPERATOR,
     "autonomy": Role.OPERATOR,
+    "model": Role.OPERATOR,
     "apply": Role.AUTHOR,
     "try": Role.AUTHOR,
     "refuse": Role.AUTHOR,
@@ -174,5 +181,6 @@ _MAKERS: dict[str, Callable[[Fields, RobotKeys, str], Order]] = {
     ),
     "approve": _approve,
     "autonomy": _autonomy,
+    "model": _model,
     **{verb: _files(verb) for verb in ("apply", "try", "refuse", "rollback", "reload", "dry-run")},
 }

@@ -11,6 +11,7 @@ from lumen.app.asking import operator_key
 from lumen.app.decisions import Decisions
 from lumen.app.doings import Doings
 from lumen.app.live_behavior import LiveBehavior
+from lumen.app.model_switch import ModelSwitch
 from lumen.app.narrator import Narrator
 from lumen.app.now import NowView, PresentMoment, moment
 from lumen.app.parts.part import Part
@@ -37,6 +38,7 @@ MAX_NOTE = 300
 REQUESTS = (
     '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "press", "button": …}`,'
     ' `{"ask": "approve", "id": …, "go": true}`, `{"ask": "autonomy", "level": "ask"}`,'
+    ' `{"ask": "model", "on": false}`,'
     ' `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, `{"ask": "fork", "position": …}`,'
     ' or `{"ask": "why", "what": …}`'
 )
@@ -90,6 +92,7 @@ class OperatorPart(Part, Observer):
         told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
         self._decisions = Decisions(runtime.approvals, narrator, record, keep, *told)
         behavior.forgetting.append(lambda _: runtime.approvals.forget())
+        self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, record)
         self._raising = RaisedEvents(behavior.loop, self._reply)
         behavior.loop.observers += [self.steps, self._doings, self._raising, self]
 
@@ -164,6 +167,7 @@ class OperatorPart(Part, Observer):
             self._doings,
             position=self._journal.tail.next - 1,
             approvals=runtime.approvals,
+            model=self.model.state,
             events=loop.waiting,
             status=self._status(),
         )
@@ -187,6 +191,8 @@ class OperatorPart(Part, Observer):
                 return self._decisions.approve(id, person_in(body), go=go)
             case {"ask": "autonomy", "level": "ask" | "alone" as level}:
                 return self._decisions.autonomy(level, person_in(body))
+            case {"ask": "model", "on": bool(on)}:
+                return self.model.switch(person_in(body), on=on)
             case {"ask": "goto", "state": str(state)}:
                 return self._goto(state[:200], person_in(body), now, only=body.get("only") == "check")
             case _:

@@ -130,6 +130,8 @@ def assemble(
             needs=brain.needs,
         )
         operator.marking = recording.marking
+        if run_directory.home and story is None:
+            operator.model.keep(run_directory.home.folder)
         tell = partial(narrator.line, "fleet")
         agent = fleet_part(run_directory.root, bus, behavior, reloader, run_directory.home, tell, brain.needs)
         node.parts += [

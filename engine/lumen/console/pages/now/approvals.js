@@ -25,3 +25,11 @@ export function Autonomy({ robot }) {
   return html`<fieldset class="choice"><legend>${t("autonomy")}</legend>${["ask", "alone"].map((level) => html`<label>
     <input type="radio" name="autonomy-${robot.robot}" value=${level} checked=${robot.autonomy === level} onChange=${() => set(level)} /><span>${t(`autonomy.${level}`)}</span></label>`)}</fieldset>`;
 }
+
+/** Whether a language model may answer visitors. */
+export function Model({ robot }) {
+  if (!robot.model || !may("operator")) return null;
+  const set = (on) => on !== (robot.model === "on") && command(robot.robot, "model", { on }, t(on ? "model.on" : "model.off"));
+  return html`<fieldset class="choice"><legend>${t("model")}</legend>${[true, false].map((on) => html`<label>
+    <input type="radio" name="model-${robot.robot}" value=${on} checked=${(robot.model === "on") === on} onChange=${() => set(on)} /><span>${t(on ? "model.on" : "model.off")}</span></label>`)}</fieldset>`;
+}

@@ -1,6 +1,6 @@
 // How the robot and what runs it are: power, heat, distance, time, processes, modules, queues.
 import { Part, Since, clock, fixed, html, percent, t } from "../ui.js";
-import { Autonomy } from "./approvals.js";
+import { Autonomy, Model } from "./approvals.js";
 import { processesOf } from "./troubles.js";
 
 export const LOW = 20; // [%]
@@ -48,5 +48,5 @@ export function Body({ robot }) {
   const reload = robot.last_reload;
   return html`<${Part} title=${t("body")} kind="body"><${Senses} robot=${robot} /><${Processes} robot=${robot} />
     ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
-      <span class="quiet">${clock(reload.at)}</span> ${reload.text} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}<${Autonomy} robot=${robot} /></${Part}>`;
+      <span class="quiet">${clock(reload.at)}</span> ${reload.text} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}<${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Part}>`;
 }

@@ -33,6 +33,7 @@ export default {
   "way.open": "open", "way.closed": "closed", "way.always": "at once", "way.stays": "stays", "way.from": "from {state}", "guard.if": "if:", "guard.true": "true:", "guard.false": "false:",
   "buttons": "Buttons", "buttons.none": "The active states declare no buttons.", "button.hold": "Hold for one second.", "button.ask": "{label}: really?", "button.event": "Sends the event {event}.",
   "approvals": "Waits for your GO", "approvals.count": "Waiting for a GO: {count}", "approve.go": "GO", "approve.stay": "Don't", "approve.goes": "Goes by itself in", "approve.stays": "Stays, if nobody says GO, in",
+  "model": "Language model", "model.on": "answers visitors", "model.off": "silenced", "command.model": "Language model",
   "autonomy": "Steps that need a GO", "autonomy.ask": "ask me", "autonomy.alone": "go alone",
   "body": "Robot", "battery": "Battery", "battery.low": "low", "heat": "Hottest", "heat.high": "hot", "sonar": "Sonar", "left": "left", "right": "right",
   "realtime": "Real time", "realtime.slow": "slow", "queues": "Queues", "queues.both": "events: {events}, commands: {commands}",

@@ -33,6 +33,7 @@ export default {
   "way.open": "terbuka", "way.closed": "tertutup", "way.always": "segera", "way.stays": "tetap", "way.from": "dari {state}", "guard.if": "jika:", "guard.true": "benar:", "guard.false": "salah:",
   "buttons": "Tombol", "buttons.none": "Keadaan yang aktif tidak menyatakan tombol.", "button.hold": "Tahan selama satu detik.", "button.ask": "{label}: sungguh?", "button.event": "Mengirim peristiwa {event}.",
   "approvals": "Menunggu izin Anda", "approvals.count": "Menunggu izin: {count}", "approve.go": "JALAN", "approve.stay": "Jangan", "approve.goes": "Jalan sendiri dalam", "approve.stays": "Tetap, jika tidak ada yang mengizinkan, dalam",
+  "model": "Model bahasa", "model.on": "menjawab pengunjung", "model.off": "dibungkam", "command.model": "Model bahasa",
   "autonomy": "Langkah yang perlu izin", "autonomy.ask": "tanya saya", "autonomy.alone": "jalan sendiri",
   "body": "Robot", "battery": "Baterai", "battery.low": "rendah", "heat": "Terpanas", "heat.high": "panas", "sonar": "Sonar", "left": "kiri", "right": "kanan",
   "realtime": "Waktu nyata", "realtime.slow": "lambat", "queues": "Antrean", "queues.both": "peristiwa: {events}, perintah: {commands}",

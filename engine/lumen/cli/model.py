@@ -1,0 +1,38 @@
+"""`lumen model on|off`: whether the language model of a running exhibition may speak."""
+
+import argparse
+
+from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.app.resting import TAKEN
+from lumen.cli.commanding import told
+from lumen.cli.formats import configure_format
+from lumen.cli.person import person
+from lumen.cli.reach import configure_reach, names_meant, reach
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("state", metavar="STATE", choices=("on", "off"), help="on, or off until somebody says on")
+    configure_reach(parser)
+    configure_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 once it is so, 1 where it could not be."""
+    codes = []
+    for name in names_meant(options):
+        options.robot_name = name
+        codes.append(_switch(options))
+    return max(codes)
+
+
+def _switch(options: argparse.Namespace) -> int:
+    reached = reach(options)
+    try:
+        question = {"ask": "model", "on": options.state == "on", "by": person()}
+        answer = next(ask(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
+    finally:
+        reached.bus.close()
+    kept = f", {answer['text']}" if answer.get("text") else ""
+    if answer.get("verdict") == "refused":
+        return told(options, answer["reason"], "")
+    return told(options, TAKEN, f"the language model is {options.state}{kept}")
