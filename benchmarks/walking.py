@@ -4,8 +4,8 @@
 
 Each robot differs from the model: every link up to 10 % lighter or heavier, friction 0.5 to 1.0, and noisy sensors.
 Speeds are asked for by `move`, for 3 s to get there and 8 s more. `off` is how far from its goal a robot ends,
-`odometry` how far from where it believes to be, each the worst of those still upright. 2 robots for a look, 20 for the
-figures.
+`odometry` how far from where it believes to be, each the worst of those still upright; one that is `rested` has stood
+for 12 s before. 2 robots for a look, 20 for the figures.
 """
 
 import argparse
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
 from tests.simulation.bodies import shipped  # noqa: E402
-from tests.simulation.walks import any_robot, bump, ramp, strayed, truth, walk  # noqa: E402
+from tests.simulation.walks import RESTED, any_robot, bump, ramp, strayed, truth, walk  # noqa: E402
 
 from lumen.interpreters.gait import Pose  # noqa: E402
 from lumen.language.commands import Move, Walk  # noqa: E402
@@ -48,11 +48,12 @@ def fast(name: str, start: Start, robots: int, command: Move, speed: Callable[[P
     print(f"{name:<26} {len(reached):2d} of {robots} upright   {np.mean(reached or [0.0]):5.3f} on average", flush=True)
 
 
-def far(name: str, start: Start, robots: int, command: Walk) -> None:
-    """Print how true robots end that are sent to a place, and how true they believe to be."""
+def far(name: str, start: Start, robots: int, command: Walk, rest: float = 0.0) -> None:
+    """Print how true robots end that are sent to a place after a `rest` [s], and how true they believe to be."""
     upright, off, aside, wrong = 0, [0.0], [0.0], [0.0]
     for seed in range(robots):
         robot = start(seed)
+        robot.advance(rest)
         walked = walk(robot, command)
         if not walked.upright:
             continue
@@ -84,6 +85,7 @@ def main() -> None:
     fast("turning [rad/s]", on(), robots, Move(0.0, 0.0, 9.0), lambda way: way.theta)
     far("0.5 m straight", on(), robots, Walk(0.5))
     far("5 m straight", on(), robots, Walk(5.0))
+    far("5 m straight, rested", on(), robots, Walk(5.0), RESTED)
     far("over rails of 5 mm", on(bump(0.005)), robots, Walk(1.2))
     far("up 5 degrees", on(ramp(5.0)), robots, Walk(1.0))
 

@@ -25,12 +25,18 @@ def angles(robot: SimulatedRobot) -> np.ndarray[tuple[int], np.dtype[np.float64]
 
 
 def rates(robot: SimulatedRobot, seconds: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """How wrong the gyrometer is in each control period [rad/s]."""
-    wrong = []
+    """How wrong the gyrometer is in each control period [rad/s]: it tells the mean of the one before."""
+    axes = robot.world.gyro_axes
+    assert axes is not None
+    wrong, before = [], axes.reshape(3, 3).copy()
+    robot.advance(0.01)
     for _ in range(round(seconds / 0.01)):
-        really = robot.world.gyro
+        now = axes.reshape(3, 3).copy()
+        t = before.T @ now
+        really = np.array((t[2, 1] - t[1, 2], t[0, 2] - t[2, 0], t[1, 0] - t[0, 1])) / 0.02
         robot.advance(0.01)
         wrong.append(np.array((*robot._sensors.gyro, robot._sensors.turning)) - really)
+        before = now
     return np.array(wrong)
 
 

@@ -29,7 +29,10 @@ SLOPE = 2.0
 LONGEST = 120.0
 """No walk takes longer [s]."""
 
-NEAR, STRAIGHT = 2.0, 3.0
+RESTED = 12.0
+"""A robot that has stood so long knows its gyrometer's bias [s]."""
+
+NEAR, STRAIGHT = 1.5, 1.5
 """How true a walk has to end [cm], [degrees]."""
 
 

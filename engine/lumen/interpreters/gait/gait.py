@@ -1,7 +1,7 @@
 """A walk to a place, or on and on, tick by tick: planned anew from each foot that has landed."""
 
 from collections.abc import Callable, Mapping
-from math import atan2, hypot, inf
+from math import hypot, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +12,9 @@ from lumen.interpreters.gait.legs import LegGeometry, Placed, Side, other, sign,
 from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
 from lumen.interpreters.gait.planning import GaitPhase, StepPlanner, between
-from lumen.interpreters.gait.poses import Pose, wrap
+from lumen.interpreters.gait.poses import Pose
 from lumen.interpreters.gait.stance import Stance, stand
+from lumen.interpreters.gait.tracking import StepTracker
 from lumen.interpreters.gait.velocity import Velocity, strides
 
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
@@ -21,9 +22,6 @@ CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
 
 GOAL_TOLERANCE, GOAL_HEADING_TOLERANCE = 0.008, 0.02
 """How far from its goal the robot may stop [m], [rad]."""
-
-SLIP_ANGLE = 0.015
-"""A foot has slipped where encoders and gyrometer disagree by more than this [rad] in a step: both err by less."""
 
 _SIDE_BY_SIDE = Pose(0.015, 0.015, 0.06)
 _FORESIGHT, _MORE, _LATEST = 3, 8, 0.5
@@ -46,7 +44,7 @@ class Gait:
 
     `angles` begin the walk: what the legs do on these feet before the first step. Then `tick` says every `dt` [s] what
     they do next, and `heading` is the torso's [rad], as planned. It knows where the feet are from the legs' measured
-    angles, and from the torso's measured heading whether the bearing foot slipped around.
+    angles, and where they point from the torso's measured heading, from when it is to `face` ahead.
     """
 
     def __init__(
@@ -65,7 +63,7 @@ class Gait:
         self._stopping, self._speed = False, Velocity()
         self._side = first_side(goal.seen_from(middle(feet)) if isinstance(goal, Pose) else Pose(*goal))
         self._most = 2 * len(self.coming) + _MORE if isinstance(goal, Pose) else inf
-        self._north: float | None = None
+        self._tracker: StepTracker | None = None
         self._mass = self._dcm = self._zmp = between(feet, self.pace)
         self.heading, self._offset = middle(feet).theta, np.array(_TORSO_TO_MASS)
         for _ in range(4):
@@ -95,13 +93,17 @@ class Gait:
             return [step, self._beside(step.pose, other(step.side))]
         return footsteps(self.feet, self.goal, self._side, self.pace)
 
+    def face(self, measured: Mapping[str, float], heading: float) -> None:
+        """Believe that the feet stand as they should now; `measured` and `heading` as `tick` takes them."""
+        self._tracker = StepTracker(self._legs, self.feet, measured, heading)
+
     def tick(self, measured: Mapping[str, float], heading: float) -> GaitTick | None:
         """What the legs do next; None once the robot stands.
 
         `measured` are the legs' angles now, `heading` the torso's, from wherever it is counted [rad].
         """
-        if self._north is None:
-            self._north = heading - self._heading(measured)
+        if self._tracker is None:
+            self.face(measured, heading)
         if self._phase.over and not self._go_on(measured, heading):
             return None
         phase = self._phase
@@ -109,6 +111,8 @@ class Gait:
         lifted = phase.lifted
         if phase.swing and lifted:
             feet[lifted] = phase.swing.at(phase.part)
+        elif self._tracker and phase.swing:
+            self._tracker.look(phase.swing.side, measured)
         self._zmp = phase.zmp[phase.tick]
         self._mass, self._dcm = self._pendulum.fall(self._mass, self._dcm, self._zmp)
         phase.tick += 1
@@ -140,9 +144,9 @@ class Gait:
 
     def _land(self, planned: Pose, measured: Mapping[str, float], heading: float) -> None:
         """Believe the joints where the foot has landed, and keep all plans as seen from it."""
+        assert self._tracker
         side, bearing = self._side, other(self._side)
-        slipped = wrap(heading - (self._north or 0.0) - self._heading(measured))
-        stood = self.feet[bearing].then(Pose(0.0, 0.0, slipped if abs(slipped) > SLIP_ANGLE else 0.0))
+        stood = self._tracker.stands(bearing, self.feet, measured, heading)
         landed = stood.then(self._legs.foot_from(bearing, measured))
         self.feet = {bearing: stood, side: landed}
 
@@ -152,13 +156,6 @@ class Gait:
         self._mass, self._dcm, self._zmp = moved(self._mass), moved(self._dcm), moved(self._zmp)
         self.heading += landed.theta - planned.theta
         self._side, self.steps = bearing, self.steps + 1
-        self._north = heading - self._heading(measured)
-
-    def _heading(self, measured: Mapping[str, float]) -> float:
-        """The torso's heading [rad], if the bearing foot has not slipped."""
-        bearing = other(self._side)
-        turned, _ = self._legs.sole(bearing, measured)
-        return self.feet[bearing].theta - atan2(turned[1, 0], turned[0, 0])
 
     def _arrived(self, feet: Feet) -> bool:
         seen = feet["L"].seen_from(feet["R"])

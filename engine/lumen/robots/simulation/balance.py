@@ -16,7 +16,7 @@ BALANCE_GAIN = 0.05
 """Ankle angle for each unit of the torso's turning speed [rad per rad/s]: the toes press where it falls to."""
 
 MAX_TRIM = 0.15
-_SMOOTHING = 0.5
+_SMOOTHING = 0.3
 
 HIP_SAG, _SAG_SMOOTHING = 0.02, 0.8
 """How far the hip of a leg that bears alone gives way [rad]: its servo lags by 2 N m, and its gear has play."""

@@ -9,6 +9,7 @@ from lumen.interpreters.gait.poses import wrap
 from lumen.language.imperfections import Imperfections
 from lumen.robots.simulation.gyrometer import Gyrometer
 from lumen.robots.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
+from lumen.robots.simulation.mean_rates import MeanRates
 from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 
@@ -25,12 +26,12 @@ class BodySensors:
         self._world, self._random = world, np.random.default_rng(seed)
         self._step = ENCODER_STEP if lacking.quantisation else 0.0
         self._noise = ENCODER_NOISE if lacking.noise else 0.0
-        self._gyrometer = Gyrometer(lacking, seed)
+        self._gyrometer, self._rates = Gyrometer(lacking, seed), MeanRates(world.gyro_axes)
         self.angles = world.angles
         """Where the encoders say the joints are."""
         self.gyro, self.turning = (0.0, 0.0), 0.0
         self.heading = 0.0
-        self._attitude, self._axes, self._rates = np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3).ravel(), np.zeros(3)
+        self._attitude, self._axes, self._turns = np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3).ravel(), np.zeros(3)
 
     @property
     def up(self) -> tuple[float, float, float]:
@@ -59,7 +60,7 @@ class BodySensors:
         errors = self._random.standard_normal(len(angles) + 3)
         angles += self._noise * errors[3:]
         self.angles = np.round(angles / step) * step if step else angles
-        roll, pitch, yaw = self._gyrometer.feel(self._world.gyro, errors[:3], at_rest=at_rest)
+        roll, pitch, yaw = self._gyrometer.feel(self._rates.feel(), errors[:3], at_rest=at_rest)
         self.gyro, self.turning = (roll, pitch), yaw
         self._turn(roll, pitch, yaw)
 
@@ -67,11 +68,11 @@ class BodySensors:
         """Turn the believed attitude as fast as the gyrometer says, and about level axes to where up is felt."""
         axes, (x, y, z) = self._axes, self._world.up
         _, _, _, _, _, _, u, v, w = axes.tolist()
-        self._rates[:] = (
+        self._turns[:] = (
             roll + (y * w - z * v) / CONTROL_PERIOD,
             pitch + (z * u - x * w) / CONTROL_PERIOD,
             yaw + (x * v - y * u) / CONTROL_PERIOD,
         )
-        mujoco.mju_quatIntegrate(self._attitude, self._rates, CONTROL_PERIOD)
+        mujoco.mju_quatIntegrate(self._attitude, self._turns, CONTROL_PERIOD)
         mujoco.mju_quat2Mat(axes, self._attitude)
         self.heading += wrap(atan2(axes[3], axes[0]) - self.heading)

@@ -109,9 +109,11 @@ class WalkController:
     def _set_out(self, way: Pose | Velocity, now: float) -> "WalkActivity":
         if reason := self.hazards.danger():
             raise RobotRefusedError(f"{reason}: the robot did not set out")
-        feet = self.odometry.feel(self.measured())
+        measured = self.measured()
+        feet = self.odometry.feel(measured)
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
         gait = Gait(self.legs, feet, goal, self.centre_of_mass, self.pace(way))
+        gait.face(measured, self.sensors.heading)
         self.odometry.check(gait.coming)
         self._walking = WalkActivity(self, gait, now)
         return self._walking

@@ -63,7 +63,12 @@ class World:
         """Whether the robot can be elsewhere than where it was built in."""
         self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
         self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0
-        self._gyro, self._accelerometer = self._sensor(roles.sensors.gyro), self._sensor(roles.sensors.accelerometer)
+        self._accelerometer = self._sensor(roles.sensors.accelerometer)
+        gyro = roles.sensors.gyro
+        self.gyro_axes: NDArray[np.float64] | None = None
+        """The axes that a gyrometer turns with, now, Shape (9,); None where the body has none."""
+        if gyro:
+            self.gyro_axes = self.data.site_xmat[self.model.sensor(f"{prefix}/{gyro}").objid[0]]
         self._torso_axes = self.data.xmat[self.torso]
         self._substeps = round(CONTROL_PERIOD / self.model.opt.timestep)
         self._warnings = self.data.warning.number
@@ -99,12 +104,6 @@ class World:
         torques = np.zeros(len(self.body.joints))
         torques[self.driven] = self.data.actuator_force[self.actuators]
         return torques
-
-    @property
-    def gyro(self) -> tuple[float, float, float]:
-        """How fast the torso rolls to the right, pitches forward and turns to the left [rad/s]."""
-        roll, pitch, yaw = self._felt(self._gyro)
-        return roll, pitch, yaw
 
     @property
     def acceleration(self) -> tuple[float, float, float]:
