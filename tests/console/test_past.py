@@ -41,6 +41,17 @@ def test_a_day_has_its_visits_and_numbers(browser: Browser) -> None:
     assert "asked,'=1+1,1" in answer.body.decode()
 
 
+def test_a_question_becomes_a_passage_of_the_project(copy: Path) -> None:
+    with closing(Hosted(copy)), closing(Served(copy)) as served:
+        until(lambda: any(robot["connected"] for robot in served.browser.robots))
+        passage = {"question": "what is love", "answer": "A question.", "language": "en"}
+        assert served.browser.post("/api/passages", passage).data == {"file": "knowledge/what-is-love.yaml"}
+        assert "what is love" in (copy / "knowledge" / "what-is-love.yaml").read_text("utf-8")
+        refused = served.browser.post("/api/passages", {**passage, "answer": ""})
+        assert (refused.status, "`answer`" in refused.data["reason"]) == (400, True)
+        assert served.browser.get("/api/day").data["numbers"]["unanswered"] == []
+
+
 def test_what_happens_between_visits_has_its_place_in_the_day(copy: Path) -> None:
     with closing(Hosted(copy)) as hosted, closing(Served(copy)) as served:
         until(lambda: any(robot["connected"] for robot in served.browser.robots))

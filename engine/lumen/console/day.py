@@ -47,6 +47,15 @@ class DayVisit:
         }  # fmt: skip
 
 
+class AwaitedAnswer(NamedTuple):
+    """A question (`ask`) that was not answered yet, what was heard, and in which visit."""
+
+    text: str
+    language: str
+    heard: str
+    visit: DayVisit | None
+
+
 class DayMark(NamedTuple):
     """What somebody marked: at which position, when [s since 1970], in which words."""
 
@@ -84,6 +93,8 @@ class Day:
     missed: Counter[str] = field(default_factory=Counter)
     answers: Counter[str] = field(default_factory=Counter)
     languages: Counter[str] = field(default_factory=Counter)
+    unanswered: Counter[tuple[str, str]] = field(default_factory=Counter)
+    asking: "dict[str, AwaitedAnswer]" = field(default_factory=dict)
     hours: Counter[int] = field(default_factory=Counter)
     falls: int = 0
     marks: list[DayMark] = field(default_factory=list)
@@ -91,13 +102,17 @@ class Day:
     def to_json(self) -> dict[str, Any]:
         """For the page: `numbers` are of the whole day, rows of a text and how often, the most frequent first."""
         lengths = [visit.ended - visit.began for visit in self.visits]
-        numbers = {
+        numbers: dict[str, Any] = {
             "visits": len(lengths),
             "mean_seconds": round(sum(lengths) / len(lengths), 1) if lengths else None,
             "longest_seconds": round(max(lengths), 1) if lengths else None,
             "falls": self.falls,
             "hours": sorted([hour, count] for hour, count in self.hours.items()),
         }
+        numbers["unanswered"] = [
+            {"text": text, "language": language, "count": count}
+            for (text, language), count in self.unanswered.most_common(MAX_ROWS)
+        ]
         rows = {name: getattr(self, name).most_common(MAX_ROWS) for name in COUNTED}
         return {
             "date": self.day.isoformat(), "dates": [one.isoformat() for one in self.dates],
@@ -142,6 +157,8 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
         else:
             _lie_between(today, entry, at)
     for one in days.values():
+        for id in list(one.asking):
+            _unanswered(one, id)
         one.languages = Counter(visit.language for visit in one.visits if visit.language)
     dates = sorted(one for one, day in days.items() if day.visits) or sorted(days)
     chosen = wanted or (dates[-1] if dates else datetime.now().date())
@@ -182,17 +199,43 @@ def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep) -> None:
     if asked:
         words = " ".join(str(text).lower().split())[:MAX_TEXT]
         day.asked[words] += 1
-        missed = not understood(entry, taken)
+        asks = any((found := started(command)) and found[1] == "Ask" for command in entry.commands)
+        missed = not asks and not understood(entry, taken)
         if missed:
             day.missed[words] += 1
         if visit:
             visit.asked += 1
             visit.missed += missed
+    _ask(day, visit, entry)
     for command in entry.commands:
         if (found := started(command)) and found[1] == "Say":
             day.answers[str(found[2].get("text", ""))[:MAX_TEXT]] += 1
             if visit:
                 visit.language = str(found[2].get("language") or visit.language)
+
+
+def _ask(day: Day, visit: DayVisit | None, entry: JournalInput) -> None:
+    """What was asked, and whether it was answered; the ids begin anew with each run."""
+    kind, _, id = entry.event.name.partition(".command.")
+    data = entry.event.data if isinstance(entry.event.data, Mapping) else {}
+    if kind == "answer" and not data.get("filler"):
+        day.asking.pop(id, None)
+    heard = " ".join(str(data.get("result", "")).lower().split())[:MAX_TEXT]
+    for command in entry.commands:
+        if (found := started(command)) and found[1] == "Ask":
+            _unanswered(day, found[0])
+            said = found[2]
+            text, language = (str(said.get(name, "")) for name in ("question", "language"))
+            day.asking[found[0]] = AwaitedAnswer(text[:MAX_TEXT], language, heard, visit)
+
+
+def _unanswered(day: Day, id: str) -> None:
+    if one := day.asking.pop(id, None):
+        day.unanswered[one.text, one.language] += 1
+        if one.heard:
+            day.missed[one.heard] += 1
+        if one.visit:
+            one.visit.missed += 1
 
 
 def understood(entry: JournalInput, taken: ReplayedStep) -> bool:

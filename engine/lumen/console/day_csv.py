@@ -24,6 +24,8 @@ def day_csv(day: Day) -> str:
     for key in ("hours", *COUNTED):
         for name, count in numbers[key]:
             write.writerow([told["date"], key, _cell(name), count])
+    for one in numbers["unanswered"]:
+        write.writerow([told["date"], "unanswered", _cell(one["text"]), one["count"]])
     return text.getvalue()
 
 

@@ -25,7 +25,7 @@ class Jobs:
     """Does jobs (`lumen.console.job` has them) for the project in `root`. Everything raises DeniedError."""
 
     def __init__(self, root: Path) -> None:
-        self._root, self._turn = root, asyncio.Lock()
+        self.root, self._turn = root, asyncio.Lock()
         self._waiting = 0
 
     async def do(self, job: str, *arguments: Any, told: AsyncIterator[bytes] | None = None) -> bytes:
@@ -43,7 +43,7 @@ class Jobs:
 
     async def begin(self, job: str, *arguments: Any) -> Process:
         """A process that does a job, until it was `ended`."""
-        line = [sys.executable, "-m", PROGRAM, job, str(self._root), orjson.dumps(arguments).decode()]
+        line = [sys.executable, "-m", PROGRAM, job, str(self.root), orjson.dumps(arguments).decode()]
         try:
             return await asyncio.create_subprocess_exec(*line, stdin=PIPE, stdout=PIPE, limit=1 << 20)
         except OSError as error:

@@ -9,6 +9,7 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from lumen.app.answering import WHY, WHY_NOT
+from lumen.app.new_passage import write_passage
 from lumen.console.entry_words import told_of
 from lumen.console.job_promises import NOTHING
 from lumen.console.jobs import Jobs
@@ -16,7 +17,7 @@ from lumen.console.journal_source import JournalSource
 from lumen.console.known_robot import KnownRobot
 from lumen.console.people import Role
 from lumen.console.requests import NO_STORE, DeniedError, Reception, as_json
-from lumen.errors import BusError
+from lumen.errors import BusError, UsageError
 
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""
@@ -37,6 +38,7 @@ class Past:
             Route("/api/day.csv", self._csv),
             Route("/api/entries", self._entries),
             Route("/api/files", self._files),
+            Route("/api/passages", self._passage, methods=["POST"]),
         ]
 
     async def _why(self, request: Request) -> Response:
@@ -116,6 +118,19 @@ class Past:
         if self._is_ours(view) and changed:
             said["replay"] = orjson.loads(await self._jobs.do("replay", self._home(view)))
         return as_json(said)
+
+    async def _passage(self, request: Request) -> Response:
+        """A question that nobody could answer is saved as a passage, and judged as any file that is saved."""
+        self._reception.person(request, Role.AUTHOR)
+        data = await self._reception.posted(request)
+        if not self._is_ours(self._reception.robot(data.get("robot"))):
+            raise DeniedError(400, "this robot's files are elsewhere: open the console there")
+        question, answer, language = (str(data.get(key, "")) for key in ("question", "answer", "language"))
+        try:
+            file = write_passage(self._jobs.root, question, answer, language)
+        except UsageError as error:
+            raise DeniedError(400, str(error)) from None
+        return as_json({"file": file.as_posix()})
 
     def _asked(self, request: Request, needs: Role) -> KnownRobot:
         self._reception.person(request, needs)

@@ -1,0 +1,68 @@
+"""A question that nobody could answer becomes a passage: one file in knowledge/, which counts as any saved file."""
+
+import os
+import re
+import unicodedata
+from pathlib import Path
+
+import yaml
+
+from lumen.errors import UsageError
+from lumen.language.knowledge import KNOWLEDGE_FOLDER
+
+MAX_TEXT = 1_000
+"""Characters of a question, or of an answer."""
+MAX_NAME = 40
+MAX_SAME = 100
+"""Files whose names begin in the same way."""
+HEADER = "# yaml-language-server: $schema=../schemas/knowledge.schema.json\n\n"
+_LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
+
+
+def write_passage(root: Path, question: str, answer: str, language: str) -> Path:
+    """Write the passage of a question and its answer, in one language; its file, from the project's folder.
+
+    No file is written over. Raises UsageError where that is no question, no answer or no language, or the folder can't
+    be written.
+    """
+    question, answer = _line(question, "question"), _line(answer, "answer")
+    if not _LANGUAGE.fullmatch(language):
+        raise UsageError("`language` is one such as `en`")
+    data = {"questions": {language: [question]}, "answer": {language: answer}}
+    text = HEADER + yaml.safe_dump(data, allow_unicode=True, sort_keys=False, width=110)
+    folder = root / KNOWLEDGE_FOLDER
+    try:
+        folder.mkdir(exist_ok=True)
+        if folder.is_symlink():
+            raise UsageError(f"{KNOWLEDGE_FOLDER}/ is a link: nothing is written there")
+        for name in _names(question):
+            file = folder / f"{name}.yaml"
+            if not file.with_suffix(".md").exists() and _created(file, text):
+                return file.relative_to(root)
+    except OSError as error:
+        raise UsageError(f"{KNOWLEDGE_FOLDER}/ can't be written: {error.strerror}") from None
+    raise UsageError(f"{MAX_SAME} passages are called like this one: rename some of them")
+
+
+def _line(text: str, what: str) -> str:
+    line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
+    if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
+        raise UsageError(f"`{what}` is a text of 1 to {MAX_TEXT} characters")
+    return line
+
+
+def _names(question: str) -> list[str]:
+    plain = unicodedata.normalize("NFKD", question.casefold()).encode("ascii", "ignore").decode()
+    name = "-".join(re.findall(r"[a-z0-9]+", plain))[:MAX_NAME].strip("-") or "question"
+    return [name, *(f"{name}-{number}" for number in range(2, MAX_SAME + 1))]
+
+
+def _created(file: Path, text: str) -> bool:
+    """Whether the file was not there, and now holds the text: all of it or nothing, under this name."""
+    try:
+        held = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+    except FileExistsError:
+        return False
+    with open(held, "w", encoding="utf-8") as opened:
+        opened.write(text)
+    return True
