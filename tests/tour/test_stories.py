@@ -55,7 +55,7 @@ def test_the_stories_together_enter_every_state_and_take_every_transition(  # ty
 @pytest.mark.slow
 def test_whatever_happens_the_tour_comes_back_to_where_it_began(project: Project) -> None:
     found = explored(project, "tour", bound=10_000)
-    assert found.exploration.complete
+    assert found.complete
     assert found.findings == ()
     assert found.unseen == ()
 

@@ -35,13 +35,26 @@ class ExploredFinding:
 
 @dataclass(frozen=True)
 class Explored:
-    """An exploration of a behaviour; `unseen` is what it did not come upon, `took` how long it took [s]."""
+    """An exploration of a behaviour: how many `configurations` it came to in how many `steps`, and how many were left
+    `waiting` in sight.
+
+    `kept` are the properties that hold wherever it came, `unseen` is what it did not come upon, `took` how long it took
+    [s]. `known` ones were explored at another time.
+    """
 
     behavior: str
-    exploration: Exploration
+    configurations: int
+    steps: int
+    waiting: int
+    kept: tuple[str, ...]
     findings: tuple[ExploredFinding, ...]
     unseen: tuple[Gap, ...]
     took: float
+    known: bool = False
+
+    @property
+    def complete(self) -> bool:
+        return not self.waiting
 
 
 def explored(
@@ -65,7 +78,8 @@ def explored(
         ExploredFinding(f.kind, _place(project, behavior, f), f.message, story(project, behavior, f))
         for f in found.findings
     )
-    return Explored(behavior, found, findings, tuple(_unseen(project, behavior, found)), time.perf_counter() - began)
+    counts = found.configurations, found.steps, found.waiting, found.kept
+    return Explored(behavior, *counts, findings, tuple(_unseen(project, behavior, found)), time.perf_counter() - began)
 
 
 def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:

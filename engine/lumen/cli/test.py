@@ -8,6 +8,7 @@ from pathlib import Path
 
 import lumen
 from lumen.app.exploring import Explored, explored
+from lumen.app.kept_explorations import KeptExplorations
 from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.app.stories import home_of, stories_of
 from lumen.cli.model_option import configure_model, use_model
@@ -114,11 +115,16 @@ def _explore(project: Project, options: argparse.Namespace) -> Explored:
     names = [state.name for state in project.behaviors[behavior].states.values() if state.path]
     if options.home and options.home not in names:
         raise UsageError(f"no state `{options.home}` in `{behavior}`: {did_you_mean(options.home, names, 'it has')}")
+    memory, home = KeptExplorations(project), options.home or ""
+    if known := memory.recall(behavior, options.bound, home):
+        return known
     with progress(at_most=True) as tell:
-        return explored(
-            project, behavior, bound=options.bound, home=options.home or "",
+        found = explored(
+            project, behavior, bound=options.bound, home=home,
             tell=lambda walked, waiting: tell(walked, options.bound, f"configurations explored, {waiting:,} in sight"),
         )  # fmt: skip
+    memory.keep(found, options.bound, home)
+    return found
 
 
 def _untold(done: float, whole: float, name: str) -> None:

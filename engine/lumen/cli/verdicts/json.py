@@ -54,14 +54,14 @@ def _coverage(coverage: Coverage) -> dict[str, Any]:
 
 
 def _explored(explored: Explored) -> dict[str, Any]:
-    found = explored.exploration
     return {
         "behavior": explored.behavior,
-        "configurations": found.configurations,
-        "steps": found.steps,
-        "complete": found.complete,
+        "configurations": explored.configurations,
+        "steps": explored.steps,
+        "complete": explored.complete,
         "took": round(explored.took, 3),
-        "kept": list(found.kept),
+        "known": explored.known,
+        "kept": list(explored.kept),
         "findings": [
             {**_place(f.place), "kind": f.kind, "message": f.message, "story": f.story} for f in explored.findings
         ],

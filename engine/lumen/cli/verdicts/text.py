@@ -75,13 +75,12 @@ def _counts(coverage: Coverage) -> Iterator[tuple[tuple[int, int], str]]:
 
 
 def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
-    found = explored.exploration
     for finding in explored.findings:
         kind = paint(FINDING_KINDS[finding.kind], "bold", "red", on=coloured)
         yield f"\n{paint(str(finding.place), 'bold', on=coloured)}: {kind}: {finding.message}"
         yield "\n".join(f"    {line}".rstrip() for line in finding.story.splitlines())
-    size = count(found.configurations, "configuration", "configurations")
-    steps = count(found.steps, "step", "steps")
+    size = count(explored.configurations, "configuration", "configurations")
+    steps = count(explored.steps, "step", "steps")
     number = len(explored.findings)
     sum_of = paint(
         count(number, "finding", "findings") if number else "nothing found",
@@ -91,8 +90,9 @@ def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
     if explored.unseen:
         yield "\nNot come upon, by the data that was tried:"
         yield from (f"  {gap.place}: {gap.what}" for gap in explored.unseen)
-    reach = "wherever it came" if found.complete else f"in the {found.configurations:,} configurations explored"
-    yield from (f"\n`{name}` holds {reach}" for name in found.kept)
-    yield f"\nExplored `{explored.behavior}`: {size}, {steps} in {explored.took:.1f} s: {sum_of}" + (
-        "" if found.complete else f"; --bound ended it with {found.waiting:,} more in sight"
+    reach = "wherever it came" if explored.complete else f"in the {explored.configurations:,} configurations explored"
+    yield from (f"\n`{name}` holds {reach}" for name in explored.kept)
+    when = " (known: these files were explored before)" if explored.known else ""
+    yield f"\nExplored `{explored.behavior}`: {size}, {steps} in {explored.took:.1f} s{when}: {sum_of}" + (
+        "" if explored.complete else f"; --bound ended it with {explored.waiting:,} more in sight"
     )

@@ -1,0 +1,58 @@
+"""What exploring has found, kept under `.lumen/explored/` by all that it hangs on: so nothing is explored twice."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from lumen.app.exploring import Explored, ExploredFinding
+from lumen.app.work.tasks import engine
+from lumen.app.work.work_kit import name_of
+from lumen.language.diagnostics import Place
+from lumen.language.projects import Project
+from lumen.runtime.coverage import Gap
+from lumen.runtime.home import Home, home_of
+from lumen.upkeep.private_folder import private_folder
+
+FOLDER = "explored"
+MAX_KEPT = 20
+"""Explorations that are kept of a project: the oldest give way."""
+
+
+class KeptExplorations:
+    """Of one project. A folder that can't be written, or a file in it that can't be read, is as good as none."""
+
+    def __init__(self, project: Project) -> None:
+        self._home = Home(home_of(Path(project.root)) / FOLDER)
+        self._content = [project.hash, repr(project.body.name), list(project.languages), engine()]
+
+    def recall(self, behavior: str, bound: int, home: str) -> Explored | None:
+        """What came of it before with the same files, software and choices."""
+        try:
+            return _from_json(self._home.read_json(self._name(behavior, bound, home)))
+        except (KeyError, TypeError, ValueError, AttributeError):
+            return None
+
+    def keep(self, explored: Explored, bound: int, home: str) -> None:
+        try:
+            private_folder(self._home.folder.parent)
+            private_folder(self._home.folder)
+            files = sorted(self._home.folder.glob("*.json"), key=lambda file: file.stat().st_mtime)
+            for old in files[: -MAX_KEPT + 1]:
+                old.unlink()
+        except OSError:
+            return
+        self._home.write(self._name(explored.behavior, bound, home), json.dumps(asdict(explored)).encode())
+
+    def _name(self, behavior: str, bound: int, home: str) -> str:
+        return f"{name_of(json.dumps([*self._content, behavior, bound, home]).encode())}.json"
+
+
+def _from_json(data: Any) -> Explored | None:
+    if not isinstance(data, Mapping):
+        return None
+    findings = tuple(ExploredFinding(**{**row, "place": Place(*row["place"])}) for row in data["findings"])
+    unseen = tuple(Gap(Place(*place), str(what)) for place, what in data["unseen"])
+    explored = Explored(**{**data, "findings": findings, "unseen": unseen, "kept": tuple(data["kept"])})
+    return replace(explored, known=True)
