@@ -29,8 +29,7 @@ class GcScheduler:
     """
 
     def __init__(self) -> None:
-        gc.collect()
-        gc.freeze()
+        gc.freeze()  # not after a search: what imports and loading leave behind is next to nothing
         self._usual = gc.get_threshold()
         gc.set_threshold(*self._usual[:2], NEVER)
 
