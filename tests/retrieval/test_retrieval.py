@@ -10,8 +10,9 @@ from lumen.interpreters.retrieval.calibration import NEVER, Sample, calibrate, l
 from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.scorers import METHODS
+from lumen.interpreters.retrieval.trials import thresholds_of, tried
 from lumen.interpreters.retrieval.words import stems
-from lumen.language.knowledge import Passage
+from lumen.language.knowledge import Passage, QuestionSet
 
 PASSAGES = (
     Passage("height", {"en": ("how tall are you",)}, {"en": "Small."}, who=("NAO",)),
@@ -88,3 +89,29 @@ def test_the_questions_are_many_and_in_words_of_their_own() -> None:
     assert counts["en"] >= 100
     assert counts["id"] >= 100
     assert counts["none"] >= 100
+
+
+SETS = (
+    QuestionSet("a", {"height": {"en": ("how tall exactly", "so how tall")}}, {"en": ("how tall is a tree",)}),
+    QuestionSet("b", {"campus": {"en": ("where is that campus",), "id": ("kampusnya di mana",)}}, {}),
+)
+
+
+def test_an_exhibitions_questions_set_when_a_passage_answers() -> None:
+    english, french = Retriever(PASSAGES, "en"), Retriever(PASSAGES, "fr")
+    trial = tried(english, SETS)
+    assert trial
+    assert (trial.asked, trial.thresholds) == (4, thresholds_of(english, SETS))
+    assert trial.rates.recall > 0
+    assert not trial.wrong
+    assert tried(french, SETS) is None
+    assert thresholds_of(french, SETS) is None
+
+
+def test_what_is_answered_wrongly_is_named() -> None:
+    sets = [
+        QuestionSet("a", {"campus": {"en": ("how tall are you",) * 2}, "height": {"en": ("and how tall are you",)}}, {})
+    ]
+    trial = tried(Retriever(PASSAGES, "en"), sets)
+    assert trial
+    assert trial.unfound == (("how tall are you", "campus", "height"),)

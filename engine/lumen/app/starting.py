@@ -48,6 +48,7 @@ MEANINGS = {
     "behaviors": "what it does: states; below `stories` visitors that follow a script, and what must happen",
     "behaviors/words": "what it says and listens for, by language",
     "knowledge": "what visitors ask, and what is answered: a passage a file",
+    "knowledge/questions": "how visitors ask, to try the passages with: `lumen test` says how many are answered",
     "fuzzy": "controllers, as that which lets the head follow a face",
     "motions": "gestures",
     "sounds": "what it plays",

@@ -21,6 +21,7 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "words": ("behaviors/words/*.yaml",),
     "story": ("behaviors/stories/*.yaml",),
     "knowledge": ("knowledge/*.yaml",),
+    "questions": ("knowledge/questions/*.yaml",),
     "controller": ("fuzzy/*.yaml",),
     "motion": ("motions/*.yaml", "models/passages/*.yaml"),
     "life": ("motions/life/*.yaml",),

@@ -18,6 +18,7 @@ from lumen.cli.verdict import Verdict
 from lumen.cli.verdicts import FORMATS, text
 from lumen.errors import UsageError
 from lumen.interpreters.exploration import MAX_CONFIGURATIONS
+from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -76,8 +77,9 @@ def run(options: argparse.Namespace) -> int:
                 if options.exitfirst and rehearsals[-1].failed:
                     break
     walked = _explore(project, options) if options.explore else None
+    trials = _tried(project) if project.questions and not names and not options.explore else ()
     took = time.perf_counter() - began
-    verdict = Verdict(project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took)
+    verdict = Verdict(project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took, trials)
     if live:
         _print("\n".join(text.conclusion(verdict, coloured=coloured())))
     else:
@@ -106,6 +108,16 @@ def _stories(project: Project, names: list[str]) -> list[Story]:
         raise UsageError("there are no stories: write one into behaviors/stories/, as docs/stories.md shows")
     chosen = [story for name in names or ["*"] for story in stories_of(project, name)]
     return list({story.name: story for story in chosen}.values())
+
+
+def _tried(project: Project) -> tuple[QuestionTrial, ...]:
+    """What becomes of the exhibition's questions, by language."""
+    from lumen.interpreters.retrieval.retriever import Retriever  # with numpy
+    from lumen.interpreters.retrieval.trials import tried
+
+    retrievers = (Retriever(project.knowledge.values(), name, robot=project.robot) for name in project.languages)
+    found = (tried(retriever, project.questions.values()) for retriever in retrievers)
+    return tuple(trial for trial in found if trial)
 
 
 def _explore(project: Project, options: argparse.Namespace) -> Explored:

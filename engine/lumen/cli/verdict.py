@@ -1,15 +1,19 @@
-"""What `lumen test` found: how the stories went, what they left out, and what exploring came upon."""
+"""What `lumen test` found: how stories and questions went, what they left out, and what exploring came upon."""
 
 from dataclasses import dataclass
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
+from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.runtime.coverage import Coverage
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """All of it; `took` is the time of the whole [s]. `wanted` is the least that has to be covered [%]."""
+    """All of it; `took` is the time of the whole [s]. `wanted` is the least that has to be covered [%].
+
+    `trials` is what became of the exhibition's questions, which fails nothing.
+    """
 
     name: str
     rehearsals: tuple[Rehearsal, ...] = ()
@@ -17,6 +21,7 @@ class Verdict:
     wanted: float = 0.0
     explored: Explored | None = None
     took: float = 0.0
+    trials: tuple[QuestionTrial, ...] = ()
 
     @property
     def failed(self) -> int:

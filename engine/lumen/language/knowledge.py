@@ -1,10 +1,11 @@
-"""What the exhibition's people know, as `knowledge/NAME.yaml` or `knowledge/NAME.md` says it: frozen values."""
+"""What the exhibition's people know, as `knowledge/NAME.yaml` or `NAME.md` says it, and what it is tried with."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
 
 KNOWLEDGE_FOLDER = "knowledge"
+QUESTIONS_FOLDER = "knowledge/questions"
 
 
 @dataclass(frozen=True)
@@ -32,3 +33,16 @@ class Passage:
     def is_past(self, today: date) -> bool:
         """Whether the last day on which it is true is over."""
         return self.until is not None and self.until < today
+
+
+@dataclass(frozen=True)
+class QuestionSet:
+    """Questions in other words than the passages', `knowledge/questions/NAME.yaml`: they say when one is like enough.
+
+    `asked` are those that a passage answers, by its name and by language, `unanswered` those that none does, by
+    language.
+    """
+
+    name: str
+    asked: Mapping[str, Mapping[str, tuple[str, ...]]]
+    unanswered: Mapping[str, tuple[str, ...]]

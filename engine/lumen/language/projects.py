@@ -11,7 +11,7 @@ from lumen.language.gestures import GestureLibrary
 from lumen.language.hall_places import HallPlace
 from lumen.language.house import RobotSpec
 from lumen.language.imperfections import Imperfections
-from lumen.language.knowledge import Passage
+from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EYES, ModuleSettings
@@ -50,7 +50,8 @@ class Project:
     desks; `journal` is how long it is kept what happened, `record` what is recorded of the bus, `console` where its
     pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their
     aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot,
-    `knowledge` the passages by name, `shared` what the robots of the house have in common.
+    `knowledge` the passages by name, `questions` what they are tried with, `shared` what the robots of the house have
+    in common.
     """
 
     root: str
@@ -61,6 +62,7 @@ class Project:
     behavior: str
     behaviors: Mapping[str, MachineDefinition]
     knowledge: Mapping[str, Passage] = field(default_factory=dict)
+    questions: Mapping[str, QuestionSet] = field(default_factory=dict)
     controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
     motions: Mapping[str, MotionDefinition] = field(default_factory=dict)
     life: Mapping[str, LifeStyle] = field(default_factory=dict)

@@ -11,7 +11,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.fleet import Fleet
 from lumen.language.gestures import GestureLibrary
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage, QuestionSet
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
@@ -42,6 +42,7 @@ class ProjectDraft:
     behaviors: dict[str, MachineDefinition] = field(default_factory=dict)
     words: dict[str, Words] = field(default_factory=dict)
     knowledge: dict[str, Passage] = field(default_factory=dict)
+    questions: dict[str, QuestionSet] = field(default_factory=dict)
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
     motions: dict[str, MotionDefinition] = field(default_factory=dict)
     life: dict[str, LifeStyle] = field(default_factory=dict)

@@ -46,6 +46,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors/stories": (".yaml", ".yml"),
     "behaviors/words": (".yaml", ".yml"),
     "knowledge": (".yaml", ".yml", ".md"),
+    "knowledge/questions": (".yaml", ".yml"),
     "fuzzy": (".yaml", ".yml"),
     "motions": (".yaml", ".yml"),
     "motions/life": (".yaml", ".yml"),

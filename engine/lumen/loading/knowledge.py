@@ -1,11 +1,11 @@
-"""A passage, `knowledge/NAME.yaml` or `knowledge/NAME.md`, from its plain data to a `Passage`."""
+"""Passages, `knowledge/NAME.yaml` or `NAME.md`, and questions to try them with: from plain data to values."""
 
 from collections.abc import Mapping
 from datetime import date
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code
-from lumen.language.knowledge import Passage
+from lumen.language.knowledge import Passage, QuestionSet
 from lumen.loading.document_report import DocumentReport
 
 BAD_DATE = Code("bad-date", "knowledge", ERROR, "a day of a passage can't be read, or its days are the wrong way round")
@@ -30,6 +30,18 @@ def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | 
         _listed(data.get("tags", ())),
         report.document.file,
     )
+
+
+def build_questions(data: Any, report: DocumentReport, *, name: str) -> QuestionSet | None:
+    """The questions that the data has, None where it is no map."""
+    if not isinstance(data, Mapping):
+        return None
+    asked = {
+        passage: {language: _listed(texts) for language, texts in by_language.items()}
+        for passage, by_language in data.get("asked", {}).items()
+    }
+    unanswered = {language: _listed(texts) for language, texts in data.get("unanswered", {}).items()}
+    return QuestionSet(name, asked, unanswered)
 
 
 def _listed(value: Any) -> tuple[str, ...]:

@@ -44,6 +44,9 @@ _KINDS: Mapping[str, _Kind] = {
         "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers", "lists"))
     ),
     "knowledge": _Kind("a passage of knowledge", "knowledge/", frozenset(("questions", "answer"))),
+    "questions": _Kind(
+        "questions to try knowledge with", "knowledge/questions/", frozenset(), only=frozenset(("asked", "unanswered"))
+    ),
     "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
     "motion": _Kind("a motion", "motions/", frozenset(("keyframes",))),

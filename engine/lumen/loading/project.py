@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from lumen.interpreters.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
-from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -31,7 +31,7 @@ from lumen.loading.files import (
 )
 from lumen.loading.fleet import build_fleet
 from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
-from lumen.loading.knowledge import build_passage
+from lumen.loading.knowledge import build_passage, build_questions
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend, shipped_models
 from lumen.loading.life import LIFE_FOLDER, build_life
 from lumen.loading.linking import link, with_robots
@@ -58,6 +58,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "behaviors/stories": "story",
     WORDS_FOLDER: "words",
     KNOWLEDGE_FOLDER: "knowledge",
+    QUESTIONS_FOLDER: "questions",
     "fuzzy": "controller",
     "motions": "motion",
     LIFE_FOLDER: "life",
@@ -94,6 +95,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         found.behaviors = {name: with_robots(machine, robots) for name, machine in found.behaviors.items()}
     found.stories = _built(_each(found, "behaviors/stories", build_story))
     found.knowledge = _built(_each(found, KNOWLEDGE_FOLDER, build_passage))
+    found.questions = _built(_each(found, QUESTIONS_FOLDER, build_questions))
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     if body := found.body:
         found.controllers = {name: by_role(each, body) for name, each in found.controllers.items()}
@@ -142,6 +144,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         behavior=settings.behavior,
         behaviors=found.behaviors,
         knowledge=found.knowledge,
+        questions=found.questions,
         controllers=found.controllers,
         motions=found.motions,
         life=found.life,

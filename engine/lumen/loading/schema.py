@@ -22,6 +22,7 @@ FILE_KINDS = (
     "words",
     "story",
     "knowledge",
+    "questions",
     "controller",
     "motion",
     "life",

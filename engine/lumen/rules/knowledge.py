@@ -43,7 +43,7 @@ def _claims(passage: Passage, report: DocumentReport, claims: dict[tuple[str, st
     for language, questions in passage.questions.items():
         for i, question in enumerate(questions):
             here = report.document.place(first(report, ("questions", language, i), ("questions", language)))
-            other, there = claims.setdefault((language, _words(question)), (passage, here))
+            other, there = claims.setdefault((language, words_of(question)), (passage, here))
             if there == here or (other.who and passage.who and not {*other.who} & {*passage.who}):
                 continue
             message = f"`{question}` is asked here and in {there.file}"
@@ -58,5 +58,6 @@ def _days(passage: Passage, report: DocumentReport, today: date | None) -> None:
         report(OUT_OF_DATE, ("until",), message, "write what is true now, with a later day, or delete the passage")
 
 
-def _words(question: str) -> str:
+def words_of(question: str) -> str:
+    """Its words, whatever the signs between them, and however they are written."""
     return " ".join(re.findall(r"\w+", question.casefold()))

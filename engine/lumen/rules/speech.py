@@ -9,7 +9,7 @@ from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
-from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -60,6 +60,11 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report(KNOWLEDGE_FOLDER, name)
         speech.texts(report, ("questions",), passage.questions)
         speech.texts(report, ("answer",), passage.answer)
+    for name, questions in draft.questions.items():
+        report = draft.report(QUESTIONS_FOLDER, name)
+        speech.each(report, ("unanswered",), questions.unanswered)
+        for about, texts in questions.asked.items():
+            speech.each(report, ("asked", about), texts)
     entries = language_entries(draft)
     for language in speech.languages:
         for report, path in begun(entries, language):

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
     from lumen.interpreters.retrieval.retriever import Retriever
 
 ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
-SAFE = {"en": Thresholds(0.622, 0.132), "id": Thresholds(0.415, 0.263)}
-"""How like a question a passage has to be, by language: what the tour's own questions set (decision 091)."""
 STRICT = Thresholds(0.63, 0.27)
-"""The same of languages for which nobody has set it."""
+"""How like a question a passage has to be in a language in which the exhibition has no questions to try it with."""
 MAX_ANSWERS = 100
 """Answers that wait for a tick; then the oldest are dropped."""
 MAX_PASSAGES = 3
@@ -70,6 +68,7 @@ class Questions:
         self._key = ""
         self._undo: Callable[[], None] = _nothing
         self._retriever: Retriever | None = None
+        self._enough = STRICT
         self._known: tuple[object, ...] = ()
 
     def listen(self, project: Project) -> None:
@@ -91,7 +90,7 @@ class Questions:
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
         """Begin to find the answer; the events of what is known at once: it, or that nobody knows."""
         retriever = self._passages(project, asked.language)
-        if found := retriever.answer(asked.question, SAFE.get(asked.language, STRICT)):
+        if found := retriever.answer(asked.question, self._enough):
             said = {
                 "text": found.text, "language": found.language, "source": "passage", "passage": found.passage.name,
                 "confidence": round(found.score, 3),
@@ -179,12 +178,14 @@ class Questions:
 
     def _passages(self, project: Project, language: str) -> "Retriever":
         from lumen.interpreters.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
+        from lumen.interpreters.retrieval.trials import thresholds_of
 
         today = self.today()
-        known = (project.knowledge, project.robot, language, today)
+        known = (project.knowledge, project.questions, project.robot, language, today)
         if self._retriever is None or self._known != known:
             passages = project.knowledge.values()
             self._retriever = Retriever(passages, language, robot=project.robot, today=today)
+            self._enough = thresholds_of(self._retriever, project.questions.values()) or STRICT
             self._known = known
         return self._retriever
 

@@ -6,17 +6,20 @@ from typing import Any
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
 from lumen.cli.verdict import Verdict
+from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
 from lumen.runtime.coverage import Coverage
 
 
 def render(verdict: Verdict) -> str:
-    """`{"stories": […], "failed": N, "took": s}`, with `coverage` and `explore` where they were wanted."""
+    """`{"stories": […], "failed": N, "took": s}`, and `questions`, `coverage` and `explore` where there are any."""
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,
         "took": round(verdict.took, 3),
     }
+    if verdict.trials:
+        found["questions"] = [_tried(trial) for trial in verdict.trials]
     if verdict.coverage:
         found["coverage"] = _coverage(verdict.coverage)
     if verdict.explored:
@@ -42,6 +45,18 @@ def _story(rehearsal: Rehearsal) -> dict[str, Any]:
             "trace": [{"time": round(time, 3), "who": who, "what": what} for time, who, what in rehearsal.trace],
         }
     return found
+
+
+def _tried(trial: QuestionTrial) -> dict[str, Any]:
+    return {
+        "language": trial.language,
+        "asked": trial.asked,
+        "thresholds": trial.thresholds._asdict(),
+        "rates": trial.rates._asdict(),
+        "others": trial.others._asdict(),
+        "wrong": [each._asdict() for each in trial.wrong],
+        "unfound": [each._asdict() for each in trial.unfound],
+    }
 
 
 def _coverage(coverage: Coverage) -> dict[str, Any]:

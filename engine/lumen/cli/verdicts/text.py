@@ -7,6 +7,7 @@ from lumen.app.rehearsal import Rehearsal
 from lumen.cli.printing import clock_time
 from lumen.cli.terminal import paint
 from lumen.cli.verdict import Verdict
+from lumen.interpreters.retrieval.ranking import QuestionTrial, WrongAnswer
 from lumen.runtime.coverage import Coverage
 
 FINDING_KINDS = {
@@ -42,12 +43,30 @@ def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
         yield from _coverage(verdict, verdict.coverage, coloured)
     if verdict.explored:
         yield from _explored(verdict.explored, coloured)
+    for trial in verdict.trials:
+        yield from _tried(trial, coloured)
     if verdict.rehearsals:
         lived = sum(r.time for r in verdict.rehearsals)
         sum_of = f"{count(len(verdict.rehearsals), 'story', 'stories')}, {verdict.failed} failed"
         colour = "red" if verdict.failed else "green"
         time = f"{clock_time(lived)} of simulated time in {verdict.took:.1f} s"
         yield f"\n{paint(sum_of, 'bold', colour, on=coloured)}: {time}"
+
+
+def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
+    """How many questions of a language are answered, and which get another passage's answer."""
+    asked = paint(f"{count(trial.asked, 'question', 'questions')} in `{trial.language}`", "bold", on=coloured)
+    yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, {trial.rates.wrong:.0%} wrongly;"
+    yield (
+        f"  each tried by what the others tell: {trial.others.recall:.0%}, {trial.others.wrong:.0%} wrongly;"
+        f" a passage has to be {trial.thresholds.least:.2f} alike, {trial.thresholds.margin:.2f} more than the next"
+    )
+    for each in trial.wrong:
+        yield f"  “{each.question}” is answered by {each.passage}, and {_wanted(each)}"
+
+
+def _wanted(each: WrongAnswer) -> str:
+    return f"should be by {each.wanted}" if each.wanted else "no passage answers it"
 
 
 def count(number: int, one: str, many: str) -> str:

@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 _PARTS = (
     "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
-    "life", "gestures", "knowledge", "shared",
+    "life", "gestures", "knowledge", "questions", "shared",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents")
 
@@ -72,6 +72,8 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
     for found in _named("passage", "passage", Risk.COSMETIC, "{}", old.knowledge, new.knowledge):
         yield replace(found, file=files[found.about])
+    asked = "set of questions", Risk.BEHAVIOR, "knowledge/questions/{}.yaml"
+    yield from _named("questions", *asked, old.questions, new.questions)
     yield from _named("message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages)
     yield from _named("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
 

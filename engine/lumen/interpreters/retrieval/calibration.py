@@ -5,10 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
-
-MAX_WRONG = 0.02
-"""The share of all questions that may be answered wrongly."""
+from lumen.interpreters.retrieval.ranking import MAX_WRONG, AnswerRates, Ranked, Thresholds
 
 STEPS = 40
 """Thresholds that are tried of each kind."""
@@ -24,13 +21,6 @@ class Sample(NamedTuple):
     def is_right(self) -> bool:
         """Whether its answer would be right."""
         return self.wanted == self.ranked.passage
-
-
-class AnswerRates(NamedTuple):
-    """What becomes of questions: the share of those with an answer that get it, and of all that get a wrong one."""
-
-    recall: float
-    wrong: float
 
 
 NEVER = Thresholds(2.0, 2.0)

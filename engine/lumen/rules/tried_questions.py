@@ -1,0 +1,69 @@
+"""Questions to try passages with that try nothing: of a passage that is not there, or in words that are known."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Place, Related, did_you_mean
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, QuestionSet
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.knowledge import words_of
+from lumen.rules.lookups import first
+
+ASKED_TWICE = Code("asked-twice", "knowledge", WARNING, "a question to try passages with stands somewhere else, too")
+UNKNOWN_PASSAGE = Code("unknown-passage", "references", ERROR, "a passage is named that is not in knowledge/")
+
+
+class _Text(NamedTuple):
+    path: NodePath
+    language: str
+    said: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What it has in common with all that is the same question."""
+        return self.language, words_of(self.said)
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what says nothing of how like a passage a question has to be."""
+    stand = {text.key: place for text, place in _known(draft)}
+    for name, questions in draft.questions.items():
+        report = draft.report(QUESTIONS_FOLDER, name)
+        for passage in questions.asked:
+            if passage not in draft.names[KNOWLEDGE_FOLDER]:
+                hint = did_you_mean(passage, draft.names[KNOWLEDGE_FOLDER], "knowledge/ has")
+                message = f"there is no passage `{passage}`"
+                report(UNKNOWN_PASSAGE, ("asked", passage), message, hint, key=True, cause=f"passage {passage}")
+        for text in _tried(questions):
+            here = _place(report, text)
+            if (there := stand.setdefault(text.key, here)) != here:
+                hint = "ask the same in other words: these say nothing of how like a question has to be"
+                related = Related(there, "it stands here, too")
+                message = f"`{text.said}` stands in {there.file}, too"
+                report.diagnostics.append(ASKED_TWICE.at(here, message, hint, (related,)))
+
+
+def _known(draft: ProjectDraft) -> Iterator[tuple[_Text, Place]]:
+    """The questions of the passages."""
+    for name, passage in draft.knowledge.items():
+        report = draft.report(KNOWLEDGE_FOLDER, name)
+        for text in _texts(("questions",), passage.questions):
+            yield text, _place(report, text)
+
+
+def _tried(questions: QuestionSet) -> Iterator[_Text]:
+    for passage, texts in questions.asked.items():
+        yield from _texts(("asked", passage), texts)
+    yield from _texts(("unanswered",), questions.unanswered)
+
+
+def _texts(path: NodePath, texts: Mapping[str, tuple[str, ...]]) -> Iterator[_Text]:
+    for language, each in texts.items():
+        for i, text in enumerate(each):
+            yield _Text((*path, language, i), language, text)
+
+
+def _place(report: DocumentReport, text: _Text) -> Place:
+    """Of one text alone the place is that of its language."""
+    return report.document.place(first(report, text.path, text.path[:-1]))
