@@ -12,7 +12,7 @@ import pytest
 from lumen.bus import connect
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.polled import PolledConnection
-from lumen.buses.properties import MessageProperties, read_properties
+from lumen.buses.properties import MessageProperties, header_fields, read_properties
 from lumen.buses.publisher import Publisher
 from tests.attack.messages import PROPERTIES, HostileMessage, Stranger, encoded, header, nested
 from tests.rabbitmq import RabbitMQ
@@ -42,8 +42,16 @@ def test_properties_are_read_as_pika_reads_them() -> None:
         user_id="u", app_id="a", cluster_id="x",
     )  # fmt: skip
     read = read_properties(b"".join(given.encode()))
-    assert read == MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7, "a", 2)
+    assert read._replace(table=b"") == MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7, "a", 2)
     assert read_properties(b"".join(pika.BasicProperties(timestamp=7).encode())).timestamp == 7
+
+
+def test_other_headers_are_read_by_who_asks_as_far_as_they_can_be() -> None:
+    said = {"a": "text", "b": [1], "width": 320, "big": 2**40, "yes": True, "none": None, "odd": {"a": 1}}
+    table = read_properties(b"".join(pika.BasicProperties(headers=said).encode())).table
+    assert header_fields(table) == {"a": "text", "width": 320, "big": 2**40, "yes": True}
+    assert header_fields(table[:14]) == {"a": "text"}
+    assert header_fields(b"\xff\xff") == {}
 
 
 def test_of_the_headers_the_cause_is_read_where_texts_stand_before_it() -> None:

@@ -20,6 +20,7 @@ How RabbitMQ is used, from the inside out:
     stream_reader.py  a stream of RabbitMQ, read on from where it was left
     subscriptions.py  who has subscribed, and what is delivered to whom
     outbox.py         what waits to be sent: bounded
+    packing.py        images and joints as bytes
     intake.py         what of all that comes is taken, held back or dropped, and counted
     connection.py     a connection that belongs to one thread, and is opened again when it is lost
     properties.py     what AMQP says of a message, whatever it says

@@ -17,6 +17,7 @@ from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
 from lumen.buses.identities import filled
 from lumen.buses.outbox import OutgoingMessage
+from lumen.buses.packing import packed
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
 from lumen.buses.transport import Transport
 from lumen.errors import BusClosedError, BusError
@@ -115,7 +116,9 @@ class AmqpBus:
             raise BusClosedError("the bus is closed: nothing can be published any more")
         for name in (key, reply_to, correlation_id):
             check_key(name)
-        route, data = self._routes.get(key), encode(body)
+        route = self._routes.get(key)
+        form = packed(body, route.content_type) if route and route.content_type != JSON else None
+        data = form.data if form else encode(body)
         keep, must = 0, False
         if route is not None:
             ttl = route.lifetime if ttl is None else ttl
@@ -127,15 +130,20 @@ class AmqpBus:
                 EXCHANGE,
                 key,
                 data,
-                JSON,
+                form.content_type if form else JSON,
                 reply_to,
                 correlation_id,
                 deadline,
                 keep=keep,
                 must=must,
                 origin=filled(origin, self.sender),
+                headers=form.headers if form else None,
             )
         )
+
+    def heard(self, key: str) -> bool:
+        """Whether anybody takes what is published under this key; true where that is not known yet."""
+        return self._transport_of(self._routes.get(key)).publisher.heard(key)
 
     def returns(self, handler: Callable[[str], None]) -> None:
         for transport in self._transports():

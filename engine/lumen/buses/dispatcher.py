@@ -9,9 +9,12 @@ from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
 from lumen.buses.identities import believed
+from lumen.buses.packing import unpacked
+from lumen.buses.properties import header_fields
 from lumen.buses.queues import UNROUTED
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
+from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.ports import Message
 from lumen.upkeep.drops import ReasonLog
 from lumen.upkeep.threads import MessageGuard, WatchedThread
@@ -115,7 +118,10 @@ class Dispatcher:
             self._hand(subscription, delivery, Message(delivery.key, None))
             return
         try:
-            body = decode(delivery.body, properties.content_type or JSON)
+            if (form := properties.content_type) in (JPEG_TYPE, FLOATS_TYPE):
+                body = unpacked(delivery.body, form, header_fields(properties.table))
+            else:
+                body = decode(delivery.body, form or JSON)
         except ValueError as error:
             self._drop(delivery, str(error))
             return

@@ -4,7 +4,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from lumen.errors import BusFullError
@@ -40,7 +40,7 @@ class OutgoingMessage(NamedTuple):
     keep: int = 0
     must: bool = False
     origin: MessageOrigin = UNKNOWN_ORIGIN
-    headers: dict[str, str] | None = None
+    headers: Mapping[str, str | int] | None = None
 
     @property
     def expiration(self) -> str | None:

@@ -33,6 +33,7 @@ class MessageProperties(NamedTuple):
     """What we go by of a message's properties; `unreadable` names those that were left out.
 
     `headers` is what the one that we read says: `CAUSE_HEADER`. `offset` is where in a stream it stands, -1 in none.
+    `table` are all of them, unread: `header_fields` reads them for who needs more.
     """
 
     content_type: str = ""
@@ -45,6 +46,7 @@ class MessageProperties(NamedTuple):
     delivery_mode: int = 0
     headers: str = ""
     offset: int = -1
+    table: bytes = b""
     unreadable: tuple[str, ...] = ()
 
 
@@ -73,7 +75,8 @@ def read_properties(data: bytes) -> MessageProperties:
             if flags & 1 << bit:
                 start, (value, at) = at, _READERS[kind](data, at)
                 if kind == "table":
-                    found["offset"] = _offset(data[start + 4 : at])
+                    found["table"] = data[start + 4 : at]
+                    found["offset"] = _offset(found["table"])
                 if value is None:
                     unreadable.append(name)
                 elif name in MessageProperties._fields:
@@ -136,6 +139,28 @@ def _offset(table: bytes) -> int:
     return -1
 
 
+def header_fields(table: bytes) -> dict[str, str | int]:
+    """The texts, whole numbers and truth values among the headers, as far as they can be read; the rest is left out."""
+    found: dict[str, str | int] = {}
+    at = 0
+    with suppress(struct_error, IndexError, UnicodeDecodeError):
+        while at < len(table):
+            named = at + 1 + table[at]
+            name, sign, value = table[at + 1 : named].decode(), table[named : named + 1], named + 1
+            if sign in _LONG:
+                start = value + 4
+                at = start + unpack_from(">I", table, value)[0]
+                if sign == b"S" and at <= len(table):
+                    found[name] = table[start:at].decode()
+            elif sign in _SIZES:
+                at = value + _SIZES[sign]
+                if sign in _NUMBERS:
+                    found[name] = unpack_from(_NUMBERS[sign], table, value)[0]
+            else:
+                break
+    return found
+
+
 def _byte(data: bytes, at: int) -> tuple[int | None, int]:
     return unpack_from("B", data, at)[0], at + 1
 
@@ -150,4 +175,8 @@ _SIZES = {
     b"t": 1, b"b": 1, b"B": 1, b"s": 2, b"u": 2, b"I": 4, b"i": 4, b"f": 4, b"D": 5, b"l": 8, b"d": 8, b"T": 8, b"V": 0,
 }  # fmt: skip
 """How long the values of the other signs are [bytes], as RabbitMQ writes them."""
+_NUMBERS = {
+    b"t": ">?", b"b": ">b", b"B": ">B", b"s": ">h", b"u": ">H", b"I": ">i", b"i": ">I", b"l": ">q",
+}  # fmt: skip
+"""How those are read that are whole numbers, or true or false."""
 _READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}

@@ -1,6 +1,7 @@
 """A connection that sends, and knows of every message whether the broker has it."""
 
 import logging
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -14,6 +15,7 @@ from lumen.buses.polled import PolledConnection
 from lumen.buses.properties import CAUSE_HEADER
 from lumen.buses.queues import SIDE_QUEUES, UNROUTED, ChannelCall, Queue, declare_side_queues
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
 
 MAX_UNCONFIRMED_MESSAGES = 1_000
@@ -24,6 +26,8 @@ IDLE_TIME = 0.5
 """How long the connection is left to itself while there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
 """Keys that nobody takes and that were warned of; more are not."""
+PROBE_PERIOD = 1.0
+"""How often it is tried whether somebody takes by now what nobody took before [s]."""
 PERSISTENT_DELIVERY = 2
 """AMQP's delivery mode of a message that a broker writes to its disk."""
 
@@ -50,6 +54,8 @@ class Publisher(BrokerConnection):
         self._window: dict[int, OutgoingMessage] = {}
         self._bytes = self._number = 0
         self._warned: set[str] = set()
+        self._probed: set[str] = set()
+        self._missed: dict[str, float] = {}
         self.unsendable = DropLog(_log)
 
     def connect(self) -> PolledConnection:
@@ -114,22 +120,22 @@ class Publisher(BrokerConnection):
         return not busy and self.outbox.sleep() and not (self.ending.is_set() and not self._window)
 
     def _send(self, message: OutgoingMessage) -> None:
-        id, sender, time, cause = message.origin
+        id, sender, sent, cause = message.origin
         properties = pika.BasicProperties(
             content_type=message.content_type,
-            content_encoding="utf-8",
+            content_encoding="utf-8" if message.content_type not in (JPEG_TYPE, FLOATS_TYPE) else None,
             reply_to=message.reply_to or None,
             correlation_id=message.correlation_id or None,
             expiration=message.expiration,
             type=message.type or None,
             message_id=id or None,
             app_id=sender or None,
-            timestamp=int(time) or None,
+            timestamp=int(sent) or None,
             delivery_mode=PERSISTENT_DELIVERY if message.must else None,
-            headers={CAUSE_HEADER: cause} if cause else message.headers,
+            headers={**({CAUSE_HEADER: cause} if cause else {}), **(message.headers or {})} or None,
         )
         try:
-            wanted = bool(message.must or (self.returned and message.exchange))
+            wanted = bool(message.must or (self.returned and message.exchange) or message.key in self._probed)
             self.channel.basic_publish(message.exchange, message.key, message.body, properties, mandatory=wanted)
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
@@ -156,6 +162,7 @@ class Publisher(BrokerConnection):
         key = method.routing_key
         if method.exchange == UNROUTED:
             return
+        self._miss(key)
         if self.returned:
             self.returned(key)
         if properties.delivery_mode != PERSISTENT_DELIVERY:
@@ -165,8 +172,21 @@ class Publisher(BrokerConnection):
             headers = {"reason": f"nobody takes `{key}`"}
             self.outbox.put(OutgoingMessage(UNROUTED, key, body, properties.content_type or "", headers=headers))
 
+    def heard(self, key: str) -> bool:
+        """Whether anybody takes what is sent under this key, as far as was seen in the last PROBE_PERIOD.
+
+        Where that is not known it is true: what is sent then finds out.
+        """
+        self._probed.add(key)
+        return time.monotonic() - self._missed.get(key, -PROBE_PERIOD) >= PROBE_PERIOD
+
+    def _miss(self, key: str) -> None:
+        if key in self._probed:
+            self._missed[key] = time.monotonic()
+
     def unrouted(self, key: str) -> None:
         """Somebody sent a message under this key, and nobody took it: log it where no route has the key."""
+        self._miss(key)
         if key not in self.known:
             self.warn_once(key)
 

@@ -78,7 +78,8 @@ class ValidatedBus:
     def heard(self, key: str) -> bool:
         """Whether anybody takes what is published under this key, where the bus knows."""
         known: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
-        return known(key)
+        alias = self._aliases.names.get(key) if self._aliases.used else None
+        return known(key) or bool(alias and known(alias))
 
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""

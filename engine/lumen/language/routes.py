@@ -24,6 +24,10 @@ MEANINGS: Mapping[str, str] = {
 """The routes whose names mean something to Lumen itself, and what each is for; all others are the exhibition's own."""
 
 
+JSON_TYPE, JPEG_TYPE, FLOATS_TYPE = "application/json", "image/jpeg", "application/vnd.lumen.float32"
+"""In which forms a body may cross a broker: as JSON, an image as it is, joints as numbers of 32 bits."""
+
+
 class Direction(StrEnum):
     """`in`: a module publishes and Lumen listens; `out`: Lumen publishes and modules listen."""
 
@@ -81,12 +85,14 @@ SHORTEST_IMAGE_INTERVAL = 0.033
 class Route:
     """A row of the route table in `lumen.yaml`.
 
-    `key` may hold `{robot}`; `alias` is what it is called besides while one robot is on the bus: what goes out goes out
-    under both, what comes in may come under either. `schema` names a file of `schemas/messages/`. `event` is the event
-    that a message becomes for the behaviour. `every` [s] is the period of a sense, `size` that of its images, None for
-    the camera's own; `ttl` [s] the time to live, `keep` how many messages wait at most, `most` how many are taken a
-    second, `latency` [s] how old a body without a `time` is taken to be. `must_arrive`: who sends it keeps it until the
-    broker has it, who takes it gives it back unless it was handled.
+    `of` names the sense that it carries besides the route of that name, for who wants it at another pace, in another
+    size, or as another `content_type`, which is its form on a broker. `key` may hold `{robot}`; `alias` is what it is
+    called besides while one robot is on the bus: what goes out goes out under both, what comes in may come under
+    either. `schema` names a file of `schemas/messages/`. `event` is the event that a message becomes for the behaviour.
+    `every` [s] is the period of a sense, `size` that of its images, None for the camera's own; `ttl` [s] the time to
+    live, `keep` how many messages wait at most, `most` how many are taken a second, `latency` [s] how old a body
+    without a `time` is taken to be. `must_arrive`: who sends it keeps it until the broker has it, who takes it gives it
+    back unless it was handled.
     """
 
     name: str
@@ -103,11 +109,18 @@ class Route:
     latency: float = 0.15
     most: float | None = None
     alias: str = ""
+    of: str = ""
+    content_type: str = JSON_TYPE
     where: NodePath = field(default=(), compare=False)
 
     def key_for(self, robot: str) -> str:
         """The routing key with the robot's name in it."""
         return self.key.replace("{robot}", robot)
+
+    @property
+    def sense(self) -> str:
+        """The sense that it carries, if it does."""
+        return self.of or self.name
 
     @property
     def lifetime(self) -> float | None:

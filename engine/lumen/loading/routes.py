@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.durations import duration_hint
-from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route, Size
+from lumen.language.routes import COMMAND, JSON_TYPE, STOP, Carried, Direction, Route, Size
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.units import BAD_DURATION, seconds
 
@@ -43,6 +43,8 @@ def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, wher
         must_arrive=data.get("must_arrive", carried is not Carried.TELEMETRY),
         most=_rate(data),
         alias=data.get("alias", ""),
+        of=data.get("of", ""),
+        content_type=data.get("content_type", JSON_TYPE),
         latency=DEFAULT_LATENCY if latency is None else latency,
         where=where,
     )

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, assert_never
 
+from lumen.language.data_url import DataUrl
 from lumen.language.routes import Size
 from lumen.ports import Battery, Image, Joints, NumericReading, Reading, Sense, Sonar, Tactile, Whereabouts
 
@@ -91,13 +92,15 @@ def _position(body: Mapping[str, Any]) -> Whereabouts | None:
     return Whereabouts(*(float(said[name]) for name in Whereabouts._fields)) if isinstance(said, Mapping) else None
 
 
-def image_body(image: Image, number: int, date: str, size: Size | None = None) -> dict[str, Any]:
-    """The body of a frame of that size: `number` counts frames, `date` is when it was taken (ISO 8601).
+def image_body(image: Image, number: int, date: str, size: Size | None = None, camera: str = "") -> dict[str, Any]:
+    """The body of a frame of that size: `number` counts frames, `date` is when it was taken (ISO 8601), `camera` by
+    which camera.
 
     Renders and compresses, so call it from the thread that owns the camera. Raises RobotError where the robot can't
     give a picture.
     """
-    jpeg = _jpeg(image.pixels(size) if size else image.pixels())
+    pixels = image.pixels(size) if size else image.pixels()
+    jpeg, (height, width) = _jpeg(pixels), pixels.shape[:2]
     return {
         "name": str(number),
         "contentType": "image/jpeg",
@@ -106,7 +109,10 @@ def image_body(image: Image, number: int, date: str, size: Size | None = None) -
         "dateCreated": date,
         "dateModified": date,
         "datePublished": date,
-        "contentUrl": "data:image/jpeg;base64," + base64.b64encode(jpeg).decode("ascii"),
+        "contentUrl": DataUrl(jpeg),
+        "width": width,
+        "height": height,
+        "camera": camera,
         "time": image.time,
     }
 

@@ -64,9 +64,9 @@ class RobotServer:
         self._robot, self._bus, self._started, self._direct = robot, bus, started, direct
         self._frames, self._date = count(), date
         self._project = project
-        self._routes: dict[Sense, Route] = {}
-        self._next: dict[Sense, float] = {}
-        self._broadcasts: dict[Sense, SensePublisher] = {}
+        self._routes: dict[str, Route] = {}
+        self._next: dict[str, float] = {}
+        self._broadcasts: dict[str, SensePublisher] = {}
         self._leaving: list[PendingReading] = []
         self._listen(project)
         self._orders = CommandReceiver(project, robot, bus, clock, self._given, refused, hurry)
@@ -87,13 +87,13 @@ class RobotServer:
 
     @property
     def counts(self) -> Mapping[str, PublishCounts]:
-        """What became of the readings of each sense."""
-        return {sense: self._broadcasts[sense].count for sense in Sense if sense in self._broadcasts}
+        """What became of the readings on the route of each sense, and on those that are `of` one."""
+        return {name: broadcast.count for name, broadcast in self._broadcasts.items()}
 
     @property
     def due(self) -> float:
         """When it next has a reading to publish [s]."""
-        return min((self._next[sense] for sense in self._routes if not self._broadcasts[sense].count.off), default=inf)
+        return min((self._next[name] for name in self._routes if not self._broadcasts[name].count.off), default=inf)
 
     @property
     def waiting(self) -> bool:
@@ -102,10 +102,11 @@ class RobotServer:
 
     def sample(self, now: float) -> None:
         """Read the senses that are due at `now` [s] and hand them on; begin the commands that have come."""
-        for sense, route in self._routes.items():
-            if now + TIME_EPSILON >= self._next[sense] and not self._broadcasts[sense].count.off:
-                self._schedule(sense, route, now)
-                self._read(sense)
+        for name, route in self._routes.items():
+            if now + TIME_EPSILON >= self._next[name] and not self._broadcasts[name].count.off:
+                self._schedule(name, route, now)
+                if self._wanted(route):
+                    self._read(name, Sense(route.sense))
         self._orders.begin()
 
     def use(self, project: Project) -> None:
@@ -175,39 +176,51 @@ class RobotServer:
         except BusError as error:
             _log.warning("what the robot publishes on `%s` was not sent: %s", route, error)
 
-    def _schedule(self, sense: Sense, route: Route, now: float) -> None:
+    def _wanted(self, route: Route) -> bool:
+        """Whether it is to be read for this route: nobody draws a picture, or packs angles, that nobody takes."""
+        if not route.of and route.sense != Sense.IMAGE:
+            return True
+        heard: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
+        return heard(route.key_for(self._project.robot))
+
+    def _schedule(self, name: str, route: Route, now: float) -> None:
         """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""
         period = route.every or DEFAULT_SENSE_PERIOD
-        self._next[sense] += period
-        if self._next[sense] <= now:
-            self._next[sense] = now + period
+        self._next[name] += period
+        if self._next[name] <= now:
+            self._next[name] = now + period
 
-    def _read(self, sense: Sense) -> None:
+    def _read(self, name: str, sense: Sense) -> None:
         reading = self._robot.read(sense)
         if reading is None:
             return
         if isinstance(reading, Image):
-            self._broadcasts[sense].hand(PendingReading(reading))
+            self._broadcasts[name].hand(PendingReading(reading))
             return
         self._leaving = [handed for handed in self._leaving if not handed.done.is_set()]
         handed = PendingReading(reading, self._leaving[-1] if self._leaving else None)
         self._leaving.append(handed)
-        self._broadcasts[sense].hand(handed)
+        self._broadcasts[name].hand(handed)
 
     def _listen(self, project: Project) -> None:
-        """Give every sense that has a route what publishes it."""
+        """Give every route of a sense what publishes it: the one of its name first, then those that are `of` it."""
         self._project = project
-        self._routes = {sense: project.routes[sense] for sense in Sense if sense in project.routes}
-        for sense in self._routes.keys() - self._broadcasts.keys():
-            encode = self._picture if sense is Sense.IMAGE else encode_reading
-            direct = self._direct and sense is not Sense.IMAGE
-            self._broadcasts[sense] = SensePublisher(sense, encode, partial(self._publish, sense), direct=direct)
-            self._next[sense] = 0.0
+        senses = {sense.value: i for i, sense in enumerate(Sense)}
+        rows = [(name, route) for name, route in project.routes.items() if route.sense in senses]
+        self._routes = dict(sorted(rows, key=lambda row: (bool(row[1].of), senses[row[1].sense])))
+        for name, route in self._routes.items():
+            if name not in self._broadcasts:
+                image = route.sense == Sense.IMAGE
+                encode = partial(self._picture, name) if image else encode_reading
+                publish, direct = partial(self._publish, name), self._direct and not image
+                self._broadcasts[name] = SensePublisher(name, encode, publish, direct=direct)
+                self._next[name] = 0.0
 
-    def _publish(self, sense: Sense, body: dict[str, Any]) -> None:
-        if route := self._routes.get(sense):
+    def _publish(self, name: str, body: dict[str, Any]) -> None:
+        if route := self._routes.get(name):
             self._bus.publish(route.key_for(self._project.robot), body, ttl=route.ttl)
 
-    def _picture(self, image: Image) -> dict[str, Any]:
-        route = self._routes.get(Sense.IMAGE)
-        return image_body(image, next(self._frames), self._date(), route.size if route else None)
+    def _picture(self, name: str, image: Image) -> dict[str, Any]:
+        route, eyes = self._routes.get(name), self._project.body.roles.eyes
+        camera = eyes.camera if eyes else ""
+        return image_body(image, next(self._frames), self._date(), route.size if route else None, camera)

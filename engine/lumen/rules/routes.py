@@ -7,9 +7,11 @@ from lumen.language.commands import Track
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, has_errors
 from lumen.language.routes import (
     COMMAND,
+    FLOATS_TYPE,
     HEARD,
     IMAGE,
     JOINT,
+    JPEG_TYPE,
     LONGEST_COMMAND_TTL,
     MEANINGS,
     SHORTEST_IMAGE_INTERVAL,
@@ -33,7 +35,10 @@ LONG_TTL = Code("long-ttl", "routes", WARNING, "a command may wait so long that 
 LOSSY_JOURNAL = Code("lossy-journal", "routes", ERROR, "a route that must not lose messages is set to drop them")
 BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "a route wants images that the robot's camera can't take")
 PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a name and a password are written in the project")
+WRONG_FORM = Code("wrong-form", "routes", ERROR, "a route is to have a form that its bodies can't have")
 UNUSED_ROUTE = Code("unused-route", "routes", WARNING, "the messages of a route become an event that nothing waits for")
+
+_FORMED = {JPEG_TYPE: IMAGE, FLOATS_TYPE: JOINT}
 
 
 def check(draft: ProjectDraft) -> None:
@@ -89,11 +94,15 @@ def _carried(report: DocumentReport, route: Route) -> None:
 
 
 def _pictures(report: DocumentReport, route: Route) -> None:
-    """Only a camera has a size, and it takes so many images a second."""
-    if route.size and route.name != IMAGE:
+    """Only a camera has a size, and it takes so many images a second; each form is one of images or of joints."""
+    if (of := _FORMED.get(route.content_type)) and route.sense != of:
+        message = f"`{route.content_type}` is a form of the sense `{of}`, and this route carries `{route.sense}`"
+        hint = f"write `of: {of}` beside it, or delete `content_type`"
+        report(WRONG_FORM, (*route.where, "content_type"), message, hint)
+    if route.size and route.sense != IMAGE:
         message = f"`{route.name}` has no size: only the images on the route `{IMAGE}` have"
         report(BEYOND_CAMERA, (*route.where, "size"), message, "delete `size`", key=True)
-    if route.name == IMAGE and route.every and route.every < SHORTEST_IMAGE_INTERVAL:
+    if route.sense == IMAGE and route.every and route.every < SHORTEST_IMAGE_INTERVAL:
         message = f"an image every {1000 * route.every:g} ms is more than the camera takes, 30 a second"
         hint = f"{1000 * SHORTEST_IMAGE_INTERVAL:g}ms is the shortest"
         report(BEYOND_CAMERA, (*route.where, "every"), message, hint)

@@ -38,6 +38,8 @@ def _shown(value: Any) -> str:
 
 _ROUTE: Mapping[str, Callable[[Any], str]] = {
     "key": _shown,
+    "of": _shown,
+    "content_type": _shown,
     "direction": _shown,
     "schema": _shown,
     "event": _shown,

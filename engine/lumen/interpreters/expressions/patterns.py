@@ -38,7 +38,7 @@ class CompiledPattern:
 
     def search(self, text: str) -> bool:
         try:
-            return self._occurs_in(text)
+            return self._occurs_in(str(text))
         except UnicodeEncodeError:  # half a surrogate pair, which no UTF-8 can hold
             return self._occurs_in(text.encode("utf-16", "surrogatepass").decode("utf-16", "replace"))
 

@@ -10,6 +10,7 @@ from lumen.errors import ModuleError
 from lumen.language.modules import EYES
 from lumen.language.people import name_key
 from lumen.language.projects import Project
+from lumen.language.routes import IMAGE
 from lumen.modules.eyes.detector import Box, PersonDetector
 from lumen.modules.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
 from lumen.modules.eyes.pictures import Frame, frame_of
@@ -72,7 +73,7 @@ class Eyes(Module):
         heard: dict[str, MessageHandler] = {"visual_command": self._enrol, "forgotten": self._forget}
         if self._window:
             heard["joint"] = self._joints
-        return heard if self._source else {"image": self._image, **heard}
+        return heard if self._source else {str(self.settings.options.get("images", IMAGE)): self._image, **heard}
 
     def idle(self) -> float | None:
         if self._clock() - self._expired > 3_600.0:

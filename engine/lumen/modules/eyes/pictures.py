@@ -6,6 +6,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import ModuleError
+from lumen.language.data_url import DataUrl
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,7 +32,7 @@ def frame_of(body: Any) -> Frame:
     if not isinstance(url, str) or not url.startswith("data:image/"):
         raise ModuleError("an image has no `contentUrl` that begins with `data:image/`: it is not looked at")
     try:
-        data = base64.b64decode(url.partition(",")[2], validate=True)
+        data = url.data if isinstance(url, DataUrl) else base64.b64decode(url.partition(",")[2], validate=True)
     except (binascii.Error, ValueError):
         raise ModuleError("the `contentUrl` of an image is no base64: it is not looked at") from None
     time = body.get("time")
