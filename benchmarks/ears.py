@@ -16,7 +16,8 @@ import numpy as np
 import lumen
 from lumen.language.machines import MachineDefinition
 from lumen.modules.ears.expected import expected
-from lumen.modules.ears.sphinx import Sphinx, resampled
+from lumen.modules.ears.resampling import resampled
+from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 

@@ -13,8 +13,9 @@ from lumen.language.projects import Project
 from lumen.modules.ears import Ears
 from lumen.modules.ears.bigrams import arpa
 from lumen.modules.ears.expected import expected
+from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
-from lumen.modules.ears.sphinx import Sphinx, resampled
+from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 from tests.modules.conftest import Stand

@@ -2,6 +2,7 @@
 
 import logging
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -32,16 +33,20 @@ class Module:
 
     A handler that raises ModuleError costs that message: `tell` says why, once for each reason until it works again,
     and the route `trouble` to the operators of other processes. Of a route that keeps one message only the newest
-    waits. Subclasses name themselves and give `hears`; they call `begin` when they are ready.
+    waits. While one is handled, `came` is when it arrived, by `clock` [s]. Subclasses name themselves and give `hears`;
+    they call `begin` when they are ready.
     """
 
     name = ""
 
-    def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
-        self.project, self.bus = project, bus
+    def __init__(
+        self, project: Project, bus: Bus, tell: Callable[[str], None], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.project, self.bus, self.clock = project, bus, clock
         self.handled = 0
+        self.came = 0.0
         self._tell = tell
-        self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
+        self._waiting: deque[tuple[str, Message, float]] = deque(maxlen=MAX_WAITING_MESSAGES)
         self._drops = DropLog(_log)
         self._changed = threading.Condition()
         self._busy = self._ending = False
@@ -135,13 +140,16 @@ class Module:
             if row and row.keep == 1:
                 self._waiting = deque((w for w in self._waiting if w[0] != route), maxlen=MAX_WAITING_MESSAGES)
             self._drops.push(
-                self._waiting, (route, message), lambda waiting: waiting[1].key, f"{self.name} is too slow"
+                self._waiting,
+                (route, message, self.clock()),
+                lambda waiting: waiting[1].key,
+                f"{self.name} is too slow",
             )
             self._changed.notify_all()
 
     def _run(self) -> None:
         while job := self._next():
-            route, message = job
+            route, message, self.came = job
             try:
                 self.hears()[route](message)
             except ModuleError as error:
@@ -161,7 +169,7 @@ class Module:
         """Called on its thread when nothing waits; in how many seconds again, None for not before a message."""
         return None
 
-    def _next(self) -> tuple[str, Message] | None:
+    def _next(self) -> tuple[str, Message, float] | None:
         while True:
             with self._changed:
                 if self._waiting:

@@ -6,6 +6,7 @@ import io
 import sys
 import wave
 from array import array
+from collections.abc import Iterable
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -28,7 +29,22 @@ class Sound(NamedTuple):
 
     def until(self, length: float) -> "Sound":
         """Its beginning, of this length [s] at most."""
-        return Sound(self.rate, self.samples[: 2 * round(max(length, 0.0) * self.rate)])
+        return self.between(0.0, length)
+
+    def between(self, begin: float, end: float) -> "Sound":
+        """What is between two times [s], as far as there is any."""
+        return Sound(self.rate, self.samples[self._at(begin) : self._at(end)])
+
+    def without(self, spans: Iterable[tuple[float, float]]) -> "Sound":
+        """The same sound, silent from each `begin` to its `end` [s]."""
+        data = bytearray(self.samples)
+        for begin, end in spans:
+            first, last = self._at(begin), min(self._at(end), len(data))
+            data[first:last] = bytes(max(0, last - first))
+        return Sound(self.rate, bytes(data))
+
+    def _at(self, moment: float) -> int:
+        return 2 * round(max(moment, 0.0) * self.rate)
 
     def at_volume(self, volume: float) -> "Sound":
         """The same sound, each sample times `volume`, from 0 to 1."""

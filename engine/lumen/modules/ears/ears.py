@@ -1,35 +1,59 @@
 """Listens to recordings, and publishes what was said in them."""
 
+import time
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 
 from lumen.errors import ModuleError
+from lumen.interpreters.expressions.phrases import padded
 from lumen.language.modules import EARS
 from lumen.language.projects import Project
 from lumen.modules.ears.expected import expected
+from lumen.modules.ears.own_voice import OwnVoice, Utterance
 from lumen.modules.ears.recogniser import Recogniser
+from lumen.modules.ears.voice_activity import VoiceActivity, voice_activity
 from lumen.modules.module import Module
-from lumen.modules.sound import sound_of
+from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Bus, Message, MessageHandler
+
+INTERRUPTS = ("stop",)
+"""The phrases that are heard while the robot speaks, where `lumen.yaml` does not say which."""
+REST = 0.3
+"""How much of the silence before and after what is said a recogniser is given [s]."""
 
 
 class Ears(Module):
     """The speech half of the audio module: the robot's recordings, and sounds that others send, become texts.
 
-    A recogniser of one's own may be handed in; else it is PocketSphinx. Raises ModuleError where that is not there.
+    Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard. A sound
+    has just ended when it comes. A recogniser of one's own may be handed in, and who finds speech in sounds; else they
+    are PocketSphinx and Silero's network. Raises ModuleError where PocketSphinx is not there.
     """
 
     name = EARS
 
     def __init__(
-        self, project: Project, bus: Bus, tell: Callable[[str], None], recogniser: Recogniser | None = None
+        self,
+        project: Project,
+        bus: Bus,
+        tell: Callable[[str], None],
+        recogniser: Recogniser | None = None,
+        activity: VoiceActivity | None = None,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        super().__init__(project, bus, tell)
+        super().__init__(project, bus, tell, clock)
+        self._activity = activity if recogniser else voice_activity()
         self._recogniser = recogniser or _sphinx()
         self._recogniser.expect(expected(project))
+        self._own_voice = OwnVoice()
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        return {"recording": self._sound, "wav_stream": self._sound}
+        return {
+            "recording": self._sound,
+            "wav_stream": self._sound,
+            "state": lambda message: self._own_voice.state(message.body, self.came),
+            "report": lambda message: self._own_voice.report(message.body, self.came),
+        }
 
     def use(self, project: Project) -> None:
         super().use(project)
@@ -43,12 +67,40 @@ class Ears(Module):
             raise ModuleError(
                 f"nobody understands the language `{language[:20]}` here, only {known}: type what was said"
             )
-        text = self._recogniser.recognise(sound_of(body.get("content")))
+        text = self._heard(sound_of(body.get("content")))
         if text:
             date = datetime.now(UTC).isoformat(timespec="seconds")
             name = str(body.get("name", ""))
             self.publish("heard", {"name": name, "result": text, "date": date, "language": language})
         self.well()
+
+    def _heard(self, sound: Sound) -> str:
+        """What others said in a sound that has just ended, empty where nobody did."""
+        began = self.came - sound.duration
+        own = self._own_voice.during(began, self.came)
+        text = self._words(sound.without([(u.begin - began, u.end - began) for u in own]))
+        return text if text or not own else self._interrupting(self._words(sound), own)
+
+    def _words(self, sound: Sound) -> str:
+        """What is said in it."""
+        if self._activity:
+            spans = self._activity.spans(sound)
+            if not spans:
+                return ""
+            sound = sound.between(spans[0][0] - REST, spans[-1][1] + REST)
+        return self._recogniser.recognise(sound)
+
+    def _interrupting(self, text: str, own: list[Utterance]) -> str:
+        """The phrase in it that interrupts the robot, unless the robot itself says it."""
+        said, ours = padded(text), " ".join(padded(u.text) for u in own)
+        names = self.settings.options.get("interrupts", INTERRUPTS)
+        for machine in self.project.behaviors.values():
+            for name in names:
+                for phrases in machine.phrases.get(name, {}).values():
+                    for phrase in phrases:
+                        if padded(phrase) in said and padded(phrase) not in ours:
+                            return phrase
+        return ""
 
 
 def _sphinx() -> Recogniser:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
 from lumen.modules.ears.bigrams import arpa
+from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
 from lumen.modules.sound import Sound
 
@@ -105,15 +106,3 @@ def _hissing(samples: "NDArray[np.float64]") -> bytes:
     noise = np.random.default_rng(0).normal(0.0, NOISE_LEVEL, padded.shape)
     data: bytes = np.clip(padded + noise, -32_768, 32_767).astype("<i2").tobytes()
     return data
-
-
-def resampled(sound: Sound, rate: int) -> Sound:
-    """The sound at another rate, linearly between its samples."""
-    if sound.rate == rate:
-        return sound
-    import numpy as np
-
-    samples = np.frombuffer(sound.samples, "<i2")
-    count = max(1, round(len(samples) * rate / sound.rate))
-    places = np.linspace(0.0, len(samples) - 1.0, count)
-    return Sound(rate, np.interp(places, np.arange(len(samples)), samples).astype("<i2").tobytes())

@@ -1,0 +1,65 @@
+"""When the robot itself speaks, by what the bus tells of it."""
+
+from collections import deque
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+ECHO = 0.3
+"""How long after its last word a room still has the robot's voice in it [s]."""
+LONGEST = 60.0
+"""A text whose end nobody has told is over after this time [s]: the robot does not stay deaf."""
+MAX_KEPT = 100
+"""Texts that are remembered; a sound lasts two minutes at most."""
+_SPOKEN = ("started", "accepted")
+
+
+class Utterance(NamedTuple):
+    """A text that the robot says, from `begin` to `end` [s]; empty where only that it speaks is known."""
+
+    text: str
+    begin: float
+    end: float
+
+
+class OwnVoice:
+    """Knows when the robot speaks: by commands of its behaviour (`state`), and by those that others gave (`report`)."""
+
+    def __init__(self) -> None:
+        self._said: deque[Utterance] = deque(maxlen=MAX_KEPT)
+        self._saying: dict[str, Utterance] = {}
+
+    def state(self, body: Any, at: float) -> None:
+        """What the behaviour does: a `say` that begins, or the answer to one."""
+        match body:
+            case {"command": {"verb": "say", "id": str(id), "text": str(text)}}:
+                self._begin(id, text, at)
+            case {"answer": {"id": str(id)}}:
+                self._end(id, at)
+
+    def report(self, body: Any, at: float) -> None:
+        """How a command stands that came over the bus."""
+        match body:
+            case {"method": str(method), "id": str(id), "state": str(state)} if method.lower() == "say":
+                if state in _SPOKEN:
+                    self._begin(id, "", at)
+                else:
+                    self._end(id, at)
+
+    def during(self, begin: float, end: float) -> list[Utterance]:
+        """What it said in this time [s], with the echo of it, the earliest first."""
+        now = [u._replace(end=min(end, u.begin + LONGEST)) for u in self._saying.values()]
+        heard = [u._replace(end=u.end + ECHO) for u in (*self._said, *now)]
+        return sorted((u for u in heard if u.begin < end and u.end > begin), key=lambda u: u.begin)
+
+    def _begin(self, id: str, text: str, at: float) -> None:
+        known: Mapping[str, Utterance] = self._saying
+        if id not in known:
+            self._saying[id] = Utterance(text, at, at + LONGEST)
+        elif text:
+            self._saying[id] = known[id]._replace(text=text)
+        while len(self._saying) > MAX_KEPT:
+            del self._saying[next(iter(self._saying))]
+
+    def _end(self, id: str, at: float) -> None:
+        if spoken := self._saying.pop(id, None):
+            self._said.append(spoken._replace(end=min(at, spoken.end)))

@@ -1,0 +1,15 @@
+"""Sounds at another rate."""
+
+from lumen.modules.sound import Sound
+
+
+def resampled(sound: Sound, rate: int) -> Sound:
+    """The sound at another rate, linearly between its samples."""
+    if sound.rate == rate:
+        return sound
+    import numpy as np
+
+    samples = np.frombuffer(sound.samples, "<i2")
+    count = max(1, round(len(samples) * rate / sound.rate))
+    places = np.linspace(0.0, len(samples) - 1.0, count)
+    return Sound(rate, np.interp(places, np.arange(len(samples)), samples).astype("<i2").tobytes())
