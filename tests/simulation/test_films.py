@@ -14,7 +14,7 @@ from lumen.app.film_progress import FilmProgress
 from lumen.language.stories import Visitor
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.film import Film
-from lumen.robots.simulation.lettering import ROBOT_COLOUR, subtitle
+from lumen.robots.simulation.lettering import MAX_LINES, ROBOT_COLOUR, subtitle, subtitle_pages
 from lumen.robots.simulation.shots import (
     FIELD_OF_VIEW,
     LONGEST_SHOT,
@@ -161,3 +161,17 @@ def test_how_far_a_film_is_is_said_now_and_then() -> None:
         "film: 15 of about 100 s, about 4:15 min more",
         "film: 20 of about 100 s, about 4:00 min more",
     ]
+
+
+def test_long_texts_follow_each_other_in_few_lines() -> None:
+    text = (
+        "This is Electrical Engineering Days. Here the School of Electrical Engineering and Informatics of Bandung"
+        " Institute of Technology shows what its students and researchers build, and they like to be asked about it."
+    )
+    pages = subtitle_pages(text, 1920, 1080)
+    assert " ".join(pages) == text
+    assert len(pages) == 2
+    line = subtitle("Hello", ROBOT_COLOUR, 1920, 1080).pixels.shape[0]
+    assert all(subtitle(page, ROBOT_COLOUR, 1920, 1080).pixels.shape[0] < (MAX_LINES + 1) * line for page in pages)
+    assert subtitle_pages("Hello, Ayu!", 320, 180) == ("Hello, Ayu!",)
+    assert subtitle_pages("Donaudampfschifffahrt" * 9, 320, 180) == ("Donaudampfschifffahrt" * 9,)

@@ -4,6 +4,7 @@ import os
 from collections import deque
 from collections.abc import Generator
 from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import accumulate
 from math import atan2
 from pathlib import Path
 from typing import NamedTuple
@@ -13,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
-from lumen.robots.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, title
+from lumen.robots.command_table import speech_duration
+from lumen.robots.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
 from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from lumen.robots.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.robot import SimulatedRobot
@@ -81,6 +83,7 @@ class Film:
         self._writer = _writer(path, size)
         self._said = self._heard = ""
         self._heard_until = 0.0
+        self._said_from: float | None = None
         self._due = self._drawn = 0
 
     @property
@@ -103,7 +106,7 @@ class Film:
 
     def says(self, text: str) -> None:
         """The robot says this from now on; empty where it has ended."""
-        self._said = text
+        self._said, self._said_from = text, None
         if text:
             self._heard = ""
             self.happened(FilmMoment.ROBOT_SPEAKS)
@@ -121,7 +124,7 @@ class Film:
         picture = Picture(
             RenderState.of(world.model, world.data),
             self._camera or self._directed(now),
-            self._said,
+            self._saying(now),
             self._heard if now < self._heard_until else "",
             _fading(now) if self._title else 0.0,
         )
@@ -166,6 +169,17 @@ class Film:
         elif picture.title > 0.0:
             title(self._title, *self._size).lay_on(pixels, picture.title)
         return pixels
+
+    def _saying(self, now: float) -> str:
+        """The part of what is said that is said about now [s]: no voice says how far it is."""
+        if not self._said:
+            return ""
+        if self._said_from is None:
+            self._said_from = now
+        so_far = (now - self._said_from) / speech_duration(self._said) * len(self._said)
+        pages = subtitle_pages(self._said, *self._size)
+        ends = accumulate(len(page) + 1 for page in pages)
+        return next((page for page, end in zip(pages, ends, strict=True) if so_far < end), pages[-1])
 
     def _directed(self, now: float) -> tuple[HallPoint, float, float, float]:
         """Where the film's own camera looks, its azimuth and elevation [deg] and its distance [m]."""

@@ -14,9 +14,13 @@ FONTS = ("DejaVuSans.ttf", "NotoSans-Regular.ttf", "LiberationSans-Regular.ttf",
 SUBTITLE_HEIGHT, TITLE_HEIGHT = 0.05, 0.1
 """Of a line, as a part of the picture's height."""
 
+MAX_LINES = 2
+"""Lines of a subtitle: of more the robot beneath them is not seen, and what comes is read before it is said."""
+
 SUBTITLE_WIDTH = 0.72
 """The part of the picture's width that a line of subtitles may take."""
 
+CLAUSE_ENDS = ".,;:!?…"
 ROBOT_COLOUR, VISITOR_COLOUR = (255, 255, 255), (255, 221, 130)
 _BOX = (12, 16, 24, 185)
 
@@ -37,6 +41,26 @@ class Overlay(NamedTuple):
         part = picture[self.top : self.top + height, self.left : self.left + width]
         alpha = self.pixels[:, :, 3:].astype(np.uint16) * round(256 * opacity) // 256
         part[:] = (part * (255 - alpha) + self.pixels[:, :, :3] * alpha) // 255
+
+
+@lru_cache(maxsize=64)
+def subtitle_pages(text: str, width: int, height: int) -> tuple[str, ...]:
+    """A text as subtitles that follow each other, each of MAX_LINES at most; one ends with a clause, if it can."""
+    font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
+
+    def fits(words: list[str]) -> bool:
+        return len(_wrapped(_written(" ".join(words), plain), font, round(width * SUBTITLE_WIDTH))) <= MAX_LINES
+
+    pages: list[list[str]] = [[]]
+    for word in text.split():
+        if not pages[-1] or fits([*pages[-1], word]):
+            pages[-1].append(word)
+            continue
+        last = pages.pop()
+        ends = [i for i, each in enumerate(last, 1) if each[-1] in CLAUSE_ENDS and 2 * i >= len(last)]
+        at = ends[-1] if ends else len(last)
+        pages += [last[:at], [*last[at:], word]]
+    return tuple(" ".join(page) for page in pages)
 
 
 @lru_cache(maxsize=64)
@@ -76,9 +100,10 @@ def _wrapped(text: str, font: Font, most: int) -> list[str]:
     for count in range(1, 9):
         wanted = max(font.getlength(text) / count * 1.12, 1.0)
         if count > 1 or wanted <= most * 1.12:
-            lines = _filled(words, font, min(most, wanted))
-            if len(lines) <= count and all(font.getlength(line) <= most for line in lines):
-                return lines
+            for width in (min(most, wanted), most):
+                lines = _filled(words, font, width)
+                if len(lines) <= count and all(font.getlength(line) <= most for line in lines):
+                    return lines
     return _filled(words, font, most)
 
 
