@@ -1,0 +1,23 @@
+"""Offers to a language model: events of the behaviour's own, whose data is described."""
+
+from lumen.language.diagnostics import WARNING, Code
+from lumen.loading.draft import ProjectDraft
+
+MISPLACED_OFFER = Code(
+    "misplaced-offer",
+    "knowledge",
+    WARNING,
+    "an event is offered to a language model that does not stand under `events`",
+)
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report `offer: true` on a transition whose event does not stand under `events`."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for transition in (t for state in machine.states.values() for t in state.transitions if t.offer):
+            if transition.event not in machine.events:
+                what = f"`{transition.event}`" if transition.event and not transition.timed else "what has no event"
+                message = f"{what} is offered to a language model, and is no event of `events`"
+                hint = "offer an event of its own, and describe its data under `events`: nobody else raises it then"
+                report(MISPLACED_OFFER, (*transition.where, "offer"), message, hint, key=True)
