@@ -13,6 +13,7 @@ from pathlib import Path
 
 from lumen.app.fleet.centre import Centre
 from lumen.app.fleet.centre_journal import CentreJournal
+from lumen.app.fleet.fleet_log import FleetLog
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.keys import desired_key, presence_key
 from lumen.app.fleet.signing import Signer, generate
@@ -21,6 +22,7 @@ from lumen.interpreters.fleet.presence import RobotPresence
 from lumen.interpreters.fleet.rollout import begin
 from lumen.interpreters.fleet.state import CentreState
 from lumen.language.fleet import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
+from lumen.runtime.home import Home
 
 HOUSE = 10
 PERIOD = 10.0
@@ -38,10 +40,11 @@ def measured(count: int, folder: Path) -> dict[str, float]:
     bus, now = MemoryBus(), [1_000_000.0]
     sizes: list[int] = []
     bus.subscribe(desired_key("h0"), lambda message: sizes.append(len(json.dumps(message.body))))
+    log = FleetLog(Home(folder / f"{count}-log"))
     journal = CentreJournal(folder / str(count))
     signer = Signer(folder / f"key{count}")
     bundles = BundleFolder(folder / f"{count}/bundles")
-    centre = Centre(fleet, CentreState("one"), journal, bundles, signer, bus, clock=lambda: now[0])
+    centre = Centre(fleet, CentreState("one"), journal, bundles, signer, bus, log, clock=lambda: now[0])
     digest = 0
     centre.change(begin(centre.state, fleet, NEW, plan, now[0]), "begins")
     began, looks = time.process_time(), 0
