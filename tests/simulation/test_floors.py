@@ -31,7 +31,7 @@ class Way(NamedTuple):
 WAYS = {
     "rails of 5 mm": Way(bump(0.005), Walk(1.2), 2.5, 2.5),
     "up 5 degrees": Way(ramp(5.0), Walk(1.0), 3.5, 3.0),
-    "5 m straight": Way("", Walk(5.0), 6.0, 6.0, RESTED),
+    "5 m straight": Way("", Walk(5.0), 6.5, 6.5, RESTED),
 }
 
 
