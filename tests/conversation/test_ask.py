@@ -238,3 +238,24 @@ def test_it_is_kept_while_it_waits_and_goes_on_under_other_texts() -> None:
     assert can_continue(before, after, talk.snapshot.doing["asked"])
     waits = Machine.from_dict({**DATA, "states": {**other, "asked": {"do": {"wait": "1s"}}}})
     assert not can_continue(before, waits.states["asked"].do, talk.snapshot.doing["asked"])
+
+
+@pytest.mark.parametrize(
+    ("leads", "state"),
+    [
+        ({"wish": {"target": "over", "offer": True}}, "over"),
+        ({"wish": {"target": "over"}}, "asked"),
+        ({"*": {"target": "over", "offer": True}}, "asked"),
+        ({"wish": {"target": "over", "offer": True, "approve": "operator"}}, "asked"),
+        ({"wish": {"target": "over", "offer": True, "guard": "event.data.times > 2"}}, "over"),
+        ({"wish": {"target": "over", "offer": True, "guard": "event.data.times > 5"}}, "asked"),
+    ],
+)
+def test_an_answer_raises_an_event_that_is_offered(leads: dict[str, Any], state: str) -> None:
+    asked = {**DATA["states"]["asked"], "on": leads}
+    asked.pop("onDone")
+    schema = {"type": "object", "properties": {"times": {"type": "integer"}}, "required": ["times"]}
+    machine = Machine.from_dict({**DATA, "events": {"wish": schema}, "states": {**DATA["states"], "asked": asked}})
+    talk = Talk(machine)
+    talk.hear("answer.command.d1", {"raise": {"event": "wish", "data": {"times": 3}}})
+    assert (talk.state, talk.said) == (state, [])

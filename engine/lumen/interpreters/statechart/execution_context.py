@@ -182,9 +182,9 @@ class ExecutionContext:
         return state in self.active
 
     def offers(self, event: str) -> bool:
-        """Whether an active state has a transition for just that event which is marked as an `offer`."""
+        """Whether an active state has a transition for just that event that is an `offer`, and asks for no approval."""
         found = (transition.definition for group in self.configuration.candidates(event) for transition in group)
-        return any(one.offer and one.event == event for one in found)
+        return any(one.offer and not one.approve and one.event == event for one in found)
 
     def assign(self, key: str, value: Any) -> None:
         """Give a context key another value; raises ActionError where it is of another type."""

@@ -12,7 +12,7 @@ from lumen.language.machines import MachineDefinition
 def offers(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
     """Each event that the active states would take now and that is offered, with the JSON Schema of its data.
 
-    A guard that looks at the event's data is not asked: that comes with the event.
+    What a person has to approve is not offered. A guard that looks at the event is not asked: it is when that comes.
     """
     standing = compiled(machine).planner.configuration(snapshot.configuration)
     found: dict[str, Any] = {}
@@ -23,7 +23,7 @@ def offers(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
             machine.lists, no_draw,
         )  # fmt: skip
         for one in (transition.definition for transition in node.transitions):
-            if one.offer and (one.guard is None or _may_hold(one.guard.source, scope)):
+            if one.offer and not one.approve and (one.guard is None or _may_hold(one.guard.source, scope)):
                 found[one.event] = machine.events.get(one.event) or {}
     return found
 
