@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumen.bus import connect
+from lumen.modules.ears.recogniser import Hypothesis
 from lumen.modules.ears.shared_sphinx import SharedSphinx
 from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
@@ -51,7 +52,7 @@ def test_the_recogniser_of_a_process_is_one(monkeypatch: pytest.MonkeyPatch) -> 
     asked: list[object] = []
     monkeypatch.setattr(Sphinx, "__init__", lambda self: asked.append(self))
     monkeypatch.setattr(Sphinx, "expect", lambda self, sentences: asked.append(sentences))
-    monkeypatch.setattr(Sphinx, "recognise", lambda self, sound: "hello")
+    monkeypatch.setattr(Sphinx, "hypotheses", lambda self, sound: [Hypothesis("hello")])
     ears = [SharedSphinx(), SharedSphinx()]
     ears[1].expect([["hello"]])
     assert [one.recognise(Sound(16_000, b"")) for one in ears] == ["hello", "hello"]

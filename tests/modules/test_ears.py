@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.language.projects import Project
-from lumen.modules.ears import Ears
+from lumen.modules.ears import Ears, Hypothesis
 from lumen.modules.ears.bigrams import arpa
 from lumen.modules.ears.expected import expected
 from lumen.modules.ears.resampling import resampled
@@ -161,6 +161,26 @@ def test_words_that_were_spoken_are_recognised_on_the_bus(stand: Make, sphinx: S
     here.bus.publish(STREAM, {"name": "s", "content": espeak().speak(SONG, "en-us", pace=150).text(), "language": "en"})
     [said] = heard.wait(1)
     assert (said["result"], said["language"]) == (SONG, "en")
+    assert 0.3 < said["confidence"] <= 1.0
+    others = [row["result"] for row in said["alternatives"]]
+    assert len({SONG, *others}) == len(others) + 1 == 5
+
+
+class Doubter(Parrot):
+    """Knows what else may have been said."""
+
+    def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
+        return [Hypothesis("can you thing", 0.41234), Hypothesis("can you sing"), Hypothesis("can you ring", 0.1)]
+
+
+def test_what_else_may_have_been_said_is_on_the_bus(stand: Make) -> None:
+    here = stand()
+    listening(here, Doubter())
+    heard = here.listen(HEARD)
+    here.bus.publish(RECORDING, {"name": "r", "content": Sound(16_000, bytes(32_000)).text()})
+    [said] = heard.wait(1)
+    assert (said["result"], said["confidence"]) == ("can you thing", 0.412)
+    assert said["alternatives"] == [{"result": "can you sing"}, {"result": "can you ring", "confidence": 0.1}]
 
 
 def test_expects_what_the_tour_listens_for_and_what_visitors_say_in_stories(stand: Make, project: Project) -> None:

@@ -14,6 +14,7 @@ from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.approvals import Approvals
+from lumen.runtime.best_alternative import best_alternative
 from lumen.runtime.forgetting import forgetful
 
 _log = logging.getLogger(__name__)
@@ -162,6 +163,7 @@ class Runtime:
 
     def _hear(self, event: Event, emitted: list[Emission]) -> None:
         try:
+            event = best_alternative(self.project.machine, self.snapshot, event)
             waits = self.approvals.marked and self.approvals.holds(self.project.machine, self.snapshot, event)
             if not waits:
                 self._emit(step(self.project.machine, self.snapshot, event), "heard", emitted)

@@ -1,7 +1,7 @@
 """Listens to recordings, and publishes what was said in them."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 
 from lumen.errors import ModuleError
@@ -10,7 +10,7 @@ from lumen.language.modules import EARS
 from lumen.language.projects import Project
 from lumen.modules.ears.expected import expected
 from lumen.modules.ears.own_voice import OwnVoice, Utterance
-from lumen.modules.ears.recogniser import Recogniser
+from lumen.modules.ears.recogniser import Hypothesis, Recogniser, hypotheses
 from lumen.modules.ears.voice_activity import VoiceActivity, voice_activity
 from lumen.modules.module import Module
 from lumen.modules.sound import Sound, sound_of
@@ -67,28 +67,32 @@ class Ears(Module):
             raise ModuleError(
                 f"nobody understands the language `{language[:20]}` here, only {known}: type what was said"
             )
-        text = self._heard(sound_of(body.get("content")))
-        if text:
+        found = self._heard(sound_of(body.get("content")))
+        if found:
             date = datetime.now(UTC).isoformat(timespec="seconds")
-            name = str(body.get("name", ""))
-            self.publish("heard", {"name": name, "result": text, "date": date, "language": language})
+            about = {"name": str(body.get("name", "")), "date": date, "language": language}
+            best, *others = [_row(one) for one in found]
+            self.publish("heard", {**about, **best, **({"alternatives": others} if others else {})})
         self.well()
 
-    def _heard(self, sound: Sound) -> str:
-        """What others said in a sound that has just ended, empty where nobody did."""
+    def _heard(self, sound: Sound) -> Sequence[Hypothesis]:
+        """What others may have said in a sound that has just ended, none where nobody did."""
         began = self.came - sound.duration
         own = self._own_voice.during(began, self.came)
-        text = self._words(sound.without([(u.begin - began, u.end - began) for u in own]))
-        return text if text or not own else self._interrupting(self._words(sound), own)
+        found = self._words(sound.without([(u.begin - began, u.end - began) for u in own]))
+        if found or not own:
+            return found
+        phrase = next((p for one in self._words(sound) if (p := self._interrupting(one.text, own))), "")
+        return [Hypothesis(phrase)] if phrase else []
 
-    def _words(self, sound: Sound) -> str:
+    def _words(self, sound: Sound) -> Sequence[Hypothesis]:
         """What is said in it."""
         if self._activity:
             spans = self._activity.spans(sound)
             if not spans:
-                return ""
+                return []
             sound = sound.between(spans[0][0] - REST, spans[-1][1] + REST)
-        return self._recogniser.recognise(sound)
+        return hypotheses(self._recogniser, sound)
 
     def _interrupting(self, text: str, own: list[Utterance]) -> str:
         """The phrase in it that interrupts the robot, unless the robot itself says it."""
@@ -101,6 +105,12 @@ class Ears(Module):
                         if padded(phrase) in said and padded(phrase) not in ours:
                             return phrase
         return ""
+
+
+def _row(found: Hypothesis) -> dict[str, object]:
+    """Its part of a message."""
+    sure = {} if found.confidence is None else {"confidence": round(found.confidence, 3)}
+    return {"result": found.text, **sure}
 
 
 def _sphinx() -> Recogniser:

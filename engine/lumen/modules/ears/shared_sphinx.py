@@ -4,6 +4,7 @@ import threading
 from collections.abc import Sequence
 from weakref import WeakValueDictionary
 
+from lumen.modules.ears.recogniser import Hypothesis
 from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
 
@@ -29,6 +30,10 @@ class SharedSphinx:
         self._expected = sentences
 
     def recognise(self, sound: Sound) -> str:
+        found = self.hypotheses(sound)
+        return found[0].text if found else ""
+
+    def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
         with _lock:
             self._sphinx.expect(self._expected)
-            return self._sphinx.recognise(sound)
+            return self._sphinx.hypotheses(sound)

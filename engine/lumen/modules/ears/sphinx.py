@@ -1,13 +1,16 @@
 """PocketSphinx, which carries its model of American English in its own package and needs no network."""
 
 from collections.abc import Sequence
+from itertools import islice
 from math import exp
 from pathlib import Path
+from statistics import geometric_mean
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
 from lumen.modules.ears.bigrams import arpa
+from lumen.modules.ears.recogniser import Hypothesis
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
 from lumen.modules.sound import Sound
@@ -29,6 +32,12 @@ COMMON_WORDS = 8_000
 """How many common words it knows beside what is expected."""
 LOG_STEP = 1e-4
 """PocketSphinx counts logarithms in such steps."""
+
+MAX_HYPOTHESES, MAX_EXAMINED = 5, 20
+"""How many different texts are given, and how many rows of its list are looked at: many are alike but for silences."""
+FILLERS = "<[+"
+"""What begins so is no word, but a silence or a noise."""
+TINY = 1e-9
 
 
 class Sphinx:
@@ -58,16 +67,27 @@ class Sphinx:
         self._expected = sentences
 
     def recognise(self, sound: Sound) -> str:
+        found = self.hypotheses(sound)
+        return found[0].text if found else ""
+
+    def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
+        """As many as are wanted. How sure only the first is, is known: the others' scores hardly differ."""
         samples = _samples(sound)
         if abs(samples).max(initial=0) < SILENCE_LEVEL:
-            return ""
+            return []
         self._prepare(self._expected)
         decoder = self._decoder
         decoder.start_utt()
         decoder.process_raw(_hissing(samples), full_utt=True)
         decoder.end_utt()
-        found = decoder.hyp()
-        return str(found.hypstr) if found else ""
+        best = decoder.hyp()
+        if not best or not best.hypstr:
+            return []
+        sure = [segment.prob for segment in decoder.seg() if segment.word[0] not in FILLERS]
+        confidence = min(1.0, geometric_mean(p or TINY for p in sure)) if sure else 0.0
+        others = (found.hypstr for found in islice(decoder.nbest(), MAX_EXAMINED) if found.hypstr)
+        texts = dict.fromkeys((best.hypstr, *others))
+        return [Hypothesis(text, None if i else confidence) for i, text in enumerate(islice(texts, MAX_HYPOTHESES))]
 
     def _prepare(self, sentences: Sequence[Sequence[str]]) -> None:
         """Make the model of what is expected now."""

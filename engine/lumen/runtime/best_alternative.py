@@ -1,0 +1,68 @@
+"""What was said, of several texts that a recogniser took it for: the first that means something now.
+
+Chosen before the step, so that the journal holds what was chosen.
+"""
+
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import islice
+from typing import Any
+
+from lumen.errors import LumenError
+from lumen.interpreters.expressions.parser import parse_expression
+from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Unary, children
+from lumen.interpreters.statechart import Snapshot, Step, step
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+from lumen.language.routes import HEARD
+
+MAX_ALTERNATIVES = 10
+"""How many alternatives are looked at."""
+_COMPARES = frozenset(("heard", "lookup"))
+
+
+def best_alternative(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Event:
+    """The event with the `result` that means something: by it the step takes a transition that asks for phrases.
+
+    As it was where there are no alternatives, or none of them means anything. Nothing happens here.
+    """
+    data = event.data
+    if event.name != HEARD or not isinstance(data, dict) or not isinstance(data.get("alternatives"), list):
+        return event
+    for text in islice(_texts(data), MAX_ALTERNATIVES):
+        heard = event._replace(data={**data, "result": text})
+        try:
+            if _means_something(step(machine, snapshot, heard)):
+                return heard
+        except LumenError:
+            continue  # the step itself says so
+    return event
+
+
+def _texts(data: dict[str, Any]) -> Iterator[str]:
+    """What was probably said, then what else it may have been."""
+    for row in (data, *data["alternatives"]):
+        if isinstance(row, dict) and isinstance(row.get("result"), str):
+            yield row["result"]
+
+
+def _means_something(taken: Step) -> bool:
+    guards = (transition.guard for transition in taken.transitions)
+    if any(guard is not None and _asks_for_phrases(guard.source) for guard in guards):
+        return True
+    return any(_means_something(inner) for _, inner in taken.invoked)
+
+
+@lru_cache(maxsize=1000)
+def _asks_for_phrases(guard: str) -> bool:
+    """Whether it is true because a text has certain phrases."""
+    return _compares(parse_expression(guard))
+
+
+def _compares(node: ExpressionNode) -> bool:
+    match node:
+        case FunctionCall(function) if function in _COMPARES:
+            return True
+        case Unary("!"):
+            return False
+    return any(_compares(child) for child in children(node))
