@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter, process_time
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -36,8 +37,21 @@ Told = list[tuple[NDArray[np.float64], NDArray[np.float64]]]
 """For each control period where the servos were to go, and what they could give."""
 
 
+class Pace(NamedTuple):
+    """How many seconds a robot lives in one of CPU time, and how many bare steps of the same moments last."""
+
+    lived: float
+    bare: float
+
+
 def against_bare(name: str, robot: SimulatedRobot, live: Callable[[], object]) -> None:
     """Print how fast the robot lives through `live`, and how fast bare steps go through the same."""
+    lived, bare = paced(robot, live)
+    print(f"{name:<18} {lived:6.1f} x real time   bare {bare:6.1f} x   {lived / bare:.2f} of bare", flush=True)
+
+
+def paced(robot: SimulatedRobot, live: Callable[[], object]) -> Pace:
+    """How fast the robot lives through `live`."""
     world = robot.world
     told: Told = []
     beginning = np.zeros(mujoco.mj_stateSize(world.model, BEGINNING))
@@ -48,9 +62,7 @@ def against_bare(name: str, robot: SimulatedRobot, live: Callable[[], object]) -
     took = process_time() - begin
     del world.step
     bare, time = _bare(world, beginning, told), CONTROL_PERIOD * len(told)
-    print(
-        f"{name:<18} {time / took:6.1f} x real time   bare {time / bare:6.1f} x   {bare / took:.2f} of bare", flush=True
-    )
+    return Pace(time / took, time / bare)
 
 
 def _listen(world: World, told: Told) -> None:
