@@ -1,4 +1,4 @@
-"""How much of what visitors may say is understood: PocketSphinx alone, and told what the tour expects.
+"""When the ears listen (listening.py), and how much is understood: PocketSphinx alone, and told what the tour expects.
 
 espeak-ng says sentences that stand neither in the tour nor in its stories, in three voices each; a synthetic voice is
 no visitor, and white noise no hall: the ratio is what counts. A sentence is understood where the same phrases and
@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import sqrt
 from typing import NamedTuple
 
+import listening
 import numpy as np
 
 import lumen
@@ -112,6 +113,7 @@ def line(
 
 
 def main() -> None:
+    listening.main()
     project = lumen.load(".")
     machine = project.behaviors[project.behavior]
     for noise, level in NOISES.items():

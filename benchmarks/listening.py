@@ -1,0 +1,182 @@
+"""When the ears listen: what finds speech, and how often the robot hears itself.
+
+    python benchmarks/listening.py
+
+All voices are espeak-ng's, all noise is made, and the echo is one wall's: no hall, no visitor and no loudspeaker was
+recorded. What counts is how the rows differ. A sound has a second of rest before and after what is said.
+"""
+
+import re
+import statistics
+import sys
+from collections.abc import Sequence
+from math import sqrt
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import lumen
+from lumen.bus import connect
+from lumen.language.projects import Project
+from lumen.modules.ears import Ears
+from lumen.modules.ears.recogniser import Recogniser
+from lumen.modules.ears.resampling import resampled
+from lumen.modules.ears.shared_sphinx import SharedSphinx
+from lumen.modules.ears.voice_activity import VoiceActivity
+from lumen.modules.sound import Sound
+from lumen.modules.voice import espeak
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.waiting import Collector
+
+Samples = NDArray[np.float64]
+RATE = 16_000
+VOICES = (("en-us", 150), ("en-us+f3", 190), ("en-us+m3", 120), ("en-us+f5", 150), ("id", 150), ("id+f3", 190))
+NOISES: tuple[float | None, ...] = (None, 20.0, 10.0, 0.0)
+VISITOR = """can you dance for me;how tall are you;please sing a song;my name is peter;what happens at this booth
+tell me about yourself;i am fine thank you;can we take a photo"""
+ROBOT = """Good morning!;May I know your name?;How are you, Ani?;I am glad to hear that.
+What can I do for you? I can explain, dance, sing, or take a photo with you.;Do you have a question for me?
+I am 57 centimetres tall.;With pleasure! Please leave me some room.;Thank you for listening!
+I will sing Manuk Jajali for you.;My body was developed by Aldebaran Robotics.;I am sorry, I did not understand that."""
+STOP = "stop"
+WALL_DELAY, WALL_LEVEL = 0.08, 0.3
+"""What a wall gives back of a voice: when [s], and how much."""
+
+
+def texts(lines: str) -> list[str]:
+    return re.split("[;\n]", lines.strip())
+
+
+def spoken(text: str, voice: str, pace: int) -> Samples:
+    """A text without the silences around it."""
+    said = resampled(espeak().speak(text, voice, pace), RATE)
+    samples = np.frombuffer(said.samples, "<i2").astype(float)
+    loud = np.flatnonzero(np.abs(samples) > 200)
+    return samples[loud[0] : loud[-1] + 1]
+
+
+def loudness(samples: Samples) -> float:
+    return sqrt(float(np.mean(samples**2)))
+
+
+def sound(samples: Samples) -> Sound:
+    return Sound(RATE, np.clip(samples, -32_768, 32_767).astype("<i2").tobytes())
+
+
+def noise(length: int, seed: int, *, dull: bool = False) -> Samples:
+    """White noise, or one whose high parts are missing as behind a wall; its loudness is 1."""
+    found = np.random.default_rng(seed).normal(0.0, 1.0, length)
+    if dull:
+        found = np.convolve(found, np.ones(40) / 40, "same")
+    return found / loudness(found)
+
+
+def rested(said: Samples, level: float | None, seed: int) -> Samples:
+    """What is said between two rests, with so much less noise than voice [dB]."""
+    whole = np.pad(said, RATE)
+    if level is None:
+        return whole
+    return whole + noise(len(whole), seed, dull=seed % 2 == 0) * loudness(said) / 10 ** (level / 20)
+
+
+def activity() -> None:
+    """What finds speech: what it missed, how late it begins and ends, and what it takes for speech."""
+    finder = VoiceActivity()
+    for level in NOISES:
+        begins, ends, missed = [], [], 0
+        pairs = [(text, *VOICES[i % len(VOICES)]) for i, text in enumerate(texts(VISITOR) * 3)]
+        for seed, (text, voice, pace) in enumerate(pairs):
+            said = spoken(text, voice, pace)
+            spans = [
+                (b, e) for b, e in finder.spans(sound(rested(said, level, seed))) if e > 1 and b < 1 + len(said) / RATE
+            ]
+            if spans:
+                begins.append(spans[0][0] - 1.0)
+                ends.append(spans[-1][1] - 1.0 - len(said) / RATE)
+            else:
+                missed += 1
+        late = f"begins {_ms(begins)}, ends {_ms(ends)}" if begins else ""
+        print(f"  {_noise(level):12} missed {missed:2} of {len(pairs)}   {late}", flush=True)
+    for name, dull in (("white", False), ("dull", True)):
+        times = sum(len(finder.spans(sound(500.0 * noise(10 * RATE, seed, dull=dull)))) for seed in range(6))
+        print(f"  {name + ' noise':12} taken for speech {times} times in a minute", flush=True)
+
+
+def _ms(times: Sequence[float]) -> str:
+    return f"{1000 * statistics.median(times):+.0f} ms ({1000 * min(times):+.0f} to {1000 * max(times):+.0f})"
+
+
+def _noise(level: float | None) -> str:
+    return "quiet" if level is None else f"{level:g} dB"
+
+
+class Hall:
+    """Ears in a hall where the robot speaks; `knows` is whether they are told of that."""
+
+    def __init__(self, project: Project, recogniser: Recogniser, *, knows: bool) -> None:
+        self.now, self.knows, self.project = 0.0, knows, project
+        self.bus = connect("memory://", project)
+        self.heard = Collector()
+        self.ears = Ears(project, self.bus, print, recogniser, VoiceActivity(), lambda: self.now)
+        self.bus.subscribe(project.key_of("heard"), self.heard)
+        self.ears.begin()
+
+    def close(self) -> None:
+        self.ears.close()
+        self.bus.close()
+
+    def listen(self, text: str, own: Samples, other: Samples, at: float) -> list[str]:
+        """What they hear in the robot's text and its echo, while somebody speaks from `at` [s] on."""
+        length = max(len(own) + round(WALL_DELAY * RATE), round(at * RATE) + len(other)) + RATE // 2
+        hall, begin, before = np.zeros(length), self.now + 10.0, len(self.heard.bodies)
+        for delay, level in ((0.0, 1.0), (WALL_DELAY, WALL_LEVEL)):
+            first = round(delay * RATE)
+            hall[first : first + len(own)] += level * own
+        hall[round(at * RATE) :][: len(other)] += other
+        if self.knows:
+            self._tell(begin, {"command": {"verb": "say", "id": "d1", "text": text}})
+            self._tell(begin + len(own) / RATE, {"answer": {"id": "d1", "kind": "done"}})
+        self.now = begin + length / RATE
+        self.bus.publish(self.project.key_of("recording"), {"name": "hall", "content": sound(hall).text()})
+        assert self.ears.settle(60.0)
+        return [body["result"] for body in self.heard.bodies[before:]]
+
+    def _tell(self, at: float, body: dict[str, object]) -> None:
+        self.now = at
+        self.bus.publish(self.project.key_of("state"), {"robot": self.project.robot, "time": at, **body})
+        assert self.ears.settle(60.0)
+
+
+def half_duplex(project: Project) -> None:
+    """How often the robot hears itself, and what it still hears of others."""
+    recogniser, nothing = SharedSphinx(), np.zeros(0)
+    said = [(text, spoken(text, "en-us+m3", 150)) for text in texts(ROBOT)]
+    for name, knows in (("always listening", False), ("half duplex", True)):
+        hall = Hall(project, recogniser, knows=knows)
+        try:
+            itself = sum(bool(hall.listen(text, own, nothing, 0.0)) for text, own in said)
+            stops = [hall.listen(text, 0.3 * own, spoken(STOP, "en-us+f3", 130), 0.4) for text, own in said]
+            answers = []
+            for (text, own), words in zip(said, texts(VISITOR), strict=False):
+                found = hall.listen(text, own, spoken(words, "en-us", 150), len(own) / RATE + 0.6)
+                answers.append(found == [words])
+        finally:
+            hall.close()
+        stopped = sum(any(STOP in heard.split() for heard in found) for found in stops)
+        print(f"  {name:17} hears itself {itself:2} of {len(said)}")
+        print(f"  {'':17} `{STOP}` over its quiet voice {stopped:2} of {len(said)}")
+        print(f"  {'':17} an answer 0.6 s after it, word by word: {sum(answers)} of {len(answers)}", flush=True)
+
+
+def main() -> None:
+    project = lumen.load(str(Path(__file__).parents[1]))
+    print("what finds speech, by the noise beneath it:")
+    activity()
+    print("the robot's own voice:")
+    half_duplex(project)
+
+
+if __name__ == "__main__":
+    main()
