@@ -1,6 +1,7 @@
 """An exhibition's own questions say how like a passage a question has to be, while it runs and in `lumen test`."""
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -36,7 +37,7 @@ def test_they_count_while_it_runs() -> None:
 
 @pytest.fixture
 def small(tmp_path: Path) -> Path:
-    main(["new", str(tmp_path / "show")])
+    shutil.copytree(ROOT / "examples/minimal", tmp_path / "show", ignore=shutil.ignore_patterns(".lumen"))
     knowledge = tmp_path / "show/knowledge"
     (knowledge / "questions").mkdir(parents=True, exist_ok=True)
     for name, passage in PASSAGES.items():
