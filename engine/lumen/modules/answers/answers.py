@@ -12,8 +12,9 @@ from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.modules.answers.allowance import Allowance
 from lumen.modules.answers.chat import MAX_ARGUMENTS, Call, Chat
+from lumen.modules.answers.embeddings import Embeddings, embeddings_of
 from lumen.modules.answers.http_stream import answered
-from lumen.modules.answers.model_settings import ModelSettings
+from lumen.modules.answers.model_settings import ModelSettings, ServerSettings
 from lumen.modules.answers.prompt import request, tool_name
 from lumen.modules.answers.sentence_check import refusal, sentences
 from lumen.modules.module import Module
@@ -21,6 +22,8 @@ from lumen.ports import Bus, Message, MessageHandler
 
 MAX_SENTENCES = 2
 """Of an answer that are said."""
+MAX_PASSAGES = 3
+"""That the model is given."""
 MAX_TEXT = 2_000
 """Characters of an answer that are looked at."""
 
@@ -39,6 +42,7 @@ class Answers(Module):
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
         super().__init__(project, bus, tell)
         self._model = ModelSettings.of(self.settings.options)
+        self._embeddings = embeddings_of(self.settings.options, None)
         self._allowance = Allowance(self._model.hour, self._model.visitor)
 
     def hears(self) -> Mapping[str, MessageHandler]:
@@ -47,6 +51,7 @@ class Answers(Module):
     def use(self, project: Project) -> None:
         super().use(project)
         self._model = ModelSettings.of(self.settings.options)
+        self._embeddings = embeddings_of(self.settings.options, self._embeddings)
         self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
 
     def _ask(self, message: Message) -> None:
@@ -60,19 +65,48 @@ class Answers(Module):
             visit = asked.get("visit", 0)
             if reason := self._allowance.refusal(visit if isinstance(visit, int) else 0, began):
                 raise ModuleError(reason)
-            self._answer(id, asked, began + min(float(within), 60.0))
+            deadline = began + min(float(within), 60.0)
+            passages: list[str] | None = [text for text in asked.get("passages") or () if isinstance(text, str)]
+            if self._embeddings and passages is not None:
+                passages = self._known(self._embeddings, id, asked, passages, deadline)
+            if passages is not None and self._model.server:
+                self._answer(id, asked, self._model.server, passages, deadline)
             self.well()
         finally:
             self.publish("answer", {"id": id})
 
-    def _answer(self, id: str, asked: Mapping[str, Any], deadline: float) -> None:
-        passages = [text for text in asked.get("passages") or () if isinstance(text, str)]
+    def _known(
+        self, embeddings: Embeddings, id: str, asked: Mapping[str, Any], passages: list[str], deadline: float
+    ) -> list[str] | None:
+        """The passages that mean most nearly what was asked; None where one of them is the answer, which is said.
+
+        Where the embeddings can't be had, that is told, and it goes on with what is nearest by its words.
+        """
+        question, language = asked["question"], asked["language"]
+        soon = (time.monotonic() + deadline) / 2 if self._model.server else deadline
+        try:
+            found = embeddings.find(self.project, question, language, soon, self._wanted, MAX_PASSAGES)
+        except ModuleError as error:
+            if not self._model.server:
+                raise
+            self.tell(str(error))
+            return passages
+        if found.answer is None:
+            return list(found.nearest) or passages
+        body = {"text": found.answer.text, "language": language, "source": "passage", "more": True}
+        more = {"passage": found.answer.passage.name, "confidence": round(found.answer.score, 3)}
+        self.publish("answer", {"id": id, **body, **more})
+        return None
+
+    def _answer(
+        self, id: str, asked: Mapping[str, Any], server: ServerSettings, passages: list[str], deadline: float
+    ) -> None:
         offers = {tool_name(name): (name, schema or {}) for name, schema in (asked.get("offers") or {}).items()}
         tools = {name: {"type": "object", **schema} for name, (_, schema) in offers.items()}
-        body = request(self._model.name, asked, passages, tools)
+        body = request(server.name, asked, passages, tools)
         chat, said = Chat(), 0
         rest, whole = "", ""
-        with answered(self._model.url, body, self._model.secret(), deadline, self._wanted) as (kind, pieces):
+        with answered(server.url, body, server.secret(), deadline, self._wanted) as (kind, pieces):
             for piece in chat.read(kind, pieces):
                 whole += piece.text
                 found, rest = sentences(rest + piece.text, ended=piece.ended)

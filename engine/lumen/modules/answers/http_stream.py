@@ -22,11 +22,12 @@ PIECE = 4_096
 
 @contextmanager
 def answered(
-    url: str, body: Any, secret: str, deadline: float, wanted: Callable[[], bool]
+    url: str, body: Any, secret: str, deadline: float, wanted: Callable[[], bool], most: int = MAX_BYTES
 ) -> Iterator[tuple[str, Iterator[bytes]]]:
     """The answer's type, and its bytes as they come, until `deadline` (`time.monotonic`) or nobody has `wanted` it.
 
-    Raises ModuleError, which says why there is none; no text of it holds the key. Redirects are not followed.
+    Of more than `most` bytes, head included, none are taken. Raises ModuleError, which says why there is none; no text
+    of it holds the key. Redirects are not followed.
     """
     parts = urlsplit(url)
     connection: socket.socket | None = None
@@ -36,7 +37,7 @@ def answered(
         connection = _connected(parts.scheme, parts.hostname, parts.port, deadline)
         connection.settimeout(max(deadline - time.monotonic(), LOOK))
         connection.sendall(_request(parts.netloc.rpartition("@")[2], parts.path or "/", parts.query, body, secret))
-        response = HTTPResponse(cast(socket.socket, _Bounded(connection, deadline, wanted)), method="POST")
+        response = HTTPResponse(cast(socket.socket, _Bounded(connection, deadline, wanted, most)), method="POST")
         response.begin()
         if response.status != 200:
             raise ModuleError(f"the language model answers {response.status} {response.reason[:60]}".rstrip())
@@ -82,17 +83,17 @@ def _pieces(response: HTTPResponse) -> Iterator[bytes]:
 class _Bounded:
     """A connection as HTTPResponse reads it: for so many bytes, until the deadline, and while it is wanted."""
 
-    def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool]) -> None:
-        self._reader = _BoundedReader(connection, deadline, wanted)
+    def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool], most: int) -> None:
+        self._reader = _BoundedReader(connection, deadline, wanted, most)
 
     def makefile(self, mode: str) -> io.BufferedReader:
         return io.BufferedReader(self._reader)
 
 
 class _BoundedReader(io.RawIOBase):
-    def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool]) -> None:
+    def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool], most: int) -> None:
         self._connection, self._deadline, self._wanted = connection, deadline, wanted
-        self._left = MAX_BYTES
+        self._most = self._left = most
 
     def readable(self) -> bool:
         return True
@@ -109,6 +110,6 @@ class _BoundedReader(io.RawIOBase):
                 continue
             self._left -= count
             if self._left < 0:
-                raise ModuleError(f"the language model sent more than {MAX_BYTES} bytes")
+                raise ModuleError(f"the language model sent more than {self._most} bytes")
             return count
         raise ModuleError("nobody waits for the language model any more")

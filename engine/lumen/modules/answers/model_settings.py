@@ -1,4 +1,4 @@
-"""What lumen.yaml says of the language model."""
+"""What lumen.yaml says of the servers that the module asks."""
 
 import os
 from collections.abc import Mapping
@@ -7,22 +7,17 @@ from typing import Any, NamedTuple
 from lumen.errors import ModuleError
 
 
-class ModelSettings(NamedTuple):
-    """Where it is, what it is called there, and the environment variable that holds its key, empty for none."""
+class ServerSettings(NamedTuple):
+    """Where a model is, what it is called there, and the environment variable that holds its key, empty for none."""
 
     url: str
     name: str
     key: str = ""
-    hour: int = 60
-    visitor: int = 10
 
     @classmethod
-    def of(cls, options: Mapping[str, Any]) -> "ModelSettings":
-        """The settings of the module's options. Raises ModuleError where the model's are left out."""
-        model, budget = options.get("model"), options.get("budget") or {}
-        if not isinstance(model, Mapping):
-            raise ModuleError("no language model is configured: write `model: {url: …, name: …}` under `answers`")
-        return cls(model["url"], model["name"], model.get("key", ""), budget.get("hour", 60), budget.get("visitor", 10))
+    def of(cls, said: Mapping[str, Any]) -> "ServerSettings":
+        """The settings of `{url: …, name: …, key: …}`."""
+        return cls(said["url"], said["name"], said.get("key", ""))
 
     def secret(self) -> str:
         """The key, from the environment. Raises ModuleError where it is not set."""
@@ -31,3 +26,20 @@ class ModelSettings(NamedTuple):
         if not (found := os.environ.get(self.key, "").strip()) or not found.isascii() or not found.isprintable():
             raise ModuleError(f"the environment variable {self.key} holds no key for the language model")
         return found
+
+
+class ModelSettings(NamedTuple):
+    """The language model, None where only embeddings are asked for; how many questions an hour, and by one visitor."""
+
+    server: ServerSettings | None
+    hour: int = 60
+    visitor: int = 10
+
+    @classmethod
+    def of(cls, options: Mapping[str, Any]) -> "ModelSettings":
+        """The settings of the module's options. Raises ModuleError where they name no server at all."""
+        model, budget = options.get("model"), options.get("budget") or {}
+        if not isinstance(model, Mapping) and not isinstance(options.get("embeddings"), Mapping):
+            raise ModuleError("no language model is configured: write `model: {url: …, name: …}` under `answers`")
+        server = ServerSettings.of(model) if isinstance(model, Mapping) else None
+        return cls(server, budget.get("hour", 60), budget.get("visitor", 10))

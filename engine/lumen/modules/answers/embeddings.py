@@ -1,0 +1,127 @@
+"""Questions and passages as vectors of a server's `/v1/embeddings`: which passage means what was asked."""
+
+import json
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from lumen.errors import ModuleError
+from lumen.language.projects import Project
+from lumen.modules.answers.http_stream import answered
+from lumen.modules.answers.model_settings import ServerSettings
+
+if TYPE_CHECKING:
+    from lumen.interpreters.retrieval.retriever import FoundAnswer, Retriever
+    from lumen.interpreters.retrieval.scorers import Scorer, Scores
+
+BATCH = 32
+"""Texts of one request."""
+MAX_BYTES = 4_000_000
+"""Of an answer: 32 vectors of 4,096 numbers, written out."""
+MAX_KEPT = 20_000
+"""Texts whose vectors are kept."""
+
+Wanted = Callable[[], bool]
+
+
+class Found(NamedTuple):
+    """The passage that answers, if one surely does, and the answers of those that are nearest."""
+
+    answer: "FoundAnswer | None"
+    nearest: tuple[str, ...]
+
+
+class Embeddings:
+    """Finds passages by what a question means, as far as a server's vectors tell.
+
+    A passage is answered where it is as like as the exhibition's own questions (`knowledge/questions`) say that it has
+    to be: without any, none is. Vectors are kept; those of passages are asked for at the first question.
+    """
+
+    def __init__(self, settings: ServerSettings) -> None:
+        self.settings = settings
+        self._kept: dict[str, tuple[float, ...]] = {}
+        self._deadline, self._wanted = 0.0, _always
+        self._known: tuple[object, ...] = ()
+        self._retriever: Retriever | None = None
+        self._enough: Any = None
+
+    def find(self, project: Project, question: str, language: str, deadline: float, wanted: Wanted, most: int) -> Found:
+        """What is known of the question, by `deadline` (`time.monotonic`). Raises ModuleError where no server says."""
+        from lumen.interpreters.retrieval.calibration import NEVER
+        from lumen.interpreters.retrieval.retriever import Retriever
+        from lumen.interpreters.retrieval.trials import thresholds_of
+
+        self._deadline, self._wanted = deadline, wanted
+        known = (project.knowledge, project.questions, project.robot, language)
+        if self._known != known:
+            passages, sets = [*project.knowledge.values()], [*project.questions.values()]
+            by_language = [each.questions for each in passages]
+            by_language += [texts for each in sets for texts in (*each.asked.values(), each.unanswered)]
+            self._embed([question, *(text for texts in by_language for text in texts.get(language, ()))])
+            self._retriever = Retriever(passages, language, robot=project.robot, method=self._method)
+            self._enough = thresholds_of(self._retriever, sets) or NEVER
+            self._known = known
+        assert self._retriever
+        return Found(self._retriever.answer(question, self._enough), tuple(self._retriever.nearest(question, most)))
+
+    def _method(self, known: Sequence[str], _: str) -> "Scorer":
+        import numpy as np
+
+        rows = np.array(self._embed(known), np.float32).reshape(len(known), -1)
+
+        def score(question: str) -> "Scores":
+            (vector,) = self._embed([question])
+            return np.asarray(rows @ np.array(vector, np.float32), np.float32)
+
+        return score
+
+    def _embed(self, texts: Iterable[str]) -> list[tuple[float, ...]]:
+        """The vectors of these texts, of length 1; those that are not kept are asked for, a batch at a time."""
+        texts = list(texts)
+        missing = [text for text in dict.fromkeys(texts) if text not in self._kept]
+        if len(self._kept) + len(missing) > MAX_KEPT:
+            self._kept.clear()
+            missing = list(dict.fromkeys(texts))
+        for i in range(0, len(missing), BATCH):
+            batch = missing[i : i + BATCH]
+            self._kept |= zip(batch, self._asked(batch), strict=True)
+        if len({len(self._kept[text]) for text in texts}) > 1:
+            self._kept.clear()
+            raise ModuleError("the server of embeddings gives vectors of different lengths")
+        return [self._kept[text] for text in texts]
+
+    def _asked(self, texts: list[str]) -> list[tuple[float, ...]]:
+        if time.monotonic() >= self._deadline:
+            raise ModuleError("the server of embeddings did not answer in time")
+        body = {"model": self.settings.name, "input": texts}
+        with answered(self.settings.url, body, self.settings.secret(), self._deadline, self._wanted, MAX_BYTES) as (
+            _,
+            pieces,
+        ):
+            content = b"".join(pieces)
+        try:
+            data = json.loads(content)["data"]
+            vectors = {row["index"]: _unit(row["embedding"]) for row in data}
+            return [vectors[i] for i in range(len(texts))]
+        except (ValueError, TypeError, KeyError, RecursionError, OverflowError):
+            raise ModuleError("the server of embeddings answers something else than a list of embeddings") from None
+
+
+def embeddings_of(options: Mapping[str, Any], before: Embeddings | None) -> Embeddings | None:
+    """What the module's options say of embeddings, with what is known already; None where nothing."""
+    if not isinstance(said := options.get("embeddings"), Mapping):
+        return None
+    settings = ServerSettings.of(said)
+    return before if before and before.settings == settings else Embeddings(settings)
+
+
+def _unit(numbers: Sequence[float]) -> tuple[float, ...]:
+    length = sum(number * number for number in numbers) ** 0.5
+    if not numbers or not 0.0 < length < float("inf"):
+        raise ValueError
+    return tuple(number / length for number in numbers)
+
+
+def _always() -> bool:
+    return True
