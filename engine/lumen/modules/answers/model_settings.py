@@ -40,6 +40,8 @@ class ModelSettings(NamedTuple):
         """The settings of the module's options. Raises ModuleError where they name no server at all."""
         model, budget = options.get("model"), options.get("budget") or {}
         if not isinstance(model, Mapping) and not isinstance(options.get("embeddings"), Mapping):
-            raise ModuleError("no language model is configured: write `model: {url: …, name: …}` under `answers`")
+            raise ModuleError(
+                "no language model is configured: write `model: {url: …, name: …}`, or `embeddings`, under `answers`"
+            )
         server = ServerSettings.of(model) if isinstance(model, Mapping) else None
         return cls(server, budget.get("hour", 60), budget.get("visitor", 10))
