@@ -21,10 +21,8 @@ MAX_BYTES = 4_000_000
 MAX_KEPT = 20_000
 """Texts whose vectors are kept."""
 
-Wanted = Callable[[], bool]
 
-
-class Found(NamedTuple):
+class MeantPassages(NamedTuple):
     """The passage that answers, if one surely does, and the answers of those that are nearest."""
 
     answer: "FoundAnswer | None"
@@ -46,7 +44,9 @@ class Embeddings:
         self._retriever: Retriever | None = None
         self._enough: Any = None
 
-    def find(self, project: Project, question: str, language: str, deadline: float, wanted: Wanted, most: int) -> Found:
+    def find(
+        self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
+    ) -> MeantPassages:
         """What is known of the question, by `deadline` (`time.monotonic`). Raises ModuleError where no server says."""
         from lumen.interpreters.retrieval.calibration import NEVER
         from lumen.interpreters.retrieval.retriever import Retriever
@@ -63,7 +63,9 @@ class Embeddings:
             self._enough = thresholds_of(self._retriever, sets) or NEVER
             self._known = known
         assert self._retriever
-        return Found(self._retriever.answer(question, self._enough), tuple(self._retriever.nearest(question, most)))
+        return MeantPassages(
+            self._retriever.answer(question, self._enough), tuple(self._retriever.nearest(question, most))
+        )
 
     def _method(self, known: Sequence[str], _: str) -> "Scorer":
         import numpy as np
