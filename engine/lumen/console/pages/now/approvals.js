@@ -29,7 +29,7 @@ export function Autonomy({ robot }) {
 /** Whether a language model may answer visitors. */
 export function Model({ robot }) {
   if (!robot.model || !may("operator")) return null;
-  const set = (on) => on !== (robot.model === "on") && command(robot.robot, "model", { on }, t(on ? "model.on" : "model.off"));
+  const set = (on) => on !== (robot.model === "on") && command(robot.robot, "model", { on }, `${t("model")} ${t(on ? "model.on" : "model.off")}`);
   return html`<fieldset class="choice"><legend>${t("model")}</legend>${[true, false].map((on) => html`<label>
     <input type="radio" name="model-${robot.robot}" value=${on} checked=${(robot.model === "on") === on} onChange=${() => set(on)} /><span>${t(on ? "model.on" : "model.off")}</span></label>`)}</fieldset>`;
 }

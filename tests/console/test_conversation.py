@@ -1,0 +1,86 @@
+"""What a person does about what the robot answers: passages of what nobody could, and the language model's switch."""
+
+from collections.abc import Iterator
+
+import pytest
+import yaml
+from selenium.webdriver.common.keys import Keys
+
+from tests.console.conftest import Hosted
+from tests.console.pages import Browser, Served
+from tests.console.viewer import WAIT, Viewer
+from tests.fetched import fetched
+from tests.waiting import until
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("operating")]
+SETTINGS = """
+lumen: 1
+name: Asked
+behavior: asked
+languages: [en, id]
+robot: {name: NAO, model: nao}
+modules: {answers: {model: {url: "http://127.0.0.1:9/v1/chat/completions", name: none}}}
+routes:
+  heard: {key: "lumen.{robot}.heard", direction: in, schema: speech.recognition, event: heard, ttl: 5s}
+"""
+ASKED = """
+initial: hall
+states:
+  hall:
+    on: {heard: answer}
+  answer:
+    do: {ask: {question: event.data.result, within: 100ms, else: {say: {en: I do not know., id: Saya tidak tahu.}}}}
+    onDone: hall
+"""
+QUESTION = "what is <b>love</b>"
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Hosted]:
+    root = tmp_path_factory.mktemp("asked")
+    (root / "behaviors").mkdir()
+    (root / "behaviors" / "asked.yaml").write_text(ASKED)
+    (root / "lumen.yaml").write_text(SETTINGS)
+    one = Hosted(root)
+    yield one
+    one.close()
+
+
+@pytest.fixture(scope="module")
+def console(asked: Hosted) -> Iterator[str]:
+    served = Served(asked.root)
+    yield served.console.address
+    served.close()
+
+
+def violations(viewer: Viewer) -> object:
+    """What a screen reader or a keyboard could not use of what is shown."""
+    viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))
+    return viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))")
+
+
+def test_what_nobody_could_answer_becomes_a_passage(viewer: Viewer, asked: Hosted, console: str) -> None:
+    viewer.open(console, "robot/NAO/day", ready=".unanswered")
+    viewer.shows("none", ".unanswered")
+    asked.send("heard", {"result": QUESTION, "language": "en"})
+    until(lambda: Browser(console).get("/api/day").data["numbers"]["unanswered"], WAIT)
+    viewer.open(console, "robot/NAO/day", ready=".unanswered li button", mode="author")
+    viewer.shows(QUESTION, ".unanswered")
+    viewer.click(".unanswered button")
+    until(lambda: viewer.run("return document.activeElement.matches('.unanswered input')"), WAIT)
+    assert violations(viewer) == []
+    viewer.type("A question.", Keys.ENTER)
+    viewer.shows("saved as knowledge/what-is-b-love-b.yaml", ".unanswered")
+    passage = yaml.safe_load((asked.root / "knowledge" / "what-is-b-love-b.yaml").read_text("utf-8"))
+    assert passage == {"questions": {"en": [QUESTION]}, "answer": {"en": "A question."}}
+
+
+def test_the_language_model_is_silenced(viewer: Viewer, asked: Hosted, console: str) -> None:
+    viewer.open(console, "robot/NAO", ready="input[name=model-NAO]:checked", language="id")
+    viewer.shows("Model bahasa", ".body")
+    viewer.run("document.querySelector('input[name=model-NAO]:checked').focus()")
+    viewer.type(Keys.ARROW_RIGHT)
+    until(lambda: asked.exhibition.node.loop.performer.questions.silenced, WAIT)
+    viewer.shows("Model bahasa dibungkam: selesai", ".told")
+    until(lambda: viewer.all("input[name=model-NAO][value=false]:checked"), WAIT)
+    assert violations(viewer) == []
