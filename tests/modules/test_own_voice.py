@@ -99,6 +99,12 @@ def test_which_words_interrupt_is_written(stand: Make, ear: Ear) -> None:
     assert other.record(102.0, 1, 4) == ["dance"]
 
 
+def test_phrases_that_nobody_has_are_told(stand: Make, ear: Ear) -> None:
+    other = Ear(stand(with_options(ear.stand.project, "ears", interrupts=["stop", "stpo"])))
+    assert other.stand.told == ["`interrupts` names phrases that no behaviour has: `stpo` (did you mean `stop`?)"]
+    assert ear.stand.told == []
+
+
 def test_an_end_that_nobody_tells_leaves_it_deaf_for_a_minute_at_most() -> None:
     voice = OwnVoice()
     voice.state({"command": {"verb": "say", "id": "d1", "text": "Hello"}}, 10.0)

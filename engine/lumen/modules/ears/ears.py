@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 
 from lumen.errors import ModuleError
 from lumen.interpreters.expressions.phrases import padded
+from lumen.language.diagnostics import did_you_mean
 from lumen.language.modules import EARS
 from lumen.language.projects import Project
 from lumen.modules.ears.expected import expected
@@ -55,9 +56,22 @@ class Ears(Module):
             "report": lambda message: self._own_voice.report(message.body, self.came),
         }
 
+    def begin(self) -> None:
+        super().begin()
+        self._look_for_phrases()
+
     def use(self, project: Project) -> None:
         super().use(project)
         self._recogniser.expect(expected(project))
+        self._look_for_phrases()
+
+    def _look_for_phrases(self) -> None:
+        """Say which phrases of `interrupts` no behaviour has: nobody could stop the robot by them."""
+        known = {name: None for machine in self.project.behaviors.values() for name in machine.phrases}
+        for name in self.settings.options.get("interrupts", ()):
+            if name not in known:
+                hint = did_you_mean(name, known)
+                self.tell(f"`interrupts` names phrases that no behaviour has: `{name}`{f' ({hint})' if hint else ''}")
 
     def _sound(self, message: Message) -> None:
         body = message.body if isinstance(message.body, dict) else {}
