@@ -13,7 +13,7 @@ from tests.lint.test_cases import HERE, cases, changed
 QUOTED = re.compile(r"`([^`]+)`")
 
 ELSEWHERE = {
-    *("missing-key", "missing-route", "missing-language", "no-time", "no-rules", "incomplete-posture"),
+    *("missing-key", "missing-route", "missing-language", "no-time", "no-rules", "incomplete-posture", "asks-nobody"),
     *("shadowed-transition", "shadowed-answer", "angle-out-of-range"),
 }
 """What is absent has no word to mark: its parent's key is marked. Of the last ones the message quotes the reason."""

@@ -16,6 +16,7 @@ ENGINE = Path(__file__).parents[2] / "engine" / "lumen"
 MAKERS = {
     "upkeep/private_folder.py": "the one function",
     "app/fleet/installing.py": "a folder of the project, which is to be committed",
+    "app/new_passage.py": "knowledge/ of the project, which is to be committed",
     "app/lint/outcome_cache.py": "a folder within a private one",
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "app/work/work_kit.py": "a temporary folder",

@@ -125,7 +125,7 @@ def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
     assert "begins anew" in str(resumed(copy))
     home.write(ALIVE_FILE, json.dumps({"time": time.time() - 1.0}).encode())  # nothing happened before the crash
     assert isinstance(found := resumed(copy), Resumption)
-    assert found.away == pytest.approx(1.0, abs=0.5)
+    assert 1.0 <= found.away < 20.0
     home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": "0" * 64}).encode())
     assert "its files were not kept" in str(resumed(copy))
 

@@ -133,9 +133,9 @@ def test_lenses_hints_signatures_folds_links_highlights_and_symbols(client: Clie
     document = {"uri": client.uri(TOUR)}
     lenses = client.request("textDocument/codeLens", textDocument=document)
     dance = next(e for e in lenses if e["range"]["start"]["line"] == at(text, "          dan|ce:")[0])
-    assert dance["command"]["title"] == "2 transitions lead here"
+    assert dance["command"]["title"] == "3 transitions lead here"
     uri, start, places = dance["command"]["arguments"]
-    assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 2)
+    assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 3)
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 900, "character": 0}}
     hints = client.request("textDocument/inlayHint", textDocument=document, range=whole)
     assert {"28 s after its do", "after entering"} <= {hint["label"] for hint in hints}

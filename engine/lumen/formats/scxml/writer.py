@@ -189,7 +189,7 @@ class _ScxmlWriter:
                     self.report.lost(message, transition.where)
                     continue
             if transition.offer:
-                self.report.lost("`offer` is left out: SCXML asks no language model", transition.where)
+                self.report.changed("`offer` is left out: SCXML asks no language model", transition.where)
             if transition.approve:
                 self.report.lost("`approve` is left out: in SCXML nothing waits for a person", transition.where)
             attributes["target"] = self._ids(transition.targets)

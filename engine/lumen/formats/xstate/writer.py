@@ -159,7 +159,7 @@ class _XStateWriter:
     def _row(self, state: State, transition: Transition) -> dict[str, Any]:
         row: dict[str, Any] = {}
         if transition.offer:
-            self.report.lost("`offer` is left out: XState asks no language model", transition.where)
+            self.report.changed("`offer` is left out: XState asks no language model", transition.where)
         if transition.approve:
             self.report.lost("`approve` is left out: in XState nothing waits for a person", transition.where)
         if transition.targets:
