@@ -98,7 +98,7 @@ def test_hover_definition_symbols_and_references(client: Client) -> None:
     )
     place = client.ask("definition", TOUR, *at(text, "play: dan|ce"))[0]
     assert place["uri"] == client.uri("motions/dance.yaml")
-    assert len(client.ask("references", TOUR, *at(text, "play: dan|ce"), context={"includeDeclaration": True})) == 3
+    assert len(client.ask("references", TOUR, *at(text, "play: dan|ce"), context={"includeDeclaration": True})) == 4
     symbols = client.request("textDocument/documentSymbol", textDocument={"uri": client.uri(TOUR)})
     assert {"visitor", "guide", "safety"} <= {symbol["name"] for symbol in symbols}
 

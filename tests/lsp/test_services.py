@@ -141,12 +141,12 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
 @pytest.mark.parametrize(
     ("file", "text", "name", "edits", "moved"),
     [
-        (TOUR, "target: how_are|_you", "mood", 38, None),
-        (TOUR, "context.name_|tries <", "tries", 8, None),
+        (TOUR, "target: how_are|_you", "mood", 40, None),
+        (TOUR, "context.name_|tries <", "tries", 10, None),
         (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
         (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 5, None),
         (TOUR, "words: [f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
-        (VISITOR, "played: dan|ce", "horse", 3, ("motions/dance.yaml", "motions/horse.yaml")),
+        (VISITOR, "played: dan|ce", "horse", 4, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),
         ("motions/goodbye.yaml", "pose: hand_|out", "out", 3, None),
     ],
@@ -211,7 +211,7 @@ def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
 
 
 def test_uses_and_symbols() -> None:
-    assert len(uses(SHIPPED, *place(SHIPPED, VISITOR, "played: dan|ce"))) == 3
+    assert len(uses(SHIPPED, *place(SHIPPED, VISITOR, "played: dan|ce"))) == 4
     tree = {symbol.name: symbol for symbol in symbols(SHIPPED, TOUR)}
     assert {"visitor", "battery", "guide", "safety"} <= tree.keys()
     assert {symbol.name for symbol in symbols(SHIPPED, FAQ)} == {"faq", "explanations"}
