@@ -10,6 +10,7 @@ from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import (
+    AnswerQuestion,
     Approve,
     Arrive,
     Happen,
@@ -137,6 +138,10 @@ class Narrator(Observer):
                 self.line("operator", f"presses “{label}”")
             case SendMessage(route):
                 self.line("story", f"a module sends `{route}`")
+            case AnswerQuestion(text, event):
+                self.line(
+                    "story", f"the module `answers` says “{text}”" if text else f"the module `answers` raises `{event}`"
+                )
 
 
 def _base(words: str) -> str:

@@ -85,6 +85,15 @@ class SendMessage:
 
 
 @dataclass(frozen=True, slots=True)
+class AnswerQuestion:
+    """`answers: TEXT` or `answers: {raise, data}`: what the module `answers` says to the last question."""
+
+    text: str = ""
+    event: str = ""
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class StoryPause:
     """`wait: DURATION` [s]."""
 
@@ -128,6 +137,7 @@ VisitorAction = (
     | Approve
     | SetAutonomy
     | SendMessage
+    | AnswerQuestion
     | StoryPause
     | AwaitTime
     | Expect

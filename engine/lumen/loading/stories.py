@@ -7,6 +7,7 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.stories import (
+    AnswerQuestion,
     Approve,
     Arrive,
     AwaitTime,
@@ -78,6 +79,9 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> 
             return Happen(body) if isinstance(body, str) else Happen(body["name"], body.get("data"))
         case "message":
             return SendMessage(body["route"], body.get("body"))
+        case "answers":
+            said = isinstance(body, str)
+            return AnswerQuestion(body) if said else AnswerQuestion(event=body["raise"], data=body.get("data", {}))
         case "operator":
             return _operator(body)
         case "wait":

@@ -129,6 +129,7 @@ _VALUES: Mapping[str, Table] = {
         ("release",): NameKind.SENSOR,
         ("event",): NameKind.EVENT,
         ("event", "name"): NameKind.EVENT,
+        ("answers", "raise"): NameKind.EVENT,
         ("behavior",): NameKind.BEHAVIOR,
         ("language",): NameKind.LANGUAGE,
     },

@@ -3,6 +3,7 @@
 from lumen.language.actions import AskQuestion
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.modules import ANSWERS
+from lumen.language.stories import AnswerQuestion
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.walk import action_sites
 
@@ -10,8 +11,16 @@ ASKS_NOBODY = Code("asks-nobody", "knowledge", WARNING, "`ask` stands where noth
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report an `ask` of a project that has no passages and no module `answers`."""
-    if draft.settings is None or draft.knowledge or ANSWERS in draft.settings.modules:
+    """Report an `ask` that neither a passage nor a module can answer, and stories of a module that is not there."""
+    if draft.settings is None or ANSWERS in draft.settings.modules:
+        return
+    for name, story in draft.stories.items():
+        for step in story.steps:
+            if isinstance(step.action, AnswerQuestion):
+                message = "no module is asked that could say this: lumen.yaml has no module `answers`"
+                hint = "add it under `modules`, or expect what a passage says"
+                draft.report("behaviors/stories", name)(ASKS_NOBODY, (*step.where, "answers"), message, hint, key=True)
+    if draft.knowledge:
         return
     for name, machine in draft.behaviors.items():
         for site in action_sites(machine):

@@ -12,7 +12,7 @@ from lumen.language.actions import Expression
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.properties import conditions_of
-from lumen.language.stories import Expect, Happen, SendMessage, Story, TouchSensor
+from lumen.language.stories import AnswerQuestion, Expect, Happen, SendMessage, Story, TouchSensor
 from lumen.loading.complaints import WRONG_TYPE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -60,6 +60,10 @@ class _Script:
                     self.event(first(self.report, (*step.where, "event", "name"), (*step.where, "event")), name)
                     if (*step.where, "event", "data") not in self.report.pruned:
                         self.fits((*step.where, "event", "data"), {} if data is None else data, self.events.get(name))
+                case AnswerQuestion(event=event, data=data) if event:
+                    self.event((*step.where, "answers", "raise"), event)
+                    if (*step.where, "answers", "data") not in self.report.pruned:
+                        self.fits((*step.where, "answers", "data"), data, self.events.get(event))
                 case SendMessage(route, body):
                     self.message((*step.where, "message"), route, body)
                 case Expect() as expected:

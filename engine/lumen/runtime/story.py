@@ -5,19 +5,21 @@ from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any, NamedTuple, Protocol, assert_never
 
+from lumen.errors import BusError
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.interpreters.statechart.property_monitor import Violation, monitors
 from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
 from lumen.language.approvals import Autonomy
 from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
-from lumen.language.commands import Command, Play, Publish, Say, Start
+from lumen.language.commands import Ask, Cancel, Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.hours import Schedule
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import (
+    AnswerQuestion,
     Approve,
     Arrive,
     AwaitTime,
@@ -35,11 +37,14 @@ from lumen.language.stories import (
 )
 from lumen.ports import Bus, Hall
 from lumen.runtime.loop import Observer
+from lumen.runtime.questions import ANSWER_ROUTE
 from lumen.runtime.sending import send
 from lumen.runtime.story_time import story_moment
 from lumen.runtime.visitor import VisitorActor
 
 FALLEN = "fallen"
+QUESTION_WITHIN = 30.0
+"""How long `answers` waits for a question [s]."""
 
 
 class UnmetExpectation(NamedTuple):
@@ -75,7 +80,7 @@ def staged(project: Project, story: Story | None) -> Project:
 @dataclass
 class StoryObservations:
     """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
-    played and published.
+    played and published; `asked` is the question that nobody has answered yet, by its id.
     """
 
     states: frozenset[str] = frozenset()
@@ -85,6 +90,7 @@ class StoryObservations:
     played: list[str] = field(default_factory=list)
     published: list[tuple[str, Any]] = field(default_factory=list)
     playing: dict[str, str] = field(default_factory=dict)
+    asked: str = ""
 
     def lacks(self, expected: Expect) -> UnmetExpectation | None:
         """The first thing of `expected` that does not hold."""
@@ -117,6 +123,11 @@ class StoryObservations:
             if self.context.get(key) != value:
                 return UnmetExpectation(f"{key} = {value!r}", f"it is {self.context.get(key)!r}")
         return None
+
+    def hear(self, event: Event | None) -> None:
+        """The behaviour took this event: one that answers the question leaves none open, but for a filler."""
+        if event and self.asked and event.name.endswith(f".command.{self.asked}"):
+            self.asked = self.asked if event.data and event.data.get("filler") else ""
 
     def forget(self) -> None:
         self.said, self.played, self.published = [], [], []
@@ -190,6 +201,7 @@ class StoryPlayer(Observer):
     def stepped(self, step: Step) -> None:
         for monitor in self._monitors:
             self._violated(monitor.step(step.snapshot))
+        self._witness.hear(step.event)
         self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
 
     def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any], place: str = "") -> None:
@@ -204,8 +216,12 @@ class StoryPlayer(Observer):
         match command:
             case Start(_, Say(text)):
                 self._witness.said.append(text)
+            case Start(id, Ask()):
+                self._witness.asked = id
             case Start(id, Play(motion)):
                 self._witness.playing[id] = motion
+            case Cancel(id) if id == self._witness.asked:
+                self._witness.asked = ""
             case Publish(route, body):
                 self._witness.published.append((route, body))
 
@@ -237,6 +253,8 @@ class StoryPlayer(Observer):
         match self.story.steps[self.position].action:
             case StoryPause(seconds):
                 return self._since + seconds
+            case AnswerQuestion() if not self._witness.asked:
+                return self._since + QUESTION_WITHIN
             case Expect() as expected if self._witness.lacks(expected):
                 return self._since + expected.within
             case AwaitTime() if self._awaited is not None:
@@ -249,7 +267,7 @@ class StoryPlayer(Observer):
 
     def _do(self, now: float) -> bool:
         action = self.story.steps[self.position].action
-        if not isinstance(action, StoryPause | AwaitTime | Expect):
+        if not isinstance(action, StoryPause | AwaitTime | Expect | AnswerQuestion):
             self._tell(action)
         match action:
             case StoryPause(seconds):
@@ -258,6 +276,8 @@ class StoryPlayer(Observer):
                 return self._shows(schedule, now)
             case Expect():
                 return self._expect(action, now)
+            case AnswerQuestion():
+                return self._answer(action, now)
             case Arrive(visitor):
                 self._walker.arrive(visitor)
             case Leave():
@@ -294,6 +314,25 @@ class StoryPlayer(Observer):
             self.fail(UnmetExpectation("", f"it is past `{schedule.text}`, and does not come again"))
             return False
         return self._moment(now) >= self._awaited
+
+    def _answer(self, answer: AnswerQuestion, now: float) -> bool:
+        """Answer the question that was asked last, once there is one."""
+        id, self._witness.asked = self._witness.asked, ""
+        if id:
+            self._tell(answer)
+            said = (
+                {"raise": {"event": answer.event, "data": dict(answer.data)}} if answer.event else {"text": answer.text}
+            )
+            body = {"id": id, "source": "story", **said}
+            try:
+                self._exhibition.bus.publish(self._exhibition.project.key_of(ANSWER_ROUTE), body)
+            except BusError as error:
+                self.fail(UnmetExpectation("to answer a question", str(error)))
+        elif now >= self._since + QUESTION_WITHIN:
+            self.fail(
+                UnmetExpectation(f"within {QUESTION_WITHIN:g} s a question to the module `answers`", "none was asked")
+            )
+        return bool(id)
 
     def _moment(self, now: float) -> int:
         return story_moment(self.story, self._exhibition.project.timezone, now - self._begun)

@@ -7,6 +7,7 @@ from typing import Any, assert_never
 import yaml
 
 from lumen.language.stories import (
+    AnswerQuestion,
     Approve,
     Arrive,
     AwaitTime,
@@ -73,6 +74,8 @@ def _step(action: VisitorAction) -> tuple[str, Any]:
             return "operator", {"autonomy": level}
         case SendMessage(route, body):
             return "message", {"route": route, "body": body}
+        case AnswerQuestion(text, event, data):
+            return "answers", text or {"raise": event, **({"data": dict(data)} if data else {})}
         case StoryPause(seconds):
             return "wait", f"{seconds:g}s"
         case AwaitTime(schedule):
