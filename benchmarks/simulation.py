@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import lumen
+from lumen.app.exhibition import Exhibition
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
@@ -118,6 +119,28 @@ def touring(project: Project, robot: SimulatedRobot) -> None:
     assert rehearsal.failed is None, rehearsal.failed
 
 
+class Pictured(NamedTuple):
+    """How many seconds with the camera are lived in one of CPU time, and what became of its images."""
+
+    lived: float
+    published: int
+    dropped: int
+
+
+def pictured(project: Project, robot: SimulatedRobot, pace: float) -> Pictured:
+    """`SECONDS` of the story with all senses heard, at so many times real time."""
+    setup = Setup(robot, SimulatedClock(robot.advance, pace), robot)
+    exhibition = Exhibition(project, setup, story=project.stories[project.story])
+    exhibition.node.bus.subscribe(project.key_of(Sense.IMAGE), lambda _: None)
+    exhibition.start()
+    began = process_time()
+    lived = exhibition.run(SECONDS)
+    took = process_time() - began
+    images = exhibition.node.robot.server.counts[Sense.IMAGE]
+    exhibition.close()
+    return Pictured(lived / took, images.published, images.dropped)
+
+
 def frame(robot: SimulatedRobot, size: Size) -> float:
     """Time to draw a camera image of that size [s]."""
     image = robot.read(Sense.IMAGE)
@@ -148,6 +171,11 @@ def main() -> None:
     against_bare("dancing", robot, lambda: performing(robot, Perform(project.motions["dance"])))
     visited = SimulatedRobot(project.body, ROOT / "models", project.hall, stage=project.stage)
     against_bare("a whole tour", visited, lambda: touring(project, visited))
+    if not available():
+        seen = SimulatedRobot(project.body, ROOT / "models", project.hall, stage=project.stage)
+        lived, published, dropped = pictured(project, seen, 4.0)
+        images = f"{dropped} of {published + dropped} images dropped at 4 x"
+        print(f"with the camera    {lived:6.1f} x real time by CPU   {images}")
     for size in () if available() else SIZES[1:3]:
         print(f"camera image       {1000 * frame(robot, size):6.1f} ms at {size}")
     print(available() or "", end="\n" * bool(available()))
