@@ -22,8 +22,8 @@ from tests.workers.clusters import dask_cluster
 
 import lumen
 from lumen.app.lint.physics import play_case
-from lumen.app.work.work_kit import WorkKit, models_in
-from lumen.app.work.workers import Workers, cores, workers_of
+from lumen.app.workers.work_kit import WorkKit, models_in
+from lumen.app.workers.workers import Workers, cores, workers_of
 from lumen.loading.files import read_files
 from lumen.rules.physics.cases import cases
 

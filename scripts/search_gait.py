@@ -26,9 +26,9 @@ sys.path.insert(0, str(ROOT))
 from tests.simulation.bodies import shipped  # noqa: E402
 from tests.simulation.walks import any_robot, truth  # noqa: E402
 
-from lumen.app.work.tasks import engine  # noqa: E402
-from lumen.app.work.work_kit import UnpackedKit, WorkKit, name_of  # noqa: E402
-from lumen.app.work.workers import Workers, workers_of  # noqa: E402
+from lumen.app.workers.tasks import engine  # noqa: E402
+from lumen.app.workers.work_kit import UnpackedKit, WorkKit, name_of  # noqa: E402
+from lumen.app.workers.workers import Workers, workers_of  # noqa: E402
 from lumen.errors import LumenError, UsageError  # noqa: E402
 from lumen.interpreters.gait import GaitParameters, paces_of  # noqa: E402
 from lumen.language.commands import Move  # noqa: E402

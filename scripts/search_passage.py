@@ -23,9 +23,9 @@ import numpy as np
 import yaml
 
 import lumen
-from lumen.app.work.tasks import engine
-from lumen.app.work.work_kit import UnpackedKit, WorkKit, models_in, name_of
-from lumen.app.work.workers import Workers, workers_of
+from lumen.app.workers.tasks import engine
+from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in, name_of
+from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import LumenError
 from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory

@@ -19,7 +19,7 @@ MAKERS = {
     "app/new_passage.py": "knowledge/ of the project, which is to be committed",
     "app/lint/outcome_cache.py": "a folder within a private one",
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
-    "app/work/work_kit.py": "a temporary folder",
+    "app/workers/work_kit.py": "a temporary folder",
     "app/starting.py": "a project, which is to be committed",
     "cli/importing_robot.py": "where the user says",
     "cli/story.py": "where the user says",

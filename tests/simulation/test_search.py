@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from search_passage import KeptCosts, Text, Trial, cost, cost_of
 
-from lumen.app.work.work_kit import WorkKit, models_in
-from lumen.app.work.workers import Workers
+from lumen.app.workers.work_kit import WorkKit, models_in
+from lumen.app.workers.workers import Workers
 from lumen.language.robots import Body
 from lumen.loading.files import read_files
 from lumen.motion import Motion

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from lumen.app.lint.physics import play_case
-from lumen.app.work.work_kit import UnpackedKit
+from lumen.app.workers.work_kit import UnpackedKit
 from lumen.language.imperfections import Imperfections
 from lumen.rules.physics import Outcome
 

@@ -9,8 +9,8 @@ import pytest
 
 import lumen
 from lumen.app.lint.physics import play_case
-from lumen.app.work.work_kit import WorkKit, models_in
-from lumen.app.work.workers import Workers, workers_of
+from lumen.app.workers.work_kit import WorkKit, models_in
+from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import WorkersError
 from lumen.extras import MissingExtraError
 from lumen.loading.files import read_files

@@ -11,7 +11,7 @@ from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
 from lumen.app.replaying.replay_report import ReplayReport, replayed
-from lumen.app.work.workers import Workers
+from lumen.app.workers.workers import Workers
 from lumen.loading.files import read_files
 
 ROOT = Path(__file__).parents[2]

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.work.local_pool import TERMINATED
-from lumen.app.work.tasks import TaskHead, do_task, engine
-from lumen.app.work.work_kit import WorkKit, name_of
-from lumen.app.work.workers import Workers, cores, workers_of
+from lumen.app.workers.local_pool import TERMINATED
+from lumen.app.workers.tasks import TaskHead, do_task, engine
+from lumen.app.workers.work_kit import WorkKit, name_of
+from lumen.app.workers.workers import Workers, cores, workers_of
 from lumen.cli.main import main
 from lumen.errors import UsageError, WorkersError
 from tests.guarded import PIPE, Guarded
@@ -78,8 +78,8 @@ def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatc
 
 WAITING = """
 import sys
-from lumen.app.work.work_kit import WorkKit
-from lumen.app.work.workers import Workers
+from lumen.app.workers.work_kit import WorkKit
+from lumen.app.workers.workers import Workers
 from tests.workers.small_tasks import wait_for_ever
 
 if __name__ == "__main__":

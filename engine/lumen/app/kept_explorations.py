@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.exploring import Explored, ExploredFinding
-from lumen.app.work.tasks import engine
-from lumen.app.work.work_kit import name_of
+from lumen.app.workers.tasks import engine
+from lumen.app.workers.work_kit import name_of
 from lumen.language.diagnostics import Place
 from lumen.language.projects import Project
 from lumen.runtime.coverage import Gap

@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
 def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
     """The findings with those of the motions in simulation; how they went is told beside what is for people."""
     from lumen.app.lint.physics import ROBOTS, number_of_robots, played, summary
-    from lumen.app.work.workers import workers_of
+    from lumen.app.workers.workers import workers_of
     from lumen.cli.progress import progress
 
     robots = ROBOTS if options.robots is None else number_of_robots(options.robots)

@@ -15,7 +15,7 @@ from lumen.app.replaying.shared_replay import replay_kit, shared_against, shared
 from lumen.app.replaying.show import show
 from lumen.app.setup import SPEEDS, set_up
 from lumen.app.versions import version
-from lumen.app.work.workers import workers_of
+from lumen.app.workers.workers import workers_of
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
 from lumen.cli.reach import configure_robot_name

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.outcome_cache import OutcomeCache
-from lumen.app.work.work_kit import UnpackedKit, WorkKit, models_in
-from lumen.app.work.workers import Workers
+from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.app.workers.workers import Workers
 from lumen.errors import UsageError
 from lumen.extras import demand
 from lumen.language.diagnostics import Diagnostic

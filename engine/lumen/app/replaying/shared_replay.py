@@ -8,8 +8,8 @@ from lumen.app.replaying.journals import ChosenJournal
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import VisitPlayer, with_machines
 from lumen.app.replaying.replay_report import ReplayCount, ReplayReport, TakenAgain
-from lumen.app.work.work_kit import UnpackedKit, WorkKit, models_in
-from lumen.app.work.workers import Workers
+from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.app.workers.workers import Workers
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import replay
 from lumen.interpreters.replay.visits import RecordedVisit, visits

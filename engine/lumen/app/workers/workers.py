@@ -8,11 +8,11 @@ from contextlib import ExitStack, contextmanager
 from itertools import chain, islice
 from typing import Any, TypeVar
 
-from lumen.app.work.cluster import SCHEME, cluster, cluster_address, lost_in_cluster
-from lumen.app.work.crew import AloneCrew, Crew, Staff, StaffedCrew
-from lumen.app.work.local_pool import local_pool, working_folder
-from lumen.app.work.tasks import TaskHead, engine
-from lumen.app.work.work_kit import UnpackedKit, WorkKit, name_of
+from lumen.app.workers.cluster import SCHEME, cluster, cluster_address, lost_in_cluster
+from lumen.app.workers.crew import AloneCrew, Crew, Staff, StaffedCrew
+from lumen.app.workers.local_pool import local_pool, working_folder
+from lumen.app.workers.tasks import TaskHead, engine
+from lumen.app.workers.work_kit import UnpackedKit, WorkKit, name_of
 from lumen.errors import UsageError
 
 Result = TypeVar("Result")

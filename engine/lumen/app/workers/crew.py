@@ -6,7 +6,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from itertools import chain, islice
 from typing import Any, NamedTuple, Protocol
 
-from lumen.app.work.tasks import TaskHead, do_task
+from lumen.app.workers.tasks import TaskHead, do_task
 from lumen.errors import WorkersError
 
 IN_FLIGHT = 256

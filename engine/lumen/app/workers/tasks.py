@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lumen.app.work.work_kit import UnpackedKit
+from lumen.app.workers.work_kit import UnpackedKit
 from lumen.errors import WorkersError
 from lumen.loading.memoization import memoize
 
