@@ -1,6 +1,6 @@
 """What is wrong with a body, in a line, by the JSON Schema of its message."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from lumen.interpreters.json_schema import JsonSchema
@@ -12,11 +12,8 @@ if TYPE_CHECKING:
 MAX_SHOWN_CHARACTERS = 80
 """How much of either end of a long reason is shown."""
 
-BodyCheck = Callable[[Any], str]
-"""What is wrong with a body; empty where nothing is."""
 
-
-def body_checks(project: Project) -> dict[str, BodyCheck]:
+def body_checks(project: Project) -> dict[str, "SchemaCheck"]:
     """A check for every key of the project's routes that names a schema; schemas are compiled when first needed."""
     compiled = {name: SchemaCheck(schema) for name, schema in project.messages.items()}
     return {
@@ -29,14 +26,14 @@ def body_checks(project: Project) -> dict[str, BodyCheck]:
 
 
 class SchemaCheck:
-    """A check against one schema (2020-12)."""
+    """What is wrong with a body by one schema (2020-12), empty where nothing is; `fits` only says whether it is."""
 
     def __init__(self, schema: Mapping[str, object]) -> None:
         self._schema = JsonSchema(schema)
-        self._fits = self._schema.fits
+        self.fits = self._schema.fits
 
     def __call__(self, body: Any) -> str:
-        if self._fits(body):
+        if self.fits(body):
             return ""
         try:
             error = next(self._schema.errors(body), None)

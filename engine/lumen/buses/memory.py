@@ -100,7 +100,7 @@ class _Hub:
         Who is at it looks at the queue once more after giving up the lock: what was appended until then is not lost.
         """
         queue, delivering = self.queue, self.delivering
-        while queue and delivering.acquire(blocking=False):
+        while queue and delivering.acquire(False):
             try:
                 self.deliverer = threading.get_ident()
                 while queue:
@@ -118,13 +118,13 @@ class _Hub:
 
 def _hand_over(subscriptions: tuple[_Subscription, ...], message: Message) -> list[tuple[Message, str]]:
     """Call the handlers; which of them refuse, and why."""
-    last = len(subscriptions) - 1
+    last = subscriptions[-1]
     refused: list[tuple[Message, str]] = []
-    for i, subscription in enumerate(subscriptions):
+    for subscription in subscriptions:
         if not subscription.active:
             continue
         try:
-            own = message if i == last else message._replace(body=copied(message.body))
+            own = message if subscription is last else message._replace(body=copied(message.body))
             subscription.handler(own)
         except Refused as error:
             refused.append((message, str(error)))

@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.buses.aliases import COPY, Aliases
 from lumen.buses.bodies import check_subscription
-from lumen.buses.checking import BodyCheck, body_checks
+from lumen.buses.checking import SchemaCheck, body_checks
 from lumen.buses.identities import NUMBERS, PREFIX
 from lumen.errors import BadMessageError, Refused
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
@@ -42,7 +42,7 @@ class ValidatedBus:
     def __init__(self, bus: Bus, project: Project, on_refused: OnRefused | None = None) -> None:
         self._bus = bus
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
-        self._checks: dict[str, BodyCheck] = {}
+        self._checks: dict[str, SchemaCheck] = {}
         self._routed: frozenset[str] = frozenset()
         self._passed: str | None = None
         self._aliases, self._listening = Aliases(), list[_Listening]()
@@ -130,14 +130,15 @@ class ValidatedBus:
         origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         check = self._checks.get(key)
-        if reason := self._wrong(key, body) if check is None else check(body):
+        if (check is None or not check.fits(body)) and (reason := self._wrong(key, body)):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
-        if not origin.id:
+        id, sender, when, cause = origin
+        if not id:
             self._passed = id = f"{PREFIX}-{next(NUMBERS)}"
-            origin = _new(MessageOrigin, (id, *origin[1:]))
+            origin = _new(MessageOrigin, (id, sender, when, cause))
         self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
         if (alias := self._aliases.names.get(key)) and self._aliases.used:
-            copy = origin._replace(id=f"{origin.id}{COPY}")
+            copy = origin._replace(id=f"{id}{COPY}")
             self._bus.publish(alias, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=copy)
 
     def reply(self, message: Message, body: Any) -> None:
