@@ -4,24 +4,21 @@ The plain answer is the controller's output times the binding's gain. Under mini
 as long as the term in the middle fires enough to cover the others, the centroid does not move at all. With Tables 1 and
 2 of the paper the head rests anywhere within 45 px of the face. Two remedies, both in the controller's `track:`.
 
-`zoom`: the image is also looked at magnified about the inputs' neutral points, and the answer made as much smaller;
-of these answers the largest counts. So the surface keeps its steepest slope down to the centre.
+`zoom`: the image is looked at magnified about the inputs' neutral points, and the answer made as much smaller; of these
+answers the largest counts (`Magnifier`). So the surface keeps its steepest slope down to the centre.
 
 `looks`: the controller is asked again, about the image as the head would see it after the turn so far. So what one
 step of a flat surface leaves over need not wait for the next image.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
-from lumen.interpreters.inference import Evaluator
 from lumen.interpreters.joint_history import JointAngles
+from lumen.interpreters.magnification import Magnifier
 from lumen.interpreters.projection import after_turning
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_PITCH, HEAD_YAW, JointRole
-
-ZOOM_STEP = 2**0.5
-"""From one magnification to the next."""
 
 
 class VisualServo:
@@ -30,12 +27,8 @@ class VisualServo:
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
         self._controller, self._body = controller, body
         self._yaw, self._pitch = body.roles.joint(HEAD_YAW), body.roles.joint(HEAD_PITCH)
-        self._evaluator = Evaluator(controller)
+        self._magnifier = Magnifier(controller)
         self._bindings = [b for b in controller.output_bindings if b.joint in body.joints]
-        self._neutral = {
-            name: (v.minimum + v.maximum) / 2 if v.neutral is None else v.neutral
-            for name, v in controller.inputs.items()
-        }
         self._across, self._down = _image_inputs(controller)
         self._previous: dict[str, float] = {}
 
@@ -57,28 +50,11 @@ class VisualServo:
 
     def _once(self, inputs: Mapping[str, float]) -> JointAngles:
         """What the controller says of one image."""
-        outputs: dict[str, float] = {}
-        for zoom in self._zooms():
-            magnified = {name: mid + zoom * (inputs[name] - mid) for name, mid in self._neutral.items()}
-            said = self._evaluator.evaluate(self._within(magnified) if zoom > 1.0 else inputs, self._previous)
-            for name, value in said.items():
-                if abs(value) / zoom > abs(outputs.get(name, 0.0)) or zoom == 1.0:
-                    outputs[name] = value / zoom
-        self._previous = outputs
+        self._previous = outputs = self._magnifier.answer(inputs, self._previous)
         turn = dict.fromkeys((b.joint for b in self._bindings), 0.0)
         for binding in self._bindings:
             turn[binding.joint] += outputs[binding.variable] * binding.gain * binding.angle
         return turn
-
-    def _zooms(self) -> Iterator[float]:
-        zoom = 1.0
-        while zoom <= self._controller.tracking.zoom:
-            yield zoom
-            zoom *= ZOOM_STEP
-
-    def _within(self, inputs: Mapping[str, float]) -> dict[str, float]:
-        ranges = self._controller.inputs
-        return {name: min(max(x, ranges[name].minimum), ranges[name].maximum) for name, x in inputs.items()}
 
     def _after(
         self, inputs: Mapping[str, float], pose: Mapping[str, float], turned: Mapping[str, float]
