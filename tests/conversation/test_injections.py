@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 
+from lumen.interpreters.retrieval.ranking import Weights
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.language.commands import Ask, Cancel, Say, Start
 from lumen.language.projects import Project
@@ -125,8 +126,8 @@ def tried(project: Project, injections: list[Injection], monkeypatch: pytest.Mon
     poison = ""
     nearest = Retriever.nearest
 
-    def poisoned(self: Retriever, question: str, count: int) -> list[str]:
-        return [*nearest(self, question, count - 1), *([poison] if poison else [])]
+    def poisoned(self: Retriever, question: str, count: int, weights: Weights) -> list[str]:
+        return [*nearest(self, question, count - 1, weights), *([poison] if poison else [])]
 
     monkeypatch.setattr(Retriever, "nearest", poisoned)
     asked = 0

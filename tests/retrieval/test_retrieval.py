@@ -1,16 +1,21 @@
-"""Questions find their passage, thresholds keep wrong answers few, and the written questions are apart from both."""
+"""Questions find their passage, what is learned keeps wrong answers few, and written questions are apart from both."""
 
 import re
 from datetime import date
 
 import answers
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
 
-from lumen.interpreters.retrieval.calibration import NEVER, Sample, calibrate, left_out, outcome
-from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
+from lumen.interpreters.retrieval.calibration import Judged, least_probability, left_out, outcome
+from lumen.interpreters.retrieval.choice import RIDGE, fitted, probabilities
+from lumen.interpreters.retrieval.features import METHODS, coverage
+from lumen.interpreters.retrieval.ranking import NEVER, Weights
 from lumen.interpreters.retrieval.retriever import Retriever
-from lumen.interpreters.retrieval.scorers import METHODS
-from lumen.interpreters.retrieval.trials import thresholds_of, tried
+from lumen.interpreters.retrieval.trials import tried, weights_of
 from lumen.interpreters.retrieval.words import stems
 from lumen.language.knowledge import Passage, QuestionSet
 
@@ -19,28 +24,47 @@ PASSAGES = (
     Passage("dance", {"en": ("which dances do you know",)}, {"en": "One."}, until=date(2015, 11, 21)),
     Passage("campus", {"en": ("where is the campus",), "id": ("di mana kampusnya",)}, {"en": "There.", "id": "Sana."}),
 )
-ANY = Thresholds(0.1, 0.0)
+ANY = Weights((1.0, 1.0, 1.0), none=-9.0, least=0.1)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_question_in_other_words_finds_its_passage(method: str) -> None:
     retriever = Retriever(PASSAGES, "en", method=METHODS[method])
-    assert retriever.rank("which dance do you dance").passage == "dance"
-    assert retriever.rank("how tall are you").score == pytest.approx(1.0, abs=0.2)
-    assert retriever.rank("kereta").score < 0.2
+    assert retriever.features("which dance do you dance")[:, 0].argmax() == retriever.names.index("dance")
+    assert retriever.features("how tall are you")[0, 0] == pytest.approx(1.0, abs=0.2)
+    assert retriever.features("kereta")[:, 0].max() < 0.2
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("question", ["", "?!", "x" * 10_000, "\u0000", "quux"])
-def test_whatever_is_said_has_a_score(method: str, question: str) -> None:
-    for passages in (PASSAGES, ()):
-        assert 0.0 <= Retriever(passages, "en", method=METHODS[method]).rank(question).score <= 1.0
+def test_whatever_is_said_has_features(method: str, question: str) -> None:
+    retriever = Retriever(PASSAGES, "en", method=METHODS[method])
+    features = retriever.features(question)
+    assert features.shape[0] == len(retriever.names)
+    assert np.isfinite(features).all()
+    assert Retriever((), "en", method=METHODS[method]).rank(question, ANY) == ("", 0.0)
+
+
+def test_several_alike_wordings_count_besides_the_nearest() -> None:
+    many = Passage("many", {"en": ("aa bb", "aa cc", "aa dd", "xx yy")}, {"en": "."})
+    one = Passage("one", {"en": ("aa ee",)}, {"en": "."})
+    nearest, three = Retriever((many, one), "en", method=METHODS["bm25"]).features("aa bb").T
+    assert nearest[0] > three[0] > 0
+    assert nearest[1] == three[1]
+
+
+def test_words_that_no_passage_has_are_not_covered() -> None:
+    retriever = Retriever(PASSAGES, "en", method=coverage)
+    told = [float(retriever.features(text)[0, 0]) for text in ("how tall are you", "how tall is mount everest", "quux")]
+    assert told[0] == 1.0
+    assert 0.0 < told[1] < 0.5
+    assert told[2] == 0.0
 
 
 def test_only_what_may_be_said_is_found() -> None:
     late = Retriever(PASSAGES, "en", robot="OTHER", today=date(2015, 11, 22))
-    assert late.answer("how tall are you", ANY) is None
-    assert late.rank("which dances do you know").passage != "dance"
+    assert late.names == ["campus"]
+    assert late.answer("how tall are you", ANY._replace(none=1.0, least=0.5)) is None
     found = Retriever(PASSAGES, "id").answer("kampusnya di mana", ANY)
     assert found
     assert (found.passage.name, found.text) == ("campus", "Sana.")
@@ -52,22 +76,50 @@ def test_words_are_stemmed_in_both_languages() -> None:
     assert stems("Tanzen!", "xx") == ["tanzen"]
 
 
-def samples(*rows: tuple[str, str, float]) -> list[Sample]:
-    return [Sample(wanted, Ranked(got, score, score)) for wanted, got, score in rows]
+TOLD = [Judged(0.9, True, True), Judged(0.8, True, True), Judged(0.7, False, False), Judged(0.6, True, True)]
 
 
-def test_thresholds_answer_most_with_few_wrong() -> None:
-    told = samples(("a", "a", 0.9), ("b", "b", 0.8), ("", "a", 0.7), ("c", "c", 0.6))
-    assert outcome(told, calibrate(told)) == (2 / 3, 0.0)
-    assert outcome(told, calibrate(told, max_wrong=0.25)) == (1.0, 0.25)
-    assert calibrate([]) == NEVER
-    assert outcome(told[2:3], calibrate(told[2:3])).wrong == 0.0
+def test_the_least_probability_answers_most_with_few_wrong() -> None:
+    assert least_probability(TOLD) == 0.8
+    assert outcome(TOLD, 0.8) == (2 / 3, 0.0)
+    assert outcome(TOLD, least_probability(TOLD, max_wrong=0.25)) == (1.0, 0.25)
+    assert least_probability([]) == least_probability(TOLD[2:3]) == NEVER
+    assert least_probability([Judged(0.8, True, True), Judged(0.8, False, False)]) == NEVER
 
 
 def test_each_question_is_judged_by_the_others() -> None:
-    told = samples(("a", "a", 0.9), ("", "b", 0.8), ("c", "c", 0.7))
-    assert outcome(told, calibrate(told)).wrong == 0.0
+    told = [Judged(0.9, True, True), Judged(0.8, False, False), Judged(0.7, True, True)]
+    assert outcome(told, least_probability(told)).wrong == 0.0
     assert left_out(told).wrong == pytest.approx(1 / 3)
+
+
+def test_a_choice_is_learned_as_statistics_say() -> None:
+    """The slope of the penalised likelihood is zero at what is found: by differences, on made-up questions."""
+    draw = np.random.default_rng(3)
+    features = [draw.normal(size=(4, 2)).astype(np.float32) for _ in range(30)]
+    wanted = [int(each[:, 0].argmax()) if i % 3 else -1 for i, each in enumerate(features)]
+    weights, none = fitted(features, wanted)
+    assert weights[0] > abs(weights[1])
+    spread = np.array(features).std(axis=(0, 1))
+
+    def likelihood(weights: np.ndarray, none: float) -> float:
+        found = 0.0
+        for each, row in zip(features, wanted, strict=True):
+            of_each = probabilities(each, tuple(weights), none)
+            found += np.log(of_each[row] if row >= 0 else 1.0 - of_each.sum())
+        return found - RIDGE / 2 * float(((weights * spread) ** 2).sum())
+
+    at = np.array(weights)
+    for step in (np.array([1e-4, 0.0]), np.array([0.0, 1e-4])):
+        slope = (likelihood(at + step, none) - likelihood(at - step, none)) / 2e-4
+        assert slope == pytest.approx(0.0, abs=0.05)
+
+
+@given(hnp.arrays(np.float32, (5, 3), elements=st.floats(-1, 1, width=32)), st.floats(-200, 200))
+def test_probabilities_are_shares(features: np.ndarray, none: float) -> None:
+    of_each = probabilities(features, (150.0, -2.0, 0.0), none)
+    assert (of_each >= 0).all()
+    assert of_each.sum() <= 1.0 + 1e-9
 
 
 def test_the_questions_are_many_and_in_words_of_their_own() -> None:
@@ -101,11 +153,13 @@ def test_an_exhibitions_questions_set_when_a_passage_answers() -> None:
     english, french = Retriever(PASSAGES, "en"), Retriever(PASSAGES, "fr")
     trial = tried(english, SETS)
     assert trial
-    assert (trial.asked, trial.thresholds) == (4, thresholds_of(english, SETS))
+    weights = weights_of(english, SETS)
+    assert weights
+    assert (trial.asked, trial.least) == (4, weights.least)
     assert trial.rates.recall > 0
     assert not trial.wrong
     assert tried(french, SETS) is None
-    assert thresholds_of(french, SETS) is None
+    assert weights_of(french, SETS) is None
 
 
 def test_what_is_answered_wrongly_is_named() -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from lumen.errors import BusError
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.interpreters.replay.visits import home_of
-from lumen.interpreters.retrieval.ranking import Thresholds
+from lumen.interpreters.retrieval.ranking import Weights
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from lumen.interpreters.retrieval.retriever import Retriever
 
 ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
-STRICT = Thresholds(0.63, 0.27)
-"""How like a question a passage has to be in a language in which the exhibition has no questions to try it with."""
+STRICT = Weights((2.5, 15.0, 5.5), none=6.5, least=0.9)
+"""What holds in a language in which the exhibition has no questions to try it with: about what the shipped ones set."""
 MAX_ANSWERS = 100
 """Answers that wait for a tick; then the oldest are dropped."""
 MAX_PASSAGES = 3
@@ -68,7 +68,7 @@ class Questions:
         self._key = ""
         self._undo: Callable[[], None] = _nothing
         self._retriever: Retriever | None = None
-        self._enough = STRICT
+        self._weights = STRICT
         self._known: tuple[object, ...] = ()
 
     def listen(self, project: Project) -> None:
@@ -90,10 +90,10 @@ class Questions:
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
         """Begin to find the answer; the events of what is known at once: it, or that nobody knows."""
         retriever = self._passages(project, asked.language)
-        if found := retriever.answer(asked.question, self._enough):
+        if found := retriever.answer(asked.question, self._weights):
             said = {
                 "text": found.text, "language": found.language, "source": "passage", "passage": found.passage.name,
-                "confidence": round(found.score, 3),
+                "confidence": round(found.probability, 3),
             }  # fmt: skip
             return [Event(f"answer.command.{id}", said, now)]
         if ANSWERS not in project.modules:
@@ -104,7 +104,7 @@ class Questions:
         body = {
             "id": id, "question": asked.question, "language": asked.language, "robot": project.robot,
             "within": asked.within, "place": asked.place, "visit": self.visit, "offers": offers,
-            "passages": retriever.nearest(asked.question, MAX_PASSAGES),
+            "passages": retriever.nearest(asked.question, MAX_PASSAGES, self._weights),
         }  # fmt: skip
         try:
             self._bus.publish(project.key_of(ASK_ROUTE), body, ttl=asked.within, origin=origin)
@@ -178,14 +178,14 @@ class Questions:
 
     def _passages(self, project: Project, language: str) -> "Retriever":
         from lumen.interpreters.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
-        from lumen.interpreters.retrieval.trials import thresholds_of
+        from lumen.interpreters.retrieval.trials import weights_of
 
         today = self.today()
         known = (project.knowledge, project.questions, project.robot, language, today)
         if self._retriever is None or self._known != known:
             passages = project.knowledge.values()
             self._retriever = Retriever(passages, language, robot=project.robot, today=today)
-            self._enough = thresholds_of(self._retriever, project.questions.values()) or STRICT
+            self._weights = weights_of(self._retriever, project.questions.values()) or STRICT
             self._known = known
         return self._retriever
 

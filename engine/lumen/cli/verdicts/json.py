@@ -51,7 +51,7 @@ def _tried(trial: QuestionTrial) -> dict[str, Any]:
     return {
         "language": trial.language,
         "asked": trial.asked,
-        "thresholds": trial.thresholds._asdict(),
+        "least": trial.least,
         "rates": trial.rates._asdict(),
         "others": trial.others._asdict(),
         "wrong": [each._asdict() for each in trial.wrong],

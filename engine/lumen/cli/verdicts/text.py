@@ -59,7 +59,7 @@ def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
     yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, {trial.rates.wrong:.0%} wrongly;"
     yield (
         f"  each tried by what the others tell: {trial.others.recall:.0%}, {trial.others.wrong:.0%} wrongly;"
-        f" a passage has to be {trial.thresholds.least:.2f} alike, {trial.thresholds.margin:.2f} more than the next"
+        f" an answer has to be {trial.least:.0%} probable"
     )
     for each in trial.wrong:
         yield f"  “{each.question}” is answered by {each.passage}, and {_wanted(each)}"

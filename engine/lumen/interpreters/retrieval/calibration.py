@@ -1,80 +1,90 @@
-"""From how alike questions are to whether one is answered: thresholds, set by questions whose answers are known."""
+"""From questions whose answers are known to the weights of features, and to how probable an answer has to be."""
 
 from collections.abc import Sequence
+from math import floor
 from typing import NamedTuple
 
 import numpy as np
 
-from lumen.interpreters.retrieval.ranking import MAX_WRONG, AnswerRates, Ranked, Thresholds
+from lumen.interpreters.retrieval.choice import fitted, probabilities
+from lumen.interpreters.retrieval.features import Features
+from lumen.interpreters.retrieval.ranking import MAX_WRONG, NEVER, AnswerRates, Weights
 
-STEPS = 40
-"""Thresholds that are tried of each kind."""
+FOLDS = 10
+"""Parts into which questions are dealt: each part is judged by what the others tell."""
 
 
 class Sample(NamedTuple):
-    """A question whose passage is known, empty where none has its answer, and what is most like it."""
+    """What is told of each passage for a question; `wanted` is the row of the one that answers it, -1 for none."""
 
-    wanted: str
-    ranked: Ranked
-
-    @property
-    def is_right(self) -> bool:
-        """Whether its answer would be right."""
-        return self.wanted == self.ranked.passage
+    wanted: int
+    features: Features
 
 
-NEVER = Thresholds(2.0, 2.0)
-"""Answers nothing: where there is no question to go by."""
+class Judged(NamedTuple):
+    """What would be answered to a question: how probably, whether that is right, and whether there is an answer."""
+
+    probability: float
+    is_right: bool
+    is_known: bool
 
 
-def outcome(samples: Sequence[Sample], thresholds: Thresholds) -> AnswerRates:
-    """What becomes of these questions."""
-    answered = [sample for sample in samples if thresholds.allow(sample.ranked)]
-    right = sum(sample.is_right for sample in answered)
-    known = sum(bool(sample.wanted) for sample in samples)
-    return AnswerRates(right / max(known, 1), (len(answered) - right) / max(len(samples), 1))
+def judged(samples: Sequence[Sample], weights: Weights) -> list[Judged]:
+    """What these weights would answer to each."""
+    found = []
+    for sample in samples:
+        of_each = probabilities(sample.features, weights.features, weights.none)
+        row = int(of_each.argmax())
+        found.append(Judged(float(of_each[row]), row == sample.wanted, sample.wanted >= 0))
+    return found
 
 
-def calibrate(samples: Sequence[Sample], max_wrong: float = MAX_WRONG) -> Thresholds:
-    """Those that answer most of these questions rightly and at most so many wrongly; the strictest of equals."""
-    if not samples:
-        return NEVER
-    found = _Grid(samples).best(max_wrong)
-    return found[0]
+def outcome(found: Sequence[Judged], least: float) -> AnswerRates:
+    """What becomes of these questions where an answer has to be that probable."""
+    return _rates(found, [each.probability >= least for each in found])
 
 
-def left_out(samples: Sequence[Sample], max_wrong: float = MAX_WRONG) -> AnswerRates:
-    """What becomes of each of these questions by the thresholds that all others set."""
-    if not samples:
-        return AnswerRates(0.0, 0.0)
-    chosen = _Grid(samples).best(max_wrong, each_left_out=True)
-    answered = [s for s, thresholds in zip(samples, chosen, strict=True) if thresholds.allow(s.ranked)]
-    right = sum(sample.is_right for sample in answered)
-    return AnswerRates(right / max(sum(bool(s.wanted) for s in samples), 1), (len(answered) - right) / len(samples))
+def calibrate(samples: Sequence[Sample], max_wrong: float = MAX_WRONG) -> Weights:
+    """Weights of these questions, which answer most of them rightly and at most so many wrongly, each by the others."""
+    return Weights(*_fitted(samples), least_probability(held_out(samples), max_wrong))
 
 
-class _Grid:
-    """Thresholds that are tried, strictest first, and which samples each of them answers rightly and wrongly."""
+def held_out(samples: Sequence[Sample]) -> list[Judged]:
+    """What would be answered to each, by the weights that questions of the other parts set."""
+    found: dict[int, Judged] = {}
+    folds = min(FOLDS, len(samples))
+    for fold in range(folds):
+        others = [sample for i, sample in enumerate(samples) if i % folds != fold]
+        weights = Weights(*_fitted(others or samples), NEVER)
+        found |= zip(range(fold, len(samples), folds), judged(samples[fold::folds], weights), strict=True)
+    return [found[i] for i in range(len(samples))]
 
-    def __init__(self, samples: Sequence[Sample]) -> None:
-        scores = np.array([sample.ranked.score for sample in samples])
-        margins = np.array([sample.ranked.margin for sample in samples])
-        at = np.linspace(1.0, 0.0, STEPS)
-        self.tried = [
-            Thresholds(float(least), float(margin))
-            for least in dict.fromkeys(np.quantile(scores, at))
-            for margin in dict.fromkeys(np.quantile(margins, at))
-        ]
-        answered = np.array([(scores >= t.least) & (margins >= t.margin) for t in self.tried])
-        rightly = np.array([sample.is_right for sample in samples])
-        self.right, self.wrong = answered & rightly, answered & ~rightly
 
-    def best(self, max_wrong: float, *, each_left_out: bool = False) -> list[Thresholds]:
-        """The best for all samples together, or for each one those that are the best for the others."""
-        right, wrong = (each.sum(axis=1, keepdims=True) for each in (self.right, self.wrong))
-        count = self.right.shape[1]
-        if each_left_out:
-            right, wrong, count = right - self.right, wrong - self.wrong, count - 1
-        allowed = np.where(wrong <= max_wrong * count, right, -1)
-        rows = allowed.argmax(axis=0)
-        return [self.tried[row] if allowed[row, i] >= 0 else NEVER for i, row in enumerate(rows)]
+def left_out(found: Sequence[Judged], max_wrong: float = MAX_WRONG) -> AnswerRates:
+    """What becomes of each of these questions by the least probability that all others set."""
+    others = ([*found[:i], *found[i + 1 :]] for i in range(len(found)))
+    least = [least_probability(each, max_wrong) for each in others]
+    return _rates(found, [one.probability >= enough for one, enough in zip(found, least, strict=True)])
+
+
+def least_probability(found: Sequence[Judged], max_wrong: float = MAX_WRONG) -> float:
+    """The one that answers most of these rightly, at most so many wrongly; the highest of equals, to a thousandth."""
+    right = wrong = most = 0
+    least = NEVER
+    for one in sorted(found, key=lambda each: (-each.probability, each.is_right)):
+        right, wrong = right + one.is_right, wrong + (not one.is_right)
+        if wrong > max_wrong * len(found):
+            break
+        if right > most:
+            most, least = right, floor(one.probability * 1000) / 1000
+    return least
+
+
+def _fitted(samples: Sequence[Sample]) -> tuple[tuple[float, ...], float]:
+    return fitted([sample.features for sample in samples], [sample.wanted for sample in samples])
+
+
+def _rates(found: Sequence[Judged], answered: Sequence[bool]) -> AnswerRates:
+    right = sum(one.is_right for one, is_answered in zip(found, answered, strict=True) if is_answered)
+    known = sum(one.is_known for one in found)
+    return AnswerRates(right / max(known, 1), (int(np.sum(answered)) - right) / max(len(found), 1))

@@ -1,28 +1,26 @@
-"""How alike a question and a passage are, and whether that is enough."""
+"""How probable it is that a passage answers a question, and whether that is enough."""
 
 from typing import NamedTuple
 
 MAX_WRONG = 0.02
 """The share of all questions that may be answered wrongly."""
+NEVER = 2.0
+"""More than any probability: what is to be answered never."""
 
 
 class Ranked(NamedTuple):
-    """The passage that is most like a question, how much, and by how much more than the next one."""
+    """The passage that most probably answers a question, and how probably; empty where nothing is known."""
 
     passage: str
-    score: float
-    margin: float
+    probability: float
 
 
-class Thresholds(NamedTuple):
-    """A question is answered if its score is at least `least`, and so much better than the next one."""
+class Weights(NamedTuple):
+    """How much each feature of a passage counts, how much speaks for none, and how probable an answer has to be."""
 
+    features: tuple[float, ...]
+    none: float
     least: float
-    margin: float
-
-    def allow(self, ranked: Ranked) -> bool:
-        """Whether it is answered."""
-        return ranked.score >= self.least and ranked.margin >= self.margin
 
 
 class AnswerRates(NamedTuple):
@@ -41,15 +39,15 @@ class WrongAnswer(NamedTuple):
 
 
 class QuestionTrial(NamedTuple):
-    """What becomes of the questions of a language by the `thresholds` that they set.
+    """What becomes of the questions of a language by the weights that they set, with the `least` probability.
 
-    `others` is what becomes of each by those that all others set: the better guess of what visitors will meet.
-    `unfound` are those whose passage is not even the most alike, `wrong` those that are answered wrongly.
+    `others` is what becomes of each by what all others set: the better guess of what visitors will meet. `unfound` are
+    those whose passage is not even the most probable, `wrong` those that are answered wrongly.
     """
 
     language: str
     asked: int
-    thresholds: Thresholds
+    least: float
     rates: AnswerRates
     others: AnswerRates
     unfound: tuple[WrongAnswer, ...]

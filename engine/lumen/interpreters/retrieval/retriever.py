@@ -1,26 +1,26 @@
 """Finds the passage that answers a question, or none: pure, without a network, the same for the same files."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from datetime import date
 from typing import NamedTuple
 
-from lumen.interpreters.retrieval.calibration import Sample
-from lumen.interpreters.retrieval.ranking import Ranked, Thresholds
-from lumen.interpreters.retrieval.scorers import Method, combined
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.interpreters.retrieval.choice import probabilities
+from lumen.interpreters.retrieval.features import Features, Method
+from lumen.interpreters.retrieval.features import words as by_words
+from lumen.interpreters.retrieval.ranking import Ranked, Weights
 from lumen.interpreters.retrieval.words import words
 from lumen.language.knowledge import Passage
 
-NEAREST = 15
-"""Samples by which it is told how sure an answer is."""
-
 
 class FoundAnswer(NamedTuple):
-    """A passage for a question: its `score` in 0..1, and the share of questions with such a score that it answers."""
+    """A passage for a question, and how probably it answers it."""
 
     passage: Passage
     language: str
-    score: float
-    confidence: float
+    probability: float
 
     @property
     def text(self) -> str:
@@ -29,7 +29,7 @@ class FoundAnswer(NamedTuple):
 
 
 class Retriever:
-    """Knows the passages that one robot may say in one language on one day."""
+    """Knows the passages that one robot may say in one language on one day; `names` are in the order of features."""
 
     def __init__(
         self,
@@ -38,51 +38,48 @@ class Retriever:
         *,
         robot: str = "",
         today: date | None = None,
-        method: Method = combined,
+        method: Method = by_words,
     ) -> None:
         self.language = language
-        self._passages = {
-            passage.name: passage
+        self._passages = [
+            passage
             for passage in passages
-            if {*passage.questions} & {language} and language in passage.answer
+            if passage.questions.get(language) and language in passage.answer
             if not (robot and not passage.is_said_by(robot)) and not (today and passage.is_past(today))
-        }
-        known = [(name, text) for name, passage in self._passages.items() for text in passage.questions[language]]
-        self._owners = [name for name, _ in known]
-        self._whose = {" ".join(words(text)): name for name, text in reversed(known)}
-        self._score = method([text for _, text in known], language)
+        ]
+        self.names = [passage.name for passage in self._passages]
+        wordings = [(passage, text) for passage in self._passages for text in passage.questions[language]]
+        self._whose = {" ".join(words(text)): passage for passage, text in reversed(wordings)}
+        self._extract = method(self._passages, language) if self._passages else None
 
-    def rank(self, question: str) -> Ranked:
-        """What is most like the question; an empty passage where nothing is known."""
-        best: dict[str, float] = {}
-        for name, score in zip(self._owners, self._score(question).tolist() if self._owners else (), strict=True):
-            best[name] = max(best.get(name, 0.0), score)
-        first, second = sorted([*best.items(), ("", 0.0), ("", 0.0)], key=lambda each: -each[1])[:2]
-        return Ranked(first[0], first[1], first[1] - second[1])
+    def features(self, question: str) -> Features:
+        """What is told of each passage; nothing where none is known."""
+        return self._extract(question) if self._extract else np.zeros((0, 1), np.float32)
 
-    def nearest(self, question: str, count: int) -> list[str]:
-        """The answers of the passages that are most like the question, whether or not they answer it."""
-        best: dict[str, float] = {}
-        for name, score in zip(self._owners, self._score(question).tolist() if self._owners else (), strict=True):
-            best[name] = max(best.get(name, 0.0), score)
-        names = sorted(best, key=lambda name: -best[name])[:count]
-        return [self._passages[name].answer[self.language] for name in names if best[name] > 0.0]
+    def rank(self, question: str, weights: Weights) -> Ranked:
+        """The passage that most probably answers the question."""
+        of_each = self._probabilities(self.features(question), weights)
+        row = int(of_each.argmax()) if self.names else -1
+        return Ranked(self.names[row], float(of_each[row])) if row >= 0 else Ranked("", 0.0)
 
-    def samples(self, asked: Mapping[str, Sequence[str]], unanswered: Sequence[str]) -> list[Sample]:
-        """What is most like each of these questions: by the passage that has its answer, and those without one."""
-        found = [Sample(name, self.rank(text)) for name, texts in asked.items() for text in texts]
-        return found + [Sample("", self.rank(text)) for text in unanswered]
+    def nearest(self, question: str, count: int, weights: Weights) -> list[str]:
+        """The answers of the passages that most probably answer the question, of those that have to do with it."""
+        features = self.features(question)
+        of_each = self._probabilities(features, weights)
+        rows = [row for row in np.argsort(-of_each, kind="stable") if features[row].any()]
+        return [self._passages[row].answer[self.language] for row in rows[:count]]
 
-    def answer(self, question: str, thresholds: Thresholds, samples: Sequence[Sample] = ()) -> FoundAnswer | None:
-        """The passage that answers the question, None where none surely does; `samples` tell how sure that is.
+    def answer(self, question: str, weights: Weights) -> FoundAnswer | None:
+        """The passage that answers the question, None where none surely does.
 
         A question that stands in a passage, whatever its signs, is that passage's.
         """
-        ranked = self.rank(question)
         if own := self._whose.get(" ".join(words(question))):
-            return FoundAnswer(self._passages[own], self.language, 1.0, 1.0)
-        if not ranked.passage or not thresholds.allow(ranked):
+            return FoundAnswer(own, self.language, 1.0)
+        ranked = self.rank(question, weights)
+        if not ranked.passage or ranked.probability < weights.least:
             return None
-        near = sorted(samples, key=lambda sample: abs(sample.ranked.score - ranked.score))[:NEAREST]
-        sure = sum(sample.is_right for sample in near) / len(near) if near else 0.0
-        return FoundAnswer(self._passages[ranked.passage], self.language, ranked.score, sure)
+        return FoundAnswer(self._passages[self.names.index(ranked.passage)], self.language, ranked.probability)
+
+    def _probabilities(self, features: Features, weights: Weights) -> NDArray[np.float64]:
+        return probabilities(features, weights.features, weights.none) if self.names else np.zeros(0)

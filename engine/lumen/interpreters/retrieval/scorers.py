@@ -1,4 +1,4 @@
-"""How alike a question is to each of those that are known, by several methods: 0 for not at all, 1 for the same."""
+"""How alike a question is to each wording that is known, by several methods: 0 for not at all, 1 for the same."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 from lumen.interpreters.retrieval.words import letter_runs, stems
 
 Scores = NDArray[np.float32]
-"""Shape (known questions,)."""
+"""Shape (known wordings,)."""
 
 K1, B = 1.2, 0.5
 """How soon a word that comes again counts no more, and how much long questions are held back."""
 
 
 class Scorer(Protocol):
-    """The seam: whatever compares a question with known ones; embeddings would be another."""
+    """Whatever compares a question with known wordings."""
 
     def __call__(self, question: str) -> Scores:
-        """How alike it is to each known question, in their order."""
+        """How alike it is to each known wording, in their order."""
 
 
-Method = Callable[[Sequence[str], str], Scorer]
-"""Makes a scorer for known questions of a language."""
+WordingMethod = Callable[[Sequence[str], str], Scorer]
+"""Makes a scorer for known wordings of a language."""
 
 
 class _Table:
-    """Known questions by what they consist of: `counts` has a row for each, and a column for each part."""
+    """Known wordings by what they consist of: `counts` has a row for each, and a column for each part."""
 
     def __init__(self, known: Sequence[str], split: Callable[[str], list[str]]) -> None:
         self.split = split
@@ -91,7 +91,3 @@ def combined(known: Sequence[str], language: str) -> Scorer:
         return np.asarray((one(question) + other(question)) / 2, np.float32)
 
     return score
-
-
-METHODS: dict[str, Method] = {"ngrams": ngrams, "bm25": bm25, "combined": combined}
-"""Every method by its name."""

@@ -2,22 +2,25 @@
 
 from collections.abc import Iterable, Mapping
 
-from lumen.interpreters.retrieval.calibration import Sample, calibrate, left_out, outcome
-from lumen.interpreters.retrieval.ranking import QuestionTrial, Thresholds, WrongAnswer
+from lumen.interpreters.retrieval.calibration import Sample, calibrate, held_out, judged, left_out, outcome
+from lumen.interpreters.retrieval.ranking import QuestionTrial, Weights, WrongAnswer
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.language.knowledge import QuestionSet
 
 
 def samples_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> dict[str, Sample]:
-    """The questions of the retriever's language, each with what is most like it."""
+    """The questions of the retriever's language, each with what is told of the passages; none where it knows none."""
+    if not retriever.names:
+        return {}
+    rows = {name: row for row, name in enumerate(retriever.names)}
     found: dict[str, Sample] = {}
     for each in sets:
         for wanted, texts in _texts(each, retriever.language):
-            found |= {text: Sample(wanted, retriever.rank(text)) for text in texts}
+            found |= {text: Sample(rows.get(wanted, -1), retriever.features(text)) for text in texts}
     return found
 
 
-def thresholds_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> Thresholds | None:
+def weights_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> Weights | None:
     """Those that the questions set, None where there is none in this language."""
     samples = samples_of(retriever, sets)
     return calibrate([*samples.values()]) if samples else None
@@ -29,11 +32,17 @@ def tried(retriever: Retriever, sets: Iterable[QuestionSet]) -> QuestionTrial | 
     if not by_text:
         return None
     samples = [*by_text.values()]
-    thresholds = calibrate(samples)
-    missed = [WrongAnswer(text, s.wanted, s.ranked.passage) for text, s in by_text.items() if not s.is_right]
-    wrong = [each for each in missed if thresholds.allow(by_text[each.question].ranked)]
+    weights = calibrate(samples)
+    found = judged(samples, weights)
+    missed, wrong = [], []
+    for (text, sample), one in zip(by_text.items(), found, strict=True):
+        if not one.is_right:
+            wanted = retriever.names[sample.wanted] if one.is_known else ""
+            missed.append(WrongAnswer(text, wanted, retriever.rank(text, weights).passage))
+            if one.probability >= weights.least:
+                wrong.append(missed[-1])
     return QuestionTrial(
-        retriever.language, len(samples), thresholds, outcome(samples, thresholds), left_out(samples),
+        retriever.language, len(samples), weights.least, outcome(found, weights.least), left_out(held_out(samples)),
         tuple(each for each in missed if each.wanted), tuple(wrong),
     )  # fmt: skip
 

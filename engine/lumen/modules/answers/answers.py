@@ -94,7 +94,7 @@ class Answers(Module):
         if found.answer is None:
             return list(found.nearest) or passages
         body = {"text": found.answer.text, "language": language, "source": "passage", "more": True}
-        more = {"passage": found.answer.passage.name, "confidence": round(found.answer.score, 3)}
+        more = {"passage": found.answer.passage.name, "confidence": round(found.answer.probability, 3)}
         self.publish("answer", {"id": id, **body, **more})
         return None
 

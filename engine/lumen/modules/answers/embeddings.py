@@ -6,11 +6,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import ModuleError
+from lumen.language.knowledge import Passage
 from lumen.language.projects import Project
 from lumen.modules.answers.http_stream import answered
 from lumen.modules.answers.model_settings import ServerSettings
 
 if TYPE_CHECKING:
+    from lumen.interpreters.retrieval.features import FeatureExtractor
     from lumen.interpreters.retrieval.retriever import FoundAnswer, Retriever
     from lumen.interpreters.retrieval.scorers import Scorer, Scores
 
@@ -22,6 +24,10 @@ MAX_KEPT = 20_000
 """Texts whose vectors are kept."""
 
 
+UNTRIED = ((20.0, 20.0, 20.0, 0.0, 10.0, 5.0), 80.0)
+"""Weights by meanings and by words, and of none, where the exhibition has no questions: only the order counts."""
+
+
 class MeantPassages(NamedTuple):
     """The passage that answers, if one surely does, and the answers of those that are nearest."""
 
@@ -30,10 +36,10 @@ class MeantPassages(NamedTuple):
 
 
 class Embeddings:
-    """Finds passages by what a question means, as far as a server's vectors tell.
+    """Finds passages by what a question means, as far as a server's vectors tell, and by its words.
 
-    A passage is answered where it is as like as the exhibition's own questions (`knowledge/questions`) say that it has
-    to be: without any, none is. Vectors are kept; those of passages are asked for at the first question.
+    A passage is answered where it is as probable as the exhibition's own questions (`knowledge/questions`) say that it
+    has to be: without any, none is. Vectors are kept; those of passages are asked for at the first question.
     """
 
     def __init__(self, settings: ServerSettings) -> None:
@@ -42,15 +48,16 @@ class Embeddings:
         self._deadline, self._wanted = 0.0, _always
         self._known: tuple[object, ...] = ()
         self._retriever: Retriever | None = None
-        self._enough: Any = None
+        self._weights: Any = None
 
     def find(
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
         """What is known of the question, by `deadline` (`time.monotonic`). Raises ModuleError where no server says."""
-        from lumen.interpreters.retrieval.calibration import NEVER
+        from lumen.interpreters.retrieval.features import joined, words
+        from lumen.interpreters.retrieval.ranking import NEVER, Weights
         from lumen.interpreters.retrieval.retriever import Retriever
-        from lumen.interpreters.retrieval.trials import thresholds_of
+        from lumen.interpreters.retrieval.trials import weights_of
 
         self._deadline, self._wanted = deadline, wanted
         known = (project.knowledge, project.questions, project.robot, language)
@@ -58,16 +65,29 @@ class Embeddings:
             passages, sets = [*project.knowledge.values()], [*project.questions.values()]
             by_language = [each.questions for each in passages]
             by_language += [texts for each in sets for texts in (*each.asked.values(), each.unanswered)]
-            self._embed([question, *(text for texts in by_language for text in texts.get(language, ()))])
-            self._retriever = Retriever(passages, language, robot=project.robot, method=self._method)
-            self._enough = thresholds_of(self._retriever, sets) or NEVER
+            texts = [text for texts in by_language for text in texts.get(language, ())]
+            answers = [each.answer[language] for each in passages if language in each.answer]
+            self._embed([question, *texts, *answers])
+            self._retriever = Retriever(passages, language, robot=project.robot, method=joined(self._meanings, words))
+            self._weights = weights_of(self._retriever, sets) or Weights(*UNTRIED, NEVER)
             self._known = known
         assert self._retriever
         return MeantPassages(
-            self._retriever.answer(question, self._enough), tuple(self._retriever.nearest(question, most))
+            self._retriever.answer(question, self._weights),
+            tuple(self._retriever.nearest(question, most, self._weights)),
         )
 
-    def _method(self, known: Sequence[str], _: str) -> "Scorer":
+    def _meanings(self, passages: Sequence[Passage], language: str) -> "FeatureExtractor":
+        """How alike the nearest wordings of a passage are by their meaning, and how alike its answer is."""
+        from lumen.interpreters.retrieval.features import by_wordings, joined
+
+        def to_answers(passages: Sequence[Passage], language: str) -> "FeatureExtractor":
+            score = self._likeness([passage.answer[language] for passage in passages], language)
+            return lambda question: score(question)[:, None]
+
+        return joined(by_wordings(self._likeness), to_answers)(passages, language)
+
+    def _likeness(self, known: Sequence[str], _: str) -> "Scorer":
         import numpy as np
 
         rows = np.array(self._embed(known), np.float32).reshape(len(known), -1)
