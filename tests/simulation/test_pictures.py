@@ -6,16 +6,19 @@ import threading
 from pathlib import Path
 
 import imageio_ffmpeg
+import mujoco
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from lumen.errors import RobotError
+from lumen.language.commands import Look
 from lumen.language.robots import Body
 from lumen.language.routes import Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Sense
 from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.culling import FrustumCulling
 from lumen.robots.simulation.film import FILM_RATE, Film
 from lumen.robots.simulation.shells import write
 from tests.guarded import run_guarded
@@ -51,6 +54,23 @@ def test_an_image_is_as_large_as_is_asked_for_and_shows_the_same(robot: Simulate
     assert large.shape == (480, 640, 3)
     shrunk = large.reshape(240, 2, 320, 2, 3).mean(axis=(1, 3))
     assert np.abs(shrunk - small).mean() < 4
+
+
+@pytest.mark.parametrize(("yaw", "pitch"), [(0.0, 0.0), (-0.4, 0.5), (1.5, -0.6)])
+def test_what_a_camera_can_t_see_is_not_drawn_and_nobody_sees_that(
+    robot: SimulatedRobot, do: Do, yaw: float, pitch: float
+) -> None:
+    robot.place(Visitor())
+    assert do(Look(yaw, pitch)) == "done"
+    model, data = robot.world.model, robot.world.data
+    renderer = mujoco.Renderer(model, 240, 320)
+    renderer.update_scene(data, "nao/CameraTop")
+    whole, geoms = renderer.render().copy(), renderer.scene.ngeom
+    FrustumCulling(model).cull(data, "nao/CameraTop", 4 / 3)
+    renderer.update_scene(data, "nao/CameraTop")
+    assert renderer.scene.ngeom < geoms / 2
+    assert (renderer.render() == whole).all()
+    renderer.close()
 
 
 def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -> None:

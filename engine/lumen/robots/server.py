@@ -26,7 +26,7 @@ DEFAULT_SENSE_PERIOD = 0.1
 SENSES_CLOSE_TIMEOUT = 5.0
 TIME_EPSILON = 1e-9
 SETTLE_TIMEOUT = 0.02
-THREAD_START_TIMEOUT = 1.0
+THREAD_START_TIMEOUT = FIRST_IMAGE_TIMEOUT = 1.0
 
 _log = logging.getLogger(__name__)
 
@@ -40,12 +40,13 @@ class RobotServer:
 
     Whoever owns the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
-    one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
-    `clock` [s] measures how long a command has waited: time as modules live through it, whatever the robot's clock
-    says. `started` is called with each command that the robot is given from the bus and its id, `refused` with the
-    method and the reason for each that it is not given, `hurry` when the next sample can't wait: something came that
-    stops the robot. Nobody moves a robot that a person stopped (`hold`). A `direct` one publishes readings but images
-    in `sample` itself, for time that waits for whoever hears them: threads would take turns at every tick.
+    one seed says the same things in the same order; `settle` waits until they have, and once for a first image, which
+    takes as long as several others: OpenGL begins with it. `date` is what images are dated; `clock` [s] measures how
+    long a command has waited: time as modules live through it, whatever the robot's clock says. `started` is called
+    with each command that the robot is given from the bus and its id, `refused` with the method and the reason for each
+    that it is not given, `hurry` when the next sample can't wait: something came that stops the robot. Nobody moves a
+    robot that a person stopped (`hold`). A `direct` one publishes readings but images in `sample` itself, for time that
+    waits for whoever hears them: threads would take turns at every tick.
     """
 
     def __init__(
@@ -68,6 +69,8 @@ class RobotServer:
         self._next: dict[str, float] = {}
         self._broadcasts: dict[str, SensePublisher] = {}
         self._leaving: list[PendingReading] = []
+        self._first_image: PendingReading | None = None
+        self._seen = False
         self._listen(project)
         self._orders = CommandReceiver(project, robot, bus, clock, self._given, refused, hurry)
         self.hold = self._orders.hold
@@ -126,6 +129,9 @@ class RobotServer:
         thread that the machine has not yet let begin is waited for, for what is said in which order would else depend
         on what else the machine does.
         """
+        first, self._first_image = self._first_image, None
+        if first:
+            first.done.wait(FIRST_IMAGE_TIMEOUT)
         for handed in self._leaving:
             if not handed.begun.wait(THREAD_START_TIMEOUT):
                 return False
@@ -195,7 +201,10 @@ class RobotServer:
         if reading is None:
             return
         if isinstance(reading, Image):
-            self._broadcasts[name].hand(PendingReading(reading))
+            handed = PendingReading(reading)
+            if not self._seen:
+                self._first_image, self._seen = handed, True
+            self._broadcasts[name].hand(handed)
             return
         self._leaving = [handed for handed in self._leaving if not handed.done.is_set()]
         handed = PendingReading(reading, self._leaving[-1] if self._leaving else None)

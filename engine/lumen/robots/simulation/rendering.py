@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from lumen.robots.simulation import gl
 from lumen.robots.simulation.contact_shadows import NO_SOLES, ContactShadows, Soles
+from lumen.robots.simulation.culling import FrustumCulling
 
 PixelArray = NDArray[np.uint8]
 """Shape (height, width, 3), RGB."""
@@ -23,14 +24,18 @@ def available() -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class RenderQuality:
-    """What a picture costs: size of the shadow map and antialiasing samples, 0 for none; dark spots under feet."""
+    """What a picture costs: size of the shadow map and antialiasing samples, 0 for none; dark spots under feet.
+
+    What is round has so many `sides` around and from top to bottom, or as many as the model says.
+    """
 
     shadows: int = 0
     samples: int = 0
     contact: bool = False
+    sides: tuple[int, int] | None = None
 
 
-CAMERA_QUALITY = RenderQuality()
+CAMERA_QUALITY = RenderQuality(sides=(20, 12))
 FILM_QUALITY = RenderQuality(shadows=2048, samples=4, contact=True)
 
 
@@ -96,6 +101,8 @@ class _Canvas:
         self._model = copy.copy(model)
         self._model.vis.quality.shadowsize = quality.shadows
         self._model.vis.quality.offsamples = quality.samples
+        if quality.sides:
+            self._model.vis.quality.numslices, self._model.vis.quality.numstacks = quality.sides
         self._model.vis.global_.offwidth = max(width, self._model.vis.global_.offwidth)
         self._model.vis.global_.offheight = max(height, self._model.vis.global_.offheight)
         self._data = mujoco.MjData(self._model)
@@ -103,6 +110,7 @@ class _Canvas:
         atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
         self._contact = ContactShadows(self._model, soles) if quality.contact else None
+        self._culling, self._aspect = None if quality.shadows else FrustumCulling(self._model), width / height
 
     def draw(
         self, scene: RenderState, camera: str | mujoco.MjvCamera, field_of_view: float | None = None
@@ -117,6 +125,8 @@ class _Canvas:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_camlight(model, data)
+        if self._culling and isinstance(camera, str):
+            self._culling.cull(data, camera, self._aspect)
         self._renderer.update_scene(data, camera)
         if self._contact:
             self._contact.add(self._renderer.scene, data)

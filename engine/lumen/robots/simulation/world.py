@@ -47,6 +47,8 @@ class World:
         self.physics = shared or physics(body, models, hall, variation, backlash=backlash)
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
+        if self.model.ntree == 1:  # one robot alone is one island: looking for others in each step finds the same
+            self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ISLAND
         joints = [self.model.joint(f"{prefix}/{name}") for name in body.joints]
         self._angles = np.array([j.qposadr[0] for j in joints])
         self._speeds = np.array([j.dofadr[0] for j in joints])
