@@ -15,8 +15,8 @@ from tests.cli.conftest import Terminal
 from tests.waiting import until
 
 KEYS = {
-    "robot", "configuration", "since", "language", "visitor", "battery", "timers", "stopped", "stopped_by", "realtime",
-    "bundle", "last_reload",
+    "robot", "configuration", "since", "language", "visitor", "battery", "ears", "timers", "stopped", "stopped_by",
+    "realtime", "bundle", "last_reload",
 }  # fmt: skip
 
 
@@ -36,8 +36,11 @@ def test_the_object_says_how_the_exhibition_is(copy: Path) -> None:
         assert due.tzinfo == UTC
         assert (status["bundle"], status["realtime"]) == (exhibition.project.hash, 1.0)
         assert (status["stopped"], status["stopped_by"], status["last_reload"]) == (False, None, None)
+        assert status["ears"] is None
         exhibition.send("recognised", {"name": "Budi"})
+        exhibition.send("listening", {"listening": False, "because": "nobody"})
         exhibition.run(0.1)
+        assert exhibition.status()["ears"] == {"listening": False, "because": "nobody"}
         exhibition.stop()
         exhibition.run(0.5)
         later = exhibition.status()

@@ -80,15 +80,17 @@ def eyes(stand: Make) -> Callable[..., Stand]:
     return make
 
 
-def test_finds_the_drawn_face_where_it_is(eyes: Make, drawn: Mapping[Any, Any]) -> None:
-    here = eyes()
+def test_finds_the_drawn_face_where_it_is(eyes: Make, project: Project, drawn: Mapping[Any, Any]) -> None:
+    """Its head is larger than people's are."""
+    here = eyes(with_options(project, "eyes", face_width=0.25))
     faces, exact = here.listen("lumen.visual.face.detection"), here.listen("lumen.visual.face.tracking")
-    for number, (pixels, truth) in enumerate(drawn.values()):
+    for number, (place, (pixels, truth)) in enumerate(drawn.items()):
         here.bus.publish(IMAGE, body(pixels, float(number)))
         here.settle()
-        seen = exact.bodies[-1]
+        seen, face = exact.bodies[-1], dict(faces.bodies[-1])
         assert math.dist((seen["x"], seen["y"]), truth) < 5.0
-        assert faces.bodies[-1] == {"x": round(seen["x"]), "y": round(seen["y"]), "time": float(number)}
+        assert face.pop("distance") == pytest.approx(math.hypot(*place), rel=0.35)
+        assert face == {"x": round(seen["x"]), "y": round(seen["y"]), "time": float(number)}
 
 
 @pytest.mark.slow

@@ -1,6 +1,6 @@
 """How an exhibition is, in one object: for `lumen status`, and for whoever else shows it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -31,11 +31,13 @@ def status_of(
     stopped: StoppedBy | None = None,
     realtime: float = 1.0,
     reloaded: LastReload | None = None,
+    ears: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """The status of an exhibition whose states were last changed at `since` [s]; JSON data.
 
     Times are ISO 8601 in UTC, on the exhibition's clock, but those of stops and reloads, which people make. What is not
-    known is None: the `visitor` who has not said a name, the `battery` of a robot that has none.
+    known is None: the `visitor` who has not said a name, the `battery` of a robot that has none, the `ears` where there
+    are none.
     """
     return {
         "robot": project.robot,
@@ -44,6 +46,7 @@ def status_of(
         "language": snapshot.language,
         "visitor": _visitor(project, snapshot),
         "battery": battery.percentage if isinstance(battery, Battery) else None,
+        "ears": ears,
         "timers": [
             {"event": event, "due": _time(snapshot, due)} for due, event in sorted(_timers(project.machine, snapshot))
         ],

@@ -18,6 +18,14 @@ from lumen.loading.packaged import find_project
 AMONG_OTHERS = 5.0
 """How long the answer of one robot of several may take [s]."""
 QUESTION = {"ask": "status"}
+EARS = {
+    "always": "listen",
+    "face": "listen: a face is near and looks",
+    "touch": "listen: somebody touched the robot",
+    "speaks": "deaf but for what interrupts: the robot speaks",
+    "nobody": "deaf but for what interrupts: nobody is near and looks, or touches the robot",
+}
+"""How the ears are, by why (the route `listening`)."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -91,6 +99,8 @@ def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     yield "visitor", f"{status['visitor'] or 'no name known'}, spoken to in {status['language']}"
     if status["battery"] is not None:
         yield "battery", f"{status['battery']} %"
+    if ears := status["ears"]:
+        yield "ears", EARS.get(ears["because"], f"{'listen' if ears['listening'] else 'deaf'}: {ears['because']}")
     for timer in status["timers"]:
         yield "timer", f"{timer['event']}: due {_ahead(timer['due'], now)}"
     if status["stopped"]:

@@ -23,6 +23,7 @@ DEFAULT_KEYS: Mapping[str, str] = {
     "state": "lumen.{robot}.state",
     "motion": "lumen.motion.{robot}.command",
     "heard": "lumen.{robot}.audio.speech.recognition",
+    "listening": "lumen.{robot}.audio.listening",
     "gender": "lumen.{robot}.audio.gender.identification",
     "wav_stream": "lumen.{robot}.audio.wav.stream",
     "text_stream": "lumen.{robot}.audio.text.stream",

@@ -151,7 +151,8 @@ class Module:
         while job := self._next():
             route, message, self.came = job
             try:
-                self.hears()[route](message)
+                if handler := self.hears().get(route):  # else it is not listened on any more
+                    handler(message)
             except ModuleError as error:
                 self.tell(str(error))
             except (

@@ -1,9 +1,11 @@
-"""Sensors of the robot that guards name: `event.data.sensor == 'FrontTactil'`."""
+"""Sensors of the robot that guards name, `event.data.sensor == 'FrontTactil'`, and those that open the ears."""
 
 from collections.abc import Iterator
 
 from lumen.interpreters.expressions.tree import Binary, ExpressionNode, ListLiteral, Literal, path_of, walk
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.modules import EARS, ModuleSettings
+from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import hears
 from lumen.rules.logic import tree
@@ -13,8 +15,10 @@ _SENSOR = ("event", "data", "sensor")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report guards of `touched` and `released` that ask for a sensor which the robot does not have."""
+    """Report guards of `touched` and `released`, and `listens` of the ears, with sensors that it does not have."""
     body = draft.body
+    if body:
+        _ears(draft, body)
     if body is None or not body.tactile:
         return
     for name, machine in draft.behaviors.items():
@@ -28,6 +32,22 @@ def check(draft: ProjectDraft) -> None:
                             hint = did_you_mean(sensor, body.tactile, f"{body.name} has")
                             message = f"there is no tactile sensor `{sensor}`"
                             report(UNKNOWN_SENSOR, transition.guard.where, message, hint)
+
+
+def _ears(draft: ProjectDraft, body: Body) -> None:
+    ears = draft.settings.modules.get(EARS, ModuleSettings()) if draft.settings else ModuleSettings()
+    touch = ears.options.get("listens", {}).get("touch")
+    if draft.main is None or touch is None:
+        return
+    where: NodePath = ("modules", EARS, "listens", "touch")
+    if not body.tactile:
+        hint = "take it out, or write `face`"
+        draft.main(UNKNOWN_SENSOR, where, f"nobody can touch {body.name}: it has no tactile sensors", hint)
+        return
+    for i, sensor in enumerate(touch.get("sensors", ())):
+        if sensor not in body.tactile:
+            hint = did_you_mean(sensor, body.tactile, f"{body.name} has")
+            draft.main(UNKNOWN_SENSOR, (*where, "sensors", i), f"there is no tactile sensor `{sensor}`", hint)
 
 
 def _asked(guard: ExpressionNode) -> Iterator[str]:

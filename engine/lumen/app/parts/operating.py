@@ -23,6 +23,7 @@ from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause
 from lumen.language.events import Event
+from lumen.language.modules import EARS
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
 from lumen.robots.robot_routes import TEXT_ROUTE, key_of
@@ -31,6 +32,7 @@ from lumen.runtime.loop import Observer
 
 GOTO = "operator.goto"
 """The event of a step that an operator wanted."""
+EARS_LOST = f"{EARS}.lost"
 MAX_PENDING_REQUESTS = 100
 NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
 MAX_NOTE = 300
@@ -88,6 +90,8 @@ class OperatorPart(Part, Observer):
             lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None, behavior.loop.clock.now
         )
         behavior.forgetting.append(lambda _: self._doings.forget())
+        self._ears: Mapping[str, Any] | None = None
+        self._unheed = self._bus.subscribe(key_of(behavior.project, "listening"), self._heed)
         self._unsay = self._bus.subscribe(key_of(behavior.project, TEXT_ROUTE), self._doings.told.append)
         told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
         self._decisions = Decisions(runtime.approvals, narrator, record, keep, *told)
@@ -103,7 +107,15 @@ class OperatorPart(Part, Observer):
         if step.entered or step.exited or any(inner.entered or inner.exited for _, inner in step.invoked):
             self._since = step.snapshot.at
 
+    def _heed(self, message: Message) -> None:
+        """Whether the ears listen, and why; they say so as it changes."""
+        match message.body:
+            case {"listening": bool(listening), "because": str(because)}:
+                self._ears = {"listening": listening, "because": because}
+
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        if any(change.name == EARS_LOST for change in changes):
+            self._ears = None
         self.steps.look()
         self._doings.look()
         self._raising.look()
@@ -129,6 +141,7 @@ class OperatorPart(Part, Observer):
     def close(self) -> None:
         self._undo()
         self._unsay()
+        self._unheed()
         self._answering.close()
         self._pages.close()
 
@@ -156,6 +169,7 @@ class OperatorPart(Part, Observer):
             stopped=self._stopped(),
             realtime=self._realtime(),
             reloaded=self._reloaded(),
+            ears=self._ears,
         )
 
     def _moment(self) -> PresentMoment:

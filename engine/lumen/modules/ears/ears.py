@@ -7,8 +7,9 @@ from datetime import UTC, datetime
 from lumen.errors import ModuleError
 from lumen.interpreters.expressions.phrases import padded
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.modules import EARS
+from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
+from lumen.modules.ears.addressing import NOBODY, SPEAKS, Addressing
 from lumen.modules.ears.expected import expected
 from lumen.modules.ears.own_voice import OwnVoice, Utterance
 from lumen.modules.ears.recogniser import Hypothesis, Recogniser, hypotheses
@@ -19,6 +20,8 @@ from lumen.ports import Bus, Message, MessageHandler
 
 INTERRUPTS = ("stop",)
 """The phrases that are heard while the robot speaks, where `lumen.yaml` does not say which."""
+TICK = 0.05
+"""How exactly it is shown when they close [s]."""
 REST = 0.3
 """How much of the silence before and after what is said a recogniser is given [s]."""
 
@@ -26,9 +29,11 @@ REST = 0.3
 class Ears(Module):
     """The speech half of the audio module: the robot's recordings, and sounds that others send, become texts.
 
-    Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard. A sound
-    has just ended when it comes. A recogniser of one's own may be handed in, and who finds speech in sounds; else they
-    are PocketSphinx and Silero's network. Raises ModuleError where PocketSphinx is not there.
+    Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard; so it is
+    where `listens` is set and nobody means the robot. A sound has just ended when it comes. Whether they listen, and
+    why, goes out on the route `listening` as it changes. A recogniser of one's own may be handed in, and who finds
+    speech in sounds; else they are PocketSphinx and Silero's network. Raises ModuleError where PocketSphinx is not
+    there.
     """
 
     name = EARS
@@ -47,6 +52,8 @@ class Ears(Module):
         self._recogniser = recogniser or _sphinx()
         self._recogniser.expect(expected(project))
         self._own_voice = OwnVoice()
+        self._addressing = Addressing(self.settings.options.get("listens", {}), self.tell)
+        self._shown: dict[str, object] = {}
 
     def hears(self) -> Mapping[str, MessageHandler]:
         return {
@@ -54,6 +61,7 @@ class Ears(Module):
             "wav_stream": self._sound,
             "state": lambda message: self._own_voice.state(message.body, self.came),
             "report": lambda message: self._own_voice.report(message.body, self.came),
+            **dict.fromkeys(self._addressing.routes(), lambda _: None),
         }
 
     def begin(self) -> None:
@@ -61,9 +69,30 @@ class Ears(Module):
         self._look_for_phrases()
 
     def use(self, project: Project) -> None:
+        options = project.modules.get(self.name, ModuleSettings()).options
+        if options.get("listens", {}) != self.settings.options.get("listens", {}):
+            self._addressing = Addressing(options.get("listens", {}), self.tell)
         super().use(project)
         self._recogniser.expect(expected(project))
         self._look_for_phrases()
+
+    def idle(self) -> float | None:
+        """Shows whether they listen, as it changes; in how many seconds it does by itself."""
+        now = self.clock()
+        because, until = self._addressing.state(now)
+        if own := self._own_voice.during(now, now + TICK):
+            because, until = SPEAKS, min(u.end for u in own)
+        shown: dict[str, object] = {"listening": because not in (SPEAKS, NOBODY), "because": because}
+        if shown != self._shown:
+            self._shown = shown
+            self.publish("listening", shown)
+        return None if until == float("inf") else max(TICK, until - now)
+
+    def _take(self, route: str, message: Message) -> None:
+        """Faces and touches count when they come, however long a sound before them takes."""
+        if take := self._addressing.routes().get(route):
+            take(message.body, self.clock())
+        super()._take(route, message)
 
     def _look_for_phrases(self) -> None:
         """Say which phrases of `interrupts` no behaviour has: nobody could stop the robot by them."""
@@ -93,8 +122,10 @@ class Ears(Module):
         """What others may have said in a sound that has just ended, none where nobody did."""
         began = self.came - sound.duration
         own = self._own_voice.during(began, self.came)
-        found = self._words(sound.without([(u.begin - began, u.end - began) for u in own]))
-        if found or not own:
+        deaf = [*((u.begin, u.end) for u in own), *self._addressing.closed(began, self.came)]
+        left = sound.without([(begin - began, end - began) for begin, end in deaf])
+        found = self._words(left) if not deaf or left.samples.strip(b"\0") else []
+        if found or not deaf:
             return found
         phrase = next((p for one in self._words(sound) if (p := self._interrupting(one.text, own))), "")
         return [Hypothesis(phrase)] if phrase else []

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
-from math import degrees
+from math import degrees, tan
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,8 @@ NEW_VISITOR_GAP = 1.0
 """After how long without a face the next one is a new visitor's [s]."""
 UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvException"
 """What the modules of 2015 said where a face has no name, where there is none to name, and where OpenCV failed."""
+FACE_WIDTH = 0.16
+"""What the detector's box around a grown-up's face spans [m], where `lumen.yaml` does not say."""
 MAX_NAME_CHARACTERS = 60
 """How long a name may be under which a face is learnt."""
 
@@ -132,7 +134,7 @@ class Eyes(Module):
 
     def _face(self, frame: Frame, face: Box, now: float) -> None:
         x, y = self._place(frame, face)
-        self.publish("face", {"x": round(x), "y": round(y), **_when(frame)})
+        self.publish("face", {"x": round(x), "y": round(y), **self._distance(frame, face), **_when(frame)})
         self.publish("face_tracking", {"x": x, "y": y, **_when(frame)})
         if self._left:
             self._learn(frame, face)
@@ -163,6 +165,14 @@ class Eyes(Module):
             return x, y
         x, y = x * camera.width / width, y * camera.height / height
         return min(max(x, 0.0), float(camera.width)), min(max(y, 0.0), float(camera.height))
+
+    def _distance(self, frame: Frame, face: Box) -> dict[str, float]:
+        """How far it is by its width in the image, of a body whose camera is known."""
+        camera = self.project.body.camera
+        if camera is None:
+            return {}
+        share = 2 * tan(camera.horizontal_fov / 2) * face.width / frame.grey.shape[1]
+        return {"distance": round(self.settings.options.get("face_width", FACE_WIDTH) / share, 2)}
 
     def _learn(self, frame: Frame, face: Box) -> None:
         self._gallery.enrol(self._learning, frame.grey, face)

@@ -29,6 +29,7 @@ function Senses({ robot }) {
     <${Fact} name=${t("heat")} value=${heat === null ? t("unknown") : `${fixed(heat)} °C${Array.isArray(hot) ? ` ${hot[0]}` : ""}`}
       state=${heat > HOT ? "bad" : "well"} words=${heat > HOT ? t("heat.high") : ""} />
     <${Fact} name=${t("sonar")} value=${sonar.leftSensor == null && sonar.rightSensor == null ? t("unknown") : `${t("left")} ${metres(sonar.leftSensor)} · ${t("right")} ${metres(sonar.rightSensor)}`} />
+    ${robot.ears && html`<${Fact} name=${t("ears")} value=${t(`ears.${robot.ears.because}`)} />`}
     <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : `${fixed(realtime * 100)} %`}
       state=${realtime < SLOW ? "bad" : "well"} words=${realtime < SLOW ? t("realtime.slow") : ""} />
     <${Fact} name=${t("queues")} value=${robot.queues ? t("queues.both", robot.queues) : t("unknown")} /></dl>`;

@@ -36,6 +36,7 @@ export default {
   "model": "Language model", "model.on": "answers visitors", "model.off": "silenced", "command.model": "Language model",
   "autonomy": "Steps that need a GO", "autonomy.ask": "ask me", "autonomy.alone": "go alone",
   "body": "Robot", "battery": "Battery", "battery.low": "low", "heat": "Hottest", "heat.high": "hot", "sonar": "Sonar", "left": "left", "right": "right",
+  "ears": "Ears", "ears.always": "listen", "ears.face": "listen: a face is near and looks", "ears.touch": "listen: somebody touched the robot", "ears.speaks": "deaf: the robot speaks", "ears.nobody": "deaf: nobody looks or touches",
   "realtime": "Real time", "realtime.slow": "slow", "queues": "Queues", "queues.both": "events: {events}, commands: {commands}",
   "processes": "Processes and modules", "processes.none": "All of it is one process.", "process.here": "here", "process.gone": "gone", "process.leaves": "has left", "process.asks": "begins", "heard.ago": "last word",
   "last.reload": "Files", "verdict.applied": "active", "verdict.refused": "refused", "verdict.waiting": "waiting", "verdict.staged": "staged", "verdict.unchanged": "unchanged",

@@ -36,6 +36,7 @@ export default {
   "model": "Model bahasa", "model.on": "menjawab pengunjung", "model.off": "dibungkam", "command.model": "Model bahasa",
   "autonomy": "Langkah yang perlu izin", "autonomy.ask": "tanya saya", "autonomy.alone": "jalan sendiri",
   "body": "Robot", "battery": "Baterai", "battery.low": "rendah", "heat": "Terpanas", "heat.high": "panas", "sonar": "Sonar", "left": "kiri", "right": "kanan",
+  "ears": "Telinga", "ears.always": "mendengarkan", "ears.face": "mendengarkan: ada wajah dekat yang menatap", "ears.touch": "mendengarkan: robot disentuh", "ears.speaks": "tidak mendengar: robot sedang berbicara", "ears.nobody": "tidak mendengar: tidak ada yang menatap atau menyentuh",
   "realtime": "Waktu nyata", "realtime.slow": "lambat", "queues": "Antrean", "queues.both": "peristiwa: {events}, perintah: {commands}",
   "processes": "Proses dan modul", "processes.none": "Semuanya satu proses.", "process.here": "ada", "process.gone": "hilang", "process.leaves": "sudah pergi", "process.asks": "mulai", "heard.ago": "kabar terakhir",
   "last.reload": "Berkas", "verdict.applied": "aktif", "verdict.refused": "ditolak", "verdict.waiting": "menunggu", "verdict.staged": "siap", "verdict.unchanged": "tidak berubah",
