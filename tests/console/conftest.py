@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -64,12 +63,9 @@ class Hosted:
             one.node.loop.runtime.approvals.autonomy,
         )
 
-    def restored(self) -> bool:
-        """Whether it is as it was begun, at the latest once a robot that rests has gone on."""
-        if self.exhibition.node.robot.server.hold.stopped and self.exhibition.context == self._begun[1]:
-            self.exhibition.resume()
-            with suppress(AssertionError):
-                until(lambda: self._state == self._begun)
+    @property
+    def unchanged(self) -> bool:
+        """Whether it is as it was begun."""
         return self._state == self._begun
 
     def close(self) -> None:
@@ -88,7 +84,7 @@ class Shared:
         self._served: Served | None = None
 
     def hosted(self) -> Hosted:
-        if self._hosted and not self._hosted.restored():
+        if self._hosted and not self._hosted.unchanged:
             self.close()
         if self._hosted is None:
             self._hosted = Hosted(self._root)
