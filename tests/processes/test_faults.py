@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -11,6 +11,7 @@ import pika
 import pytest
 
 import lumen
+from lumen.app.parts import guard
 from lumen.bus import connect
 from lumen.cli.main import main
 from lumen.language.commands import Rest
@@ -30,8 +31,8 @@ def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
     """Starts `lumen run --only …` in a process of its own."""
     with ExitStack() as stack:
 
-        def run(only: str, *words: str, speed: str = SPEED) -> Guarded[str]:
-            line = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", speed]
+        def run(only: str, *words: str, speed: str = SPEED, program: Sequence[str] = ("-m", "lumen")) -> Guarded[str]:
+            line = [sys.executable, *program, "run", str(copy), "--robot", "recording", "--speed", speed]
             line += ["--bus", broker.url, "--only", only, *words]
             process: Guarded[str] = Guarded(line, text=True, stdin=DEVNULL, stdout=PIPE, stderr=STDOUT)
             stack.callback(process.wait, 30)
@@ -61,9 +62,21 @@ def motions(member: Member) -> list[str]:
     return [command.motion.name for _, command in member.body.performed if isinstance(command, Perform)]
 
 
+PATIENCE = 120.0
+"""How long a brain may be away [s]: a crowded machine takes more than the usual 5 s to begin it again."""
+PATIENT = f"""
+import sys
+from lumen.cli.main import main
+from lumen.runtime import loop
+loop.BRAIN_LOST_AFTER = {PATIENCE}
+sys.exit(main(sys.argv[1:]))
+"""
+
+
 def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_between(
-    troupe: Troupe, start: Start
+    troupe: Troupe, start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(guard, "BRAIN_TIMEOUT", PATIENCE)
     robot, visitor = troupe.join("robot"), troupe.join("visitor", story="dancing")
     brain = start("brain", "--story", "dancing")
     troupe.until(lambda: "dance" in motions(robot))
@@ -72,11 +85,10 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
     brain.wait()
     tour = troupe.folder / "behaviors" / "tour.yaml"
     tour.write_text(tour.read_text("utf-8").replace(SORRY, PARDON), "utf-8")
-    again = start("brain", "--story", "dancing")
+    again = start("brain", "--story", "dancing", program=("-c", PATIENT))
     troupe.until(lambda: visitor.process.over)
     assert not visitor.process.failed
-    # A brain that takes 5 s to begin again has let the robot rest meanwhile: its goodbye may end in an apology then.
-    assert motions(robot) in (["dance", "goodbye"], ["dance"])
+    assert motions(robot) == ["dance", "goodbye"]
     again.send_signal(signal.SIGTERM)
     said = again.communicate(timeout=60)[0]
     assert "this one goes on from there, in dance" in said
