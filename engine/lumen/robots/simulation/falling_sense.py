@@ -29,9 +29,9 @@ class FallingSense:
     def __init__(self, sensors: BodySensors, mass_model: MassModel, legs: LegGeometry) -> None:
         self._sensors, self._mass_model = sensors, mass_model
         self._lowest = _LOWEST * scale_of(legs)
-        toe, self._heel, outer, inner = legs.sole_size
-        low, high = ((-self._heel, -inner), (-self._heel, -outer)), ((toe, outer), (toe, inner))
-        self._low, self._high = np.array(low), np.array(high)
+        self._sole = legs.sole_size
+        self._ahead = 0.0
+        self._left, self._right = (0.0, 0.0), (0.0, 0.0)
         self._speed = np.zeros((2, 3))
         self._felt = False
         self.axes: NDArray[np.float64] = np.eye(3)
@@ -48,31 +48,30 @@ class FallingSense:
     @property
     def ahead(self) -> float:
         """How far the centre of mass is in front of the ankles [m]."""
-        return float(self.mass[:, 0].mean())
+        return self._ahead
 
     @property
     def behind_heels(self) -> float:
         """How far the DCM is behind the rear edge of the feet [m], negative above them."""
-        return float(-self._heel - self.dcm[:, 0].max())
+        return -self._sole[1] - max(self._left[0], self._right[0])
 
     @property
     def beyond(self) -> tuple[float, float, float, float]:
         """How far the DCM is beyond front, rear, left and right edge of both feet together [m], negative inside."""
-        low, high = self._low - self.dcm, self._high - self.dcm
-        front, left = -high.max(axis=0)
-        rear, right = low.min(axis=0)
-        return float(front), float(rear), float(left), float(right)
+        toe, heel, outer, inner = self._sole
+        (left_x, left_y), (right_x, right_y) = self._left, self._right
+        ahead, behind = toe - min(left_x, right_x), -heel - max(left_x, right_x)
+        return -ahead, behind, -max(outer - left_y, inner - right_y), min(-inner - left_y, -outer - right_y)
 
     @property
     def aside(self) -> float:
         """How far the DCM is to the left of the middle between the feet [m]."""
-        return float(self.dcm[:, 1].mean())
+        return (self._left[1] + self._right[1]) / 2
 
     @property
     def far(self) -> tuple[float, float]:
         """How far the DCM is from left and right ankle [m]."""
-        left, right = self.dcm.tolist()
-        return hypot(*left), hypot(*right)
+        return hypot(*self._left), hypot(*self._right)
 
     def feel(self) -> None:
         """Take note of this control period."""
@@ -85,5 +84,8 @@ class FallingSense:
         before = self.mass if self._felt else here
         self._speed = _SMOOTHING * self._speed + (1 - _SMOOTHING) * (here - before) / CONTROL_PERIOD
         self.mass, self._felt = here, True
-        self.omega = sqrt(GRAVITY / max(float(here[:, 2].max()), self._lowest))
+        (left, _, left_height), (right, _, right_height) = here.tolist()
+        self._ahead = (left + right) / 2
+        self.omega = sqrt(GRAVITY / max(left_height, right_height, self._lowest))
         self.dcm = here[:, :2] + self._speed[:, :2] / self.omega
+        self._left, self._right = self.dcm.tolist()

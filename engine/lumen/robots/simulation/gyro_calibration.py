@@ -25,5 +25,5 @@ class GyroCalibration:
         """Take note of what it tells in a control period [rad/s]; `at_rest`: nothing moves the robot on purpose."""
         self._told[self._next] = rates if at_rest else np.inf
         self._next = (self._next + 1) % REST
-        if at_rest and np.ptp(self._told, axis=0).max() < REST_SPREAD:
+        if at_rest and max((np.maximum.reduce(self._told) - np.minimum.reduce(self._told)).tolist()) < REST_SPREAD:
             self.bias = self.bias + (rates - self.bias) / LEARNING_PERIODS

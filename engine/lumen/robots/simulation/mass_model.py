@@ -34,7 +34,8 @@ class MassModel:
         self._torso_is_world = bool(root and not at.any() and turned[0] == 1.0)
         self._whole = self.model.body_rootid[self._torso]
         self._order = np.array(list(self._places.values()))
-        self._soles = [self.model.site(body.roles.soles[side]).id for side in SIDES if side in body.roles.soles]
+        soles = [body.roles.soles[side] for side in SIDES if side in body.roles.soles]
+        self._soles = np.array([self.model.site(name).id for name in soles], np.intp)
 
     def pose(self, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The centre of mass (3,) and the points of both soles below the ankles (2, 3) [m], in the torso's frame.
@@ -44,7 +45,9 @@ class MassModel:
         self._data.qpos[self._order] = angles
         mujoco.mj_kinematics(self.model, self._data)
         mujoco.mj_comPos(self.model, self._data)
-        return self._seen(self._data.subtree_com[self._whole]), self._seen(self._data.site_xpos[self._soles])
+        return self._seen(self._data.subtree_com[self._whole]), self._seen(
+            self._data.site_xpos.take(self._soles, axis=0)
+        )
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
         """Where it is (3,) [m] in the torso's frame; joints that are not named [rad] stay as they were last."""

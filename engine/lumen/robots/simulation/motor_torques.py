@@ -25,11 +25,8 @@ class MotorTorques:
 
     def limit(self, allowed: NDArray[np.float64], volts: float) -> NDArray[np.float64]:
         """Least and greatest torque [N m], Shape (motors, 2): those `allowed`, or what `volts` give at this speed."""
-        supply = volts / NOMINAL_VOLTAGE
-        turning = self._world.speeds[self._world.driven] / self._fastest
-        most = self._stall * np.maximum(supply - turning, 0.0)
-        least = -self._stall * np.maximum(supply + turning, 0.0)
-        limits: NDArray[np.float64] = np.stack(
-            (np.maximum(allowed[:, 0], least), np.minimum(allowed[:, 1], most)), axis=1
-        )
+        supply, limits = volts / NOMINAL_VOLTAGE, np.empty((len(self._stall), 2))
+        turning = self._world.motor_speeds / self._fastest
+        np.maximum(allowed[:, 0], -self._stall * np.maximum(supply + turning, 0.0), out=limits[:, 0])
+        np.minimum(allowed[:, 1], self._stall * np.maximum(supply - turning, 0.0), out=limits[:, 1])
         return limits

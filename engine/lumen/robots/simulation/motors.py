@@ -38,6 +38,7 @@ class Motors:
         self.effort = np.zeros(len(self.names))
         self.effort[world.driven] = self._effort[:, 1]
         self.stiffness = np.ones(len(self.names))
+        self._allowed = self._effort
         self.goal: JointVector = world.angles.copy()
         self.command: JointVector = self.goal.copy()
         self._sway = np.zeros(len(self.names))
@@ -95,6 +96,7 @@ class Motors:
             self.command[limp] = angles[limp]
             self._sent.clear()
         self.stiffness[chosen] = stiffness
+        self._allowed = self.stiffness[self._world.driven, None] * self._effort
         self._limits_of_torque()
 
     def drive(self, trim: JointVector, dt: float) -> None:
@@ -111,6 +113,5 @@ class Motors:
 
     def _limits_of_torque(self) -> None:
         """Let each motor give what its stiffness allows, and what it can at the speed it turns at."""
-        allowed = self.stiffness[self._world.driven, None] * self._effort
         volts = self.voltage if self._supplied else NOMINAL_VOLTAGE
-        self._world.model.actuator_forcerange[self._world.actuators] = self._torques.limit(allowed, volts)
+        self._world.model.actuator_forcerange[self._world.actuators] = self._torques.limit(self._allowed, volts)

@@ -59,7 +59,7 @@ class BodySensors:
         angles, step = self._world.angles, self._step
         errors = self._random.standard_normal(len(angles) + 3)
         angles += self._noise * errors[3:]
-        self.angles = np.round(angles / step) * step if step else angles
+        self.angles = np.rint(angles / step) * step if step else angles
         roll, pitch, yaw = self._gyrometer.feel(self._rates.feel(), errors[:3], at_rest=at_rest)
         self.gyro, self.turning = (roll, pitch), yaw
         self._turn(roll, pitch, yaw)

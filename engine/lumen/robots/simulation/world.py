@@ -54,10 +54,11 @@ class World:
         self._speeds = np.array([j.dofadr[0] for j in joints])
         loose = {i: name for i, name in enumerate(body.joints) if backlash and name not in body.hands}
         plays = [self.model.joint(f"{prefix}/{name}{PLAY_SUFFIX}") for name in loose.values()]
-        self._loose, self._plays = list(loose), [p.qposadr[0] for p in plays]
+        self._loose, self._plays = np.array(list(loose), np.intp), np.array([p.qposadr[0] for p in plays], np.intp)
         driven = [i for i, name in enumerate(body.joints) if name not in body.shared]
         names = list(body.joints)
         self.driven = np.array(driven)
+        self._driving = self._speeds[driven]
         self.actuators = np.array([self.model.actuator(f"{prefix}/{names[i]}").id for i in driven])
         roles = body.roles
         self.torso = self.model.body(f"{prefix}/{roles.torso}").id
@@ -90,8 +91,9 @@ class World:
     @property
     def angles(self) -> JointVector:
         """Where the joints are, behind the play of their gears."""
-        measured: JointVector = self.data.qpos[self._angles]
-        measured[self._loose] += self.data.qpos[self._plays]
+        qpos = self.data.qpos
+        measured: JointVector = qpos.take(self._angles)
+        measured[self._loose] += qpos.take(self._plays)
         return measured
 
     @property
@@ -99,6 +101,12 @@ class World:
         """How fast their motors turn them, per second."""
         measured: JointVector = self.data.qvel[self._speeds]
         return measured
+
+    @property
+    def motor_speeds(self) -> NDArray[np.float64]:
+        """How fast the motors of `actuators` turn their joints, per second."""
+        speeds: NDArray[np.float64] = self.data.qvel.take(self._driving)
+        return speeds
 
     @property
     def torques(self) -> JointVector:
