@@ -147,8 +147,11 @@ def _processor_time(pid: int) -> float:
 
 
 def cold_lint() -> str:
-    imports, took = lint.cold()
-    return f"{took / imports:.2f} x"
+    imports, nothing, same, changed = lint.cold()
+    each = (
+        f"{took / imports:.2f} x {what}" for took, what in ((nothing, "nothing kept"), (changed, "one file changed"))
+    )
+    return f"{', '.join(each)}; {same / imports:.2f} x the same files"
 
 
 def toured() -> str:

@@ -1,9 +1,11 @@
 """How long `lumen lint` takes: cold beside the imports of yaml and jsonschema, over more and more files, and warm.
 
 Cold is a process of its own, by CPU time, run in turn with `python -c "import yaml, jsonschema"` on the same machine;
-medians. Grown projects have so many behaviours and motions beside the shipped ones. Warm is what `--watch` and an
-editor pay: one value of the project has changed, in a file of each kind, and everything else is remembered. Last comes
-`lumen lint --watch` itself, from the file's replacement to the line that says it waits again.
+medians. It is run where nothing is kept, where what was found in the very same files is, and where that is kept and one
+of the files is another since, so that all are judged. Python has compiled everything before. Grown projects have so
+many behaviours and motions beside the shipped ones. Warm is what `--watch` and an editor pay: one value of the project
+has changed, in a file of each kind, and everything else is remembered. Last comes `lumen lint --watch` itself, from the
+file's replacement to the line that says it waits again.
 
     python benchmarks/lint.py
 """
@@ -18,7 +20,8 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -26,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.guarded import DEVNULL, PIPE, Guarded, run_guarded
 
 from lumen.loading.files import PROJECT_FOLDERS, read_files
+from lumen.loading.kept_contents import SETTLED_NS
 from lumen.loading.packaged import MAIN_FILE
 from lumen.rules import check_files
 
@@ -67,10 +71,11 @@ keyframes:
 
 def main() -> int:
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
-    imports, lint = cold()
+    imports, nothing, same, changed = cold()
     print(f"\ncold, CPU time, median of {RUNS}:")
     print(f"  python -c 'import yaml, jsonschema'   {imports:6.3f} s")
-    print(f"  lumen lint, the shipped project       {lint:6.3f} s   {lint / imports:.2f} x the imports")
+    for what, took in (("nothing kept", nothing), ("one file changed", changed), ("the same files", same)):
+        print(f"  {f'lumen lint, {what}':37s} {took:6.3f} s   {took / imports:.2f} x the imports")
     print("\ngrown projects, CPU time in one process:")
     for count in (250, 500, 1_000):
         files = grown(count)
@@ -89,18 +94,36 @@ def shown(took: list[float]) -> str:
     return f"{1e3 * statistics.median(took):4.0f} ms {1e3 * max(took):4.0f} ms"
 
 
-def cold() -> tuple[float, float]:
-    """The medians of the imports and of lint [s of CPU]; the two take turns."""
-    imports, lint = [], []
-    for _ in range(RUNS):
-        imports.append(process(sys.executable, "-c", "import yaml, jsonschema"))
-        lint.append(process(sys.executable, "-m", "lumen", "lint", str(ROOT)))
-    return statistics.median(imports), statistics.median(lint)
+def cold() -> tuple[float, ...]:
+    """The medians of the imports and of lint [s of CPU]: nothing kept, the same files, one changed; they take turns."""
+    took: list[tuple[float, ...]] = []
+    with copied() as root, tempfile.TemporaryDirectory() as cache:
+        lint = sys.executable, "-m", "lumen", "lint", str(root)
+        for n in range(RUNS):
+            shutil.rmtree(cache, ignore_errors=True)
+            imports = process(cache, sys.executable, "-c", "import yaml, jsonschema")
+            time.sleep(SETTLED_NS / 1e9)  # what changed a moment ago is not kept
+            kept = [process(cache, *lint) for _ in range(2)]
+            file, before, value = EDITS[0]
+            (root / file).write_bytes(edited((root / file).read_bytes(), before, value, n))
+            took.append((imports, *kept, process(cache, *lint)))
+    return tuple(map(statistics.median, zip(*took, strict=True)))
 
 
-def process(*words: str) -> float:
-    """The CPU time of a process [s]."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
+@contextmanager
+def copied() -> Iterator[Path]:
+    """A copy of the shipped project."""
+    with tempfile.TemporaryDirectory() as name:
+        root = Path(name)
+        shutil.copy(ROOT / MAIN_FILE, root)
+        for folder in PROJECT_FOLDERS:
+            shutil.copytree(ROOT / folder, root / folder)
+        yield root
+
+
+def process(cache: str, *words: str) -> float:
+    """The CPU time of a process [s], which keeps in `cache` what it can make again."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine"), "XDG_CACHE_HOME": cache}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     run_guarded(words, check=True, stdout=DEVNULL, env=environment, cwd=tempfile.gettempdir())
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -137,12 +160,8 @@ def warm(file: str, before: str, value: str) -> list[float]:
 
 def watched() -> list[float]:
     """How long `lumen lint --watch` takes to answer the same edits [s]."""
-    with tempfile.TemporaryDirectory() as name:
-        root = Path(name)
-        shutil.copy(ROOT / MAIN_FILE, root)
-        for folder in PROJECT_FOLDERS:
-            shutil.copytree(ROOT / folder, root / folder)
-        command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", name]
+    with copied() as root:
+        command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", str(root)]
         environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
         with Guarded(command, stdout=PIPE, text=True, env=environment) as process:
             assert process.stdout

@@ -1,13 +1,16 @@
 """`--imperfections`: a simulated robot that falls short in other ways than lumen.yaml says."""
 
 import argparse
+from typing import TYPE_CHECKING
 
-from lumen.app.setup import Setup, set_up
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.imperfections import IMPERFECTIONS, PERFECT, Imperfections, only
-from lumen.language.projects import Project
-from lumen.language.stories import Story
+
+if TYPE_CHECKING:
+    from lumen.app.setup import Setup
+    from lumen.language.projects import Project
+    from lumen.language.stories import Story
 
 
 def configure_imperfections(parser: argparse.ArgumentParser) -> None:
@@ -30,8 +33,10 @@ def imperfections_of(text: str | None) -> Imperfections | None:
     return only(names)
 
 
-def set_up_robot(options: argparse.Namespace, project: Project, story: Story | None) -> Setup:
+def set_up_robot(options: argparse.Namespace, project: "Project", story: "Story | None") -> "Setup":
     """The robot that the options of `lumen run` ask for; raises UsageError where they do not go together."""
+    from lumen.app.setup import set_up  # only who has a robot waits for it
+
     lacking = imperfections_of(options.imperfections)
     if lacking and options.robot != "simulation":
         raise UsageError("--imperfections are those of a simulated robot: leave out --robot")

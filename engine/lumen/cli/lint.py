@@ -14,7 +14,6 @@ from lumen.cli.terminal import coloured
 from lumen.cli.workers_option import configure_workers
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
-from lumen.rules.selection import selected
 from lumen.upkeep.garbage import gc_paused
 
 
@@ -37,6 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--fix", action="store_true", help="repair what can be repaired without asking")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
     add("--watch", action="store_true", help="lint again whenever a file is saved, until Ctrl-C")
+    add("--no-cache", action="store_true", help="judge files that were judged before, too, and keep nothing")
     add("--whole", action="store_true", help="of files that are named, judge their whole projects")
     configure_model(parser)
     add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     _consistent(options)
     projects = lint_targets(options.paths, options.stdin_filename, whole=options.whole)
     use_model(options.model, (each.root for each in projects))
-    judge = _judge(options.against, wanted)
+    judge = _judge(options.against, wanted, kept=not (options.no_cache or options.watch))
     if options.watch:
         from lumen.cli.watching import watch
 
@@ -79,12 +79,15 @@ def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namesp
     return [each for each, _ in both]
 
 
-def _judge(against: str | None, wanted: Wanted) -> FindingsOf:
-    """What finds what is wanted in a project, what a reload from `against` would refuse, move or forget included."""
+def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
+    """What finds what is wanted in a project, what a reload from `against` would refuse, move or forget included.
+
+    With `kept` also from what was found before in files that are the same; who watches them has them in memory.
+    """
 
     def judge(what: LintTarget, files: Mapping[str, bytes] | None = None) -> Findings:
         with gc_paused():
-            found = lint(what, wanted, files)
+            found = lint(what, wanted, files, kept=kept)
         if against is None:
             return found
         from lumen.app.lint.reloading import compared
@@ -96,6 +99,10 @@ def _judge(against: str | None, wanted: Wanted) -> FindingsOf:
 
 def _wanted(options: argparse.Namespace) -> Wanted:
     """Which findings --select and --ignore leave."""
+    if options.select is None and not options.ignore:
+        return lambda diagnostic: True
+    from lumen.rules.selection import selected  # which knows all codes, and so all rules
+
     chosen = selected(options.select) if options.select is not None else None
     left_out = selected(options.ignore or ())
 

@@ -19,6 +19,7 @@ from lumen.language.robots import Body
 from lumen.language.stories import Story
 from lumen.language.words import Words
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.looks import Looks
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import Settings
 
@@ -32,7 +33,8 @@ class ProjectDraft:
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
     and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
     `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
-    files that are not read. `today` is the day on which somebody looks, None where that does not matter.
+    files that are not read; `looks` is told of each of them. `today` is the day on which somebody looks, None where
+    that does not matter.
     """
 
     files: Mapping[str, bytes]
@@ -58,6 +60,7 @@ class ProjectDraft:
     own_motions: frozenset[str] = frozenset()
     fleet: Fleet | None = None
     today: date | None = None
+    looks: Looks = field(default_factory=Looks)
 
     @property
     def main(self) -> DocumentReport | None:

@@ -9,6 +9,7 @@ from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot, chosen_robot
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import read_files
+from lumen.loading.looks import Looks
 from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft
 from lumen.rules.checks import CHECKS
@@ -27,29 +28,33 @@ def check(path: str | Path | None = None) -> list[Diagnostic]:
 
 
 def check_files(
-    root: Path, files: Mapping[str, bytes], between: Callable[[], None] = lambda: None
+    root: Path,
+    files: Mapping[str, bytes],
+    between: Callable[[], None] = lambda: None,
+    looks: Looks | None = None,
 ) -> tuple[Project | None, tuple[Diagnostic, ...]]:
     """The project that these files make, None where they have errors, and everything wrong with them.
 
     Of several robots it is that of the one that is chosen among the files; without a choice all are looked at, and it
     is that of the first. `between` is called between one rule and the next: whoever does not want to know any more
-    raises what they catch.
+    raises what they catch. `looks` is told what was looked at beside the files.
     """
-    found, diagnostics = _checked(root, files, between)
+    looks = looks or Looks()
+    found, diagnostics = _checked(root, files, between, looks)
     if found.settings and not chosen_robot(files):
         others = list(found.settings.robots)[1:]
-        views = [_checked(root, as_robot(files, robot), between)[1] for robot in others]
+        views = [_checked(root, as_robot(files, robot), between, looks)[1] for robot in others]
         diagnostics = together((diagnostics, *views))
     project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
     return project, diagnostics
 
 
 def _checked(
-    root: Path, files: Mapping[str, bytes], between: Callable[[], None]
+    root: Path, files: Mapping[str, bytes], between: Callable[[], None], looks: Looks
 ) -> tuple[ProjectDraft, tuple[Diagnostic, ...]]:
     """What these files make, and everything wrong with them, as one robot reads them."""
     found = draft(files)
-    found.root, found.today = root, date.today()
+    found.root, found.today, found.looks = root, date.today(), looks
     for rule in CHECKS:
         between()
         rule.check(found)

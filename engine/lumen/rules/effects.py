@@ -1,7 +1,5 @@
 """What a file may say, and nothing comes of it: whoever wrote it should know."""
 
-from pathlib import Path
-
 from lumen.language.commands import PlaySound
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
@@ -25,10 +23,10 @@ def check(draft: ProjectDraft) -> None:
         for site in action_sites(machine):
             if isinstance(site.step.action, PlaySound) and draft.root is not None:
                 path = first(report, (*site.step.where, "sound", "file"), (*site.step.where, "sound"))
-                _sound(site.step.action.file, path, report, draft.root)
+                _sound(site.step.action.file, path, report, draft)
     for name, motion in draft.motions.items():
         if draft.root is not None:
-            _sounds(motion, draft.report("motions", name), draft.root)
+            _sounds(motion, draft.report("motions", name), draft)
 
 
 def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
@@ -46,16 +44,18 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
             report(NO_EFFECT, (*state.where, "onReload"), message, hint, key=True)
 
 
-def _sounds(motion: MotionDefinition, report: DocumentReport, root: Path) -> None:
+def _sounds(motion: MotionDefinition, report: DocumentReport, draft: ProjectDraft) -> None:
     for cue in motion.cues:
         if cue.kind == "sound" and cue.where[-1:] == ("sound",):
-            _sound(str(cue.value), cue.where, report, root)
+            _sound(str(cue.value), cue.where, report, draft)
 
 
-def _sound(file: str, path: NodePath, report: DocumentReport, root: Path) -> None:
+def _sound(file: str, path: NodePath, report: DocumentReport, draft: ProjectDraft) -> None:
     """A sound file that is not in the project's folder, or can't be played."""
+    assert draft.root is not None
+    draft.looks.at(draft.root / file)
     try:
-        sound_duration(root, file)
+        sound_duration(draft.root, file)
     except OSError:
         message = f"there is no file {file} in the project: nothing is heard here"
         report(MISSING_SOUND, path, message, "put the file there, or name one that is", cause=f"sound {file}")

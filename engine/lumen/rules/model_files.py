@@ -4,26 +4,33 @@ import os
 from pathlib import Path, PurePosixPath
 
 from lumen.language.diagnostics import nearest
+from lumen.loading.draft import ProjectDraft
 
 _MODELS = "models"
 
 
-def outside(root: Path | None, folder: str, name: str) -> bool:
-    """Whether a name leads out of models/, or through a link out of the project in `root`; None is no folder at all."""
+def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
+    """Whether a name leads out of models/, or through a link out of the project where that lies in a folder."""
     path = os.path.normpath(os.path.join(_MODELS, folder, name))
     if "\\" in name or "\0" in name or not path.startswith(_MODELS + os.sep):
         return True
-    if root is None:
+    if draft.root is None:
         return False
-    project = os.path.realpath(root)
+    draft.looks.at(draft.root / path)
+    project = os.path.realpath(draft.root)
     return not os.path.realpath(os.path.join(project, path)).startswith(project.rstrip(os.sep) + os.sep)
 
 
-def missing(root: Path | None, folder: str, name: str) -> str:
+def missing(draft: ProjectDraft, folder: str, name: str) -> str:
     """What to do about a file in models/ that is not there; empty where it is, or where nobody knows."""
-    if root is None or not (root / _MODELS).is_dir() or _there(root / _MODELS / folder / name):
+    if draft.root is None:
         return ""
-    beside = root / _MODELS / folder
+    models = draft.root / _MODELS
+    beside = models / folder
+    for path in (models, beside, beside / name):
+        draft.looks.at(path)
+    if not models.is_dir() or _there(beside / name):
+        return ""
     near = nearest(PurePosixPath(name).name, [path.name for path in beside.glob("*")] if beside.is_dir() else [])
     return f"did you mean `{near}`?" if near else "put it there, or delete what names it"
 

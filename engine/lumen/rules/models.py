@@ -14,7 +14,7 @@ from lumen.language.roles import Roles
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import MAX_FILE_BYTES, Unreadable
 from lumen.loading.memoization import memoize
-from lumen.loading.packaged_models import in_package, package_file
+from lumen.loading.packaged_models import in_package
 from lumen.loading.regular_files import read_regular
 from lumen.rules.mjcf_elements import ModelElement, ModelFault, mjcf_elements
 from lumen.rules.model_files import missing, outside
@@ -73,10 +73,11 @@ class _ModelReader:
     def content(self, file: str) -> bytes | None:
         """What a file holds; one in a folder within models/, too."""
         if in_package(file):
-            path = package_file(file.removeprefix("models/"))
+            path = self.draft.looks.package_file(file.removeprefix("models/"))
             return read_regular(path, MAX_FILE_BYTES) if path else None
         content = self.draft.files.get(file, self.draft.lent.get(file))
         if content is None and self.draft.root:
+            self.draft.looks.at(self.draft.root / file)
             try:
                 return read_regular(self.draft.root / file, MAX_FILE_BYTES)
             except OSError:
@@ -108,11 +109,11 @@ class _ModelReader:
     def found(self, model: str, element: ModelElement, folder: str, name: str) -> bool:
         """Whether a file that an element names lies in models/ and is there; reported where not."""
         place = model, element.line, element.column, len(element.name) + 1
-        if outside(self.draft.root, folder, name):
+        if outside(self.draft, folder, name):
             message = "this names a file outside of models/, and nothing that lies elsewhere is read"
             _say(self.draft, FOREIGN_FILE, *place, message, "put the file into models/, and name it from there")
             return False
-        if hint := missing(self.draft.root, folder, name):
+        if hint := missing(self.draft, folder, name):
             path = PurePosixPath("models", folder, name)
             _say(self.draft, BROKEN_MODEL, *place, f"there is no file {path}", hint)
         return not hint

@@ -7,7 +7,7 @@ from lumen.language.routes import Direction
 from lumen.language.verbs import verb_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.packaged_models import in_package, package_file
+from lumen.loading.packaged_models import in_package
 from lumen.loading.poses import UNKNOWN_POSTURE
 from lumen.loading.project import MISSING_FILE
 from lumen.loading.settings import said_at
@@ -71,7 +71,7 @@ def _published(draft: ProjectDraft, report: DocumentReport, path: NodePath, name
 
 def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
     if in_package(name):
-        if package_file(name) is None:
+        if draft.looks.package_file(name) is None:
             package, _, inner = name.partition(":")
             hint = "the files of a package are named as in its folder: PACKAGE:PATH"
             report(MISSING_FILE, path, f"no package `{package}` is installed that has a file `{inner}`", hint)

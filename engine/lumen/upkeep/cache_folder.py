@@ -4,7 +4,6 @@ import os
 import stat
 from contextlib import suppress
 from pathlib import Path
-from uuid import uuid4
 
 MAX_FILES = 64
 """How many files of a kind are kept where nothing else is said: those that were made or read last."""
@@ -32,7 +31,7 @@ class CacheFolder:
 
     def write(self, name: str, content: bytes) -> None:
         """Keep it, whole or not at all; the oldest go where there are too many."""
-        draft = self._folder / f".{uuid4().hex}"
+        draft = self._folder / f".{os.urandom(16).hex()}"
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             if not self._private():

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Protocol
 
 from lumen.app.lint.findings import Findings
+from lumen.app.lint.kept_findings import known_or_checked
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import MAX_FILE_BYTES, counts, read_files
 from lumen.loading.own_project import own_project
 from lumen.loading.packaged import MAIN_FILE, project_above
-from lumen.rules import check_files
 
 Wanted = Callable[[Diagnostic], bool]
 STDIN = "-"
@@ -62,19 +62,23 @@ def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: 
     return [LintTarget(root, frozenset(only or ())) for root, only in projects.items()]
 
 
-def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = None) -> Findings:
+def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = None, *, kept: bool = False) -> Findings:
     """The findings of a project that are wanted, those in files that nobody asked about counted.
 
-    `files` are what it holds, where somebody has read them already.
+    `files` are what it holds, where somebody has read them already. With `kept` also from what was found before.
     """
     files = what.files() if files is None else files
-    found = [d for d in checked(what.root, files) if wanted(d)]
+    found = [d for d in checked(what.root, files, kept=kept) if wanted(d)]
     shown = [d for d in found if what.shown(d)]
     return Findings(shown, files, str(what.root), what.only, len(found) - len(shown))
 
 
-def checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
-    """Everything wrong with these files."""
+def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tuple[Diagnostic, ...]:
+    """Everything wrong with these files; with `kept` also from what was found in the very same ones before."""
+    if kept:
+        return known_or_checked(root, files)
+    from lumen.rules import check_files  # not where everything is known
+
     return check_files(root, files)[1]
 
 

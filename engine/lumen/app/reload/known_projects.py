@@ -5,24 +5,20 @@ files of yesterday needs no process to read them. Only projects without errors a
 """
 
 import hashlib
-import os
 import pickle
 import sys
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 from lumen.app.reload.delta import Delta, DeltaDecoder
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import chosen_robot
+from lumen.loading.engine_files import engine, listed
 from lumen.loading.files import fingerprint
-from lumen.loading.packaged import schema_folder, shipped_root
 from lumen.upkeep.cache_folder import CacheFolder
 
-PACKAGE = Path(__file__).parents[2]
-"""The folder `lumen`."""
 MODELS = "models"
 """The folder of which lint asks which files there are, beside those that it reads."""
 _LEVEL = 1
@@ -48,29 +44,7 @@ def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
     """A name for all that the project depends on; of a file that is not read it counts which one is there."""
     digest = hashlib.sha256(f"{fingerprint(files)} {chosen_robot(files)} {engine()} {sys.version}".encode())
-    for path, line in sorted(_listed(root / MODELS)):
+    for path, what, _ in sorted(listed(root / MODELS)):
         if f"{MODELS}/{path}" not in files:
-            digest.update(line)
+            digest.update(f"{path} {what}\n".encode("utf-8", "surrogateescape"))
     return digest.hexdigest()
-
-
-@cache
-def engine() -> str:
-    """A hash of which files the engine and what comes with it are: one that was edited is another engine."""
-    digest = hashlib.sha256()
-    for folder in (PACKAGE, schema_folder(), shipped_root() / MODELS):
-        for _, line in sorted(_listed(folder)):
-            digest.update(os.fsencode(folder) + line)
-    return digest.hexdigest()
-
-
-def _listed(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """The files below a folder, each with what tells it from what it was before; a link by where it leads."""
-    for here, folders, names in os.walk(folder):
-        folders[:] = [name for name in folders if name != "__pycache__"]
-        for name in names:
-            path = os.path.join(here, name)
-            status = os.lstat(path)
-            leads = os.readlink(path) if os.path.islink(path) else ""
-            within = os.path.relpath(path, folder)
-            yield within, os.fsencode(f"{within} {status.st_size} {status.st_mtime_ns} {leads}\n")

@@ -1,0 +1,81 @@
+"""What lint found in files before, byte for byte and by this very engine: they are not judged again.
+
+It lies in the user's own cache, under a hash of the project's files, of where they lie, of the day (a fact may be
+past), of the engine's own files and of Python. With it lies what lint looked at beside them: sounds, models, time
+zones, the libraries that were imported. Where one of these is another now, the files are judged; where one changed a
+moment before it was looked at, nothing is kept.
+"""
+
+import hashlib
+import json
+import os
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
+from lumen.loading.engine_files import engine
+from lumen.loading.looks import Looks, unchanged
+from lumen.upkeep.cache_folder import CacheFolder
+
+MAX_KEPT = 256
+"""How many verdicts are kept: of a few kB each."""
+
+
+def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
+    """Everything wrong with these files: what was kept of them where it still holds, else what lint finds."""
+    folder, name = CacheFolder("findings", MAX_KEPT), _name(root, files)
+    known = _read(folder.read(name))
+    if known is not None:
+        return known
+    from lumen.rules import check_files
+
+    looks = Looks()
+    found = check_files(root, files, looks=looks)[1]
+    _environment(looks)
+    if looks.settled() and name == _name(root, files):
+        kept = {"looks": looks.to_json(), "findings": [_plain(d) for d in found]}
+        folder.write(name, json.dumps(kept).encode())
+    return found
+
+
+def _name(root: Path, files: Mapping[str, bytes]) -> str:
+    """A name for all that is known before lint begins."""
+    about = (str(root), os.path.abspath(root), time.strftime("%Y-%m-%d"), engine(), sys.version, sys.path)
+    digest = hashlib.sha256(repr((about, os.environ.get("PYTHONTZPATH"))).encode("utf-8", "surrogatepass"))
+    for path, content in sorted(files.items()):
+        digest.update(repr((path, type(content).__name__, len(content))).encode("utf-8", "surrogatepass") + content)
+    return digest.hexdigest()
+
+
+def _environment(looks: Looks) -> None:
+    """Which time zones there are, and which libraries found what was found."""
+    from zoneinfo import TZPATH
+
+    libraries = {name.partition(".")[0] for name in sys.modules} - sys.stdlib_module_names
+    files = (getattr(sys.modules.get(name), "__file__", None) for name in sorted(libraries))
+    for path in (*TZPATH, *filter(None, files)):
+        looks.at(Path(path))
+
+
+def _plain(found: Diagnostic) -> list[Any]:
+    related = [[list(each.place), each.message] for each in found.related]
+    return [str(found.code), found.message, list(found.place), found.hint, found.severity.value, related]
+
+
+def _read(content: bytes | None) -> tuple[Diagnostic, ...] | None:
+    """The findings that are kept there, None where there are none or they hold no more."""
+    try:
+        kept = json.loads(content or b"null")
+        if not unchanged(kept["looks"]):
+            return None
+        return tuple(
+            Diagnostic(
+                code, message, Place(*place), hint, Severity(severity), tuple(Related(Place(*p), m) for p, m in related)
+            )
+            for code, message, place, hint, severity, related in kept["findings"]
+        )
+    except (ValueError, KeyError, TypeError, AttributeError):  # whatever is in the file: lint looks anew
+        return None

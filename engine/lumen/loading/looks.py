@@ -1,0 +1,61 @@
+"""What was looked at beside the files of a project: what is kept of them holds as long as all of it is as it was."""
+
+import os
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from lumen.loading.kept_contents import SETTLED_NS
+from lumen.loading.packaged_models import package_file
+
+Seen = tuple[str | int, ...]
+"""Where a path leads, and what tells what is there from what was there before; the times come last [ns]."""
+
+
+class Looks:
+    """Each path with what was there, and each file of a Python package with where it was."""
+
+    def __init__(self) -> None:
+        self._began = time.time_ns()
+        self._paths: dict[str, Seen] = {}
+        self._packages: dict[str, str] = {}
+
+    def at(self, path: Path) -> None:
+        """Say that what comes out depends on what is at this path: a file, which ones are in a folder, or nothing."""
+        self._paths.setdefault(os.path.abspath(path), _seen(path))
+
+    def package_file(self, mjcf: str) -> Path | None:
+        """The file of an installed package that `mjcf` names, None where there is none; it is looked at."""
+        path = package_file(mjcf)
+        self._packages[mjcf] = str(path or "")
+        if path:
+            self.at(path)
+        return path
+
+    def settled(self) -> bool:
+        """Whether the next change of each certainly shows in its times."""
+        times = (int(time) for _, *status in self._paths.values() for time in status[-2:])
+        return max(times, default=0) + SETTLED_NS < self._began
+
+    def to_json(self) -> Mapping[str, Any]:
+        return {"paths": self._paths, "packages": self._packages}
+
+
+def unchanged(looks: Mapping[str, Mapping[str, Sequence[str | int]]]) -> bool:
+    """Whether everything is as it was when these looks, as JSON, were taken."""
+    return all(list(_seen(Path(path))) == list(seen) for path, seen in looks["paths"].items()) and all(
+        str(package_file(mjcf) or "") == found for mjcf, found in looks["packages"].items()
+    )
+
+
+def _seen(path: Path) -> Seen:
+    """Of what can't be asked about, or is not there, only where it would be."""
+    try:
+        real = os.path.realpath(path)
+        status = os.stat(real)
+    except ValueError:  # a name with a NUL
+        return ("",)
+    except OSError:
+        return (real,)
+    return real, status.st_dev, status.st_ino, status.st_mode, status.st_size, status.st_mtime_ns, status.st_ctime_ns
