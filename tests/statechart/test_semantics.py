@@ -4,11 +4,22 @@ from pathlib import Path
 
 import pytest
 
+from lumen.interpreters.statechart import Snapshot, Step
+from lumen.interpreters.statechart.fast_path import FastPaths
+from lumen.statechart import Event
 from tests.statechart.table import CASES, play, read
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
-def test_rule(path: Path) -> None:
+@pytest.mark.parametrize("again", [False, True], ids=["first", "again"])
+def test_rule(path: Path, again: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if again:  # every step by the function that is written for what has happened before, if one is
+        step = FastPaths.step
+
+        def thrice(self: FastPaths, snapshot: Snapshot, event: Event) -> Step | None:
+            return [step(self, snapshot, event) for _ in range(3)][-1]
+
+        monkeypatch.setattr(FastPaths, "step", thrice)
     case = read(path)
     for number, (expected, found) in enumerate(play(case)):
         for key in ("context",):

@@ -48,8 +48,9 @@ def happened(snapshot: Snapshot | None, happening: Happening | None) -> Event:
 
 
 def by_lumen(machine: MachineDefinition, snapshot: Snapshot | None, event: Event) -> Step | None:
+    """The step by the function written for what has happened before, where one is; the first time decides nothing."""
     try:
-        return initial(machine) if snapshot is None else step(machine, snapshot, event)
+        return initial(machine) if snapshot is None else [step(machine, snapshot, event) for _ in range(3)][-1]
     except LumenError as error:
         if "never comes to rest" not in str(error):
             raise

@@ -70,10 +70,7 @@ class CodeBuilder:
 
     def code(self, guard: bool) -> CodeType:
         """A module that defines `evaluate(scope)`."""
-        result = self.condition(self.tree) if guard else self.node(self.tree)
-        if not guard and _builds(self.tree):
-            result = self.call("bounded", result)
-        self.place(result, self.tree)
+        result = self.place(self.result(guard), self.tree)
         failed = self.call("failed", _load("error"), _load("scope"))
         handler = ast.ExceptHandler(_load("Exception"), "error", [ast.Return(failed)])
         body: list[ast.stmt] = [ast.Try([ast.Return(result)], [handler], [], [])]
@@ -82,6 +79,13 @@ class CodeBuilder:
         define.lineno = define.end_lineno = 1
         module = ast.fix_missing_locations(ast.Module([define], []))
         return compile(module, EXPRESSION_FILE, "exec", dont_inherit=True, optimize=0)
+
+    def result(self, guard: bool) -> ast.expr:
+        """The value of the whole expression: as a condition, or bounded where it builds something."""
+        if guard:
+            return self.condition(self.tree)
+        built = self.node(self.tree)
+        return self.call("bounded", built) if _builds(self.tree) else built
 
     def node(self, node: ExpressionNode) -> ast.expr:
         built = self.build(node)

@@ -45,12 +45,13 @@ def _any_is(decisive: bool, operands: Sequence[Callable[[], Any]]) -> bool:
 
 
 _HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item", "has", "bounded"]
-_NAMES: dict[str, Any] = (
+NAMES: dict[str, Any] = (
     {name: getattr(values, name) for name in _HELPERS}
     | {f"call_{name}": function.call for name, function in FUNCTIONS.items()}
     | {"type": type, "map": dict, "numbers": frozenset((int, float))}
     | {"both": both, "either": either, "__builtins__": {}}
 )
+"""What the code of expressions may name, and nothing else."""
 
 
 @lru_cache(maxsize=8192)
@@ -94,7 +95,7 @@ def _explainer(source: str, tree: ExpressionNode) -> Callable[[Exception, Scope]
 
 
 def _function(code: CodeType, failed: Callable[[Exception, Scope], Any]) -> Evaluate:
-    names = {**_NAMES, "failed": failed, "Exception": Exception}
+    names = {**NAMES, "failed": failed, "Exception": Exception}
     exec(code, names)
     evaluate: Evaluate = names["evaluate"]
     return evaluate

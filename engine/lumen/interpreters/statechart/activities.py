@@ -100,5 +100,10 @@ class Activities:
             context.raise_event(Event(f"done.do.{node.name}", None, context.at))
 
     def _place(self, path: str, position: Within | None) -> None:
-        rest = {p: where for p, where in self.positions.items() if p != path}
-        self.positions = {**rest, path: position} if position else rest
+        self.positions = placed(self.positions, path, position)
+
+
+def placed(positions: Mapping[str, Within], path: str, position: Within | None) -> Mapping[str, Within]:
+    """These positions, with another one of the `do` of that state, or without any."""
+    rest = {p: where for p, where in positions.items() if p != path}
+    return {**rest, path: position} if position else rest

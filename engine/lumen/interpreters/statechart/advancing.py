@@ -202,8 +202,13 @@ class _Failing:
 
 def cancel(context: ActivityContext, ids: list[str]) -> None:
     """Cancel what is awaited under these ids: a timer is taken back, a command cancelled at the robot."""
-    waits = {t.id for t in context.timers if t.kind == "wait" and t.id in ids}
-    context.timers = tuple(t for t in context.timers if t.kind != "wait" or t.id not in waits)
-    for id in ids:
-        if id not in waits:
-            context.emit(Cancel(id))
+    context.timers, cancels = cancelled(context.timers, ids)
+    for command in cancels:
+        context.emit(command)
+
+
+def cancelled(timers: tuple[Timer, ...], ids: list[str]) -> tuple[tuple[Timer, ...], tuple[Cancel, ...]]:
+    """The timers without those that are awaited under these ids, and the commands that cancel the others."""
+    waits = {t.id for t in timers if t.kind == "wait" and t.id in ids}
+    kept = tuple(t for t in timers if t.kind != "wait" or t.id not in waits) if waits else timers
+    return kept, tuple(Cancel(id) for id in ids if id not in waits)

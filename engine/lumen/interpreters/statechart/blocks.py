@@ -32,6 +32,8 @@ from lumen.language.events import Event
 ActionFunction: TypeAlias = Callable[[ActionContext], None]
 CompiledBlock: TypeAlias = tuple[tuple[ActionFunction, NodePath], ...]
 CommandFactory: TypeAlias = Callable[[ActionContext], BodyCommand]
+Alternatives: TypeAlias = tuple[str, tuple[Callable[[Scope], str], ...]]
+"""A language, and the texts in it of which one is drawn."""
 
 
 def compile_block(steps: tuple[PlacedAction, ...]) -> CompiledBlock:
@@ -158,17 +160,27 @@ def _if(guard: Expression, then: CompiledBlock, otherwise: CompiledBlock) -> Act
     return choose
 
 
-def _say(texts: Mapping[str, tuple[Any, ...]], gestures: SaysGestures) -> CommandFactory:
+def _say(texts: Mapping[str, tuple[Template, ...]], gestures: SaysGestures) -> CommandFactory:
+    alternatives_in = alternatives(texts)
+
+    def say(context: ActionContext) -> BodyCommand:
+        said, templates = alternatives_in(context.language)
+        text = templates[context.draw(len(templates))](context.scope())
+        return Say(text, said, gestures)
+
+    return say
+
+
+def alternatives(texts: Mapping[str, tuple[Template, ...]]) -> Callable[[str], Alternatives]:
+    """What there is to say in a language, and in which language that is: the first, where there is nothing in it."""
     spoken = {
         language: tuple(compile_template(template.text) for template in templates)
         for language, templates in texts.items()
     }
     fallback = "" if "" in spoken else next(iter(spoken))
 
-    def say(context: ActionContext) -> BodyCommand:
-        language = context.language if context.language in spoken else fallback
-        alternatives = spoken[language]
-        text = alternatives[context.draw(len(alternatives))](context.scope())
-        return Say(text, language or context.language, gestures)
+    def alternatives_in(wanted: str) -> Alternatives:
+        language = wanted if wanted in spoken else fallback
+        return language or wanted, spoken[language]
 
-    return say
+    return alternatives_in

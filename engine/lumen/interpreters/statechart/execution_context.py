@@ -10,6 +10,7 @@ from lumen.interpreters.statechart.action_context import ActionError
 from lumen.interpreters.statechart.activities import Activities
 from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
+from lumen.interpreters.statechart.drawing import draw
 from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.values import Counters, Halted, Invoked, Snapshot, Step, Timer
 from lumen.language.actions import PARENT
@@ -195,11 +196,9 @@ class ExecutionContext:
         self.cached_scope = None
 
     def draw(self, count: int) -> int:
-        """One of `count` alternatives, from the generator (Numerical Recipes' linear congruence)."""
-        if count == 1:
-            return 0
-        self.generator = (self.generator * 1664525 + 1013904223) % 2**32
-        return (self.generator >> 16) % count
+        """One of `count` alternatives, from the generator."""
+        drawn, self.generator = draw(self.generator, count)
+        return drawn
 
     def emit(self, command: Command) -> None:
         """Something for the edge to perform."""

@@ -1,0 +1,162 @@
+"""Actions in the text of a step: what they compute, and what is kept of it until the step is made."""
+
+from collections.abc import Callable, Container
+from copy import copy
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeAlias
+
+from lumen.interpreters.statechart.blocks import alternatives
+from lumen.interpreters.statechart.chart import Chart, StateNode
+from lumen.interpreters.statechart.plans import Configuration
+from lumen.interpreters.statechart.step_text import NotPlainError, Sight, StepText, template_needs
+from lumen.language.actions import (
+    Action,
+    AskQuestion,
+    Assign,
+    CancelSend,
+    ComputedValue,
+    If,
+    LogText,
+    Parallel,
+    PlacedAction,
+    PublishBody,
+    Raise,
+    SayText,
+    Send,
+    Wait,
+)
+from lumen.language.commands import GoTo, Language
+from lumen.language.machines import Transition
+
+Op: TypeAlias = Callable[["Certain"], None]
+
+
+@dataclass(slots=True, eq=False)
+class Certain:
+    """What is certain of the step where the writing has come to; `agenda` is what the algorithm does next.
+
+    `event` is the variable of the event that is handled, `queue` those of internal events, with their names, and
+    `raised` of all of them. `started` and `awaited` count the ids given out; `commanded` where there may be commands.
+    """
+
+    configuration: Configuration
+    agenda: tuple[Op, ...]
+    event: str = "event"
+    queue: tuple[tuple[str, str], ...] = ()
+    beginnings: tuple[StateNode, ...] = ()
+    exited: tuple[str, ...] = ()
+    entered: tuple[str, ...] = ()
+    transitions: tuple[Transition, ...] = ()
+    raised: tuple[str, ...] = ()
+    started: int = 0
+    awaited: int = 0
+    commanded: bool = False
+    ended: bool = False
+
+    def first(self, *ops: Op) -> None:
+        """Let the algorithm do these before the rest of its agenda."""
+        self.agenda = (*ops, *self.agenda)
+
+
+class ActionText(StepText):
+    """A step being written, with the actions that it does and the Step that it gives."""
+
+    def __init__(self, chart: Chart, start: Configuration) -> None:
+        super().__init__(chart.definition)
+        self.chart, self.start = chart, start
+
+    def run(self, known: Certain) -> None:
+        """Write everything that follows."""
+        raise NotImplementedError
+
+    def either(self, condition: str, known: Certain, *ops: Op) -> None:
+        """Write all that follows where a condition holds; what is written next is for where it does not."""
+        with self.branch(condition):
+            other = copy(known)
+            other.first(*ops)
+            self.run(other)
+
+    def block(self, actions: tuple[PlacedAction, ...], node: StateNode, active: Container[str], known: Certain) -> None:
+        """Actions that take no time, one after another (`_execute`)."""
+        known.first(*(partial(self.act, placed.action, node, active) for placed in actions))
+
+    def act(self, action: Action, node: StateNode, active: Container[str], known: Certain) -> None:
+        """One of them (`compile_action`)."""
+        sight = Sight(known.event, node, active)
+        match action:
+            case Assign(values):
+                for way, value in values.items():
+                    self.assign(way, value, sight)
+            case Raise(event, data):
+                self.raises(event, self.value(data, sight), known)
+            case PublishBody(route, body):
+                self.emit(f"Publish({route!r}, {self.value(body, sight)})", known)
+            case LogText(template):
+                self.emit(f"Log({self.filled(template.text, sight)})", known)
+            case If(guard, then, otherwise):
+                condition = self.expression(guard.source, sight, guard=True)
+                self.either(condition, known, partial(self.block, then, node, active))
+                known.first(partial(self.block, otherwise, node, active))
+            case Send() | CancelSend() | Wait() | Parallel() | AskQuestion():
+                raise NotPlainError
+            case _:
+                command = self.command(action, sight)
+                known.started += 1
+                self.emit(f"Start(f'c{{counters[0] + {known.started}}}', {command})", known)
+
+    def assign(self, way: str, value: ComputedValue, sight: Sight) -> None:
+        """A context key becomes another value, if that is certain to be of its type (`compile_assignment`)."""
+        self.line(f"value = {self.value(value, sight)}")
+        key, *within = way.split(".")
+        if within:
+            self.line(f"value = with_value(context[{key!r}], {key!r}, {within!r}, value)")
+        if check := self.chart.checks.get(key):
+            unlike = [f"type(value) is not {kind}" for kind in sorted(kind.__name__ for kind in check.quick)]
+            self.line(f"if {' and '.join(unlike) or True}: return None")
+        self.line(f"context = {{**context, {key!r}: value}}")
+        self.scope = None
+
+    def command(self, action: Action, sight: Sight) -> str:
+        """The command that a robot verb stands for (`compile_command`)."""
+        match action:
+            case SayText(texts, gestures):
+                spoken = [template.text for templates in texts.values() for template in templates]
+                needed = frozenset[str]().union(*map(template_needs, spoken))
+                self.see(needed, sight)
+                self.line(f"said, templates = {self.constant(alternatives(texts))}(language)")
+                self.line("drawn, generator = draw(generator, len(templates))")
+                return f"Say(templates[drawn]({'scope' if needed else 'None'}), said, {gestures!r})"
+            case Language(language):
+                self.line(f"language = {language!r}")
+                self.scope = None
+            case GoTo(to) if "{{" in to:
+                return f"GoTo({self.filled(to, sight)})"
+        return self.constant(action)
+
+    def emit(self, command: str, known: Certain) -> None:
+        self.line(f"commands += ({command},)")
+        known.commanded = True
+
+    def raises(self, name: str, data: str, known: Certain) -> None:
+        """An internal event of that name, with what computes its data."""
+        variable = f"r{len(known.raised)}"
+        self.line(f"{variable} = new(Event, ({self.constant(name)}, {data}, at, '', None))")
+        known.raised += (variable,)
+        known.queue += ((variable, name),)
+
+    def result(self, known: Certain) -> None:
+        """The Step that it comes to."""
+        given = f"(counters[0] + {known.started}, counters[1] + {known.awaited}, counters[2])"
+        counters = f"new(Counters, {given})" if known.started or known.awaited else "counters"
+        target = "names" if known.configuration is self.start else self.constant(known.configuration.names)
+        after = (
+            f"{target}, context, at, language, timers, doing, history, {counters}, generator, epoch, invoked, halted,"
+            " place, zone, output"
+        )
+        exited, entered, taken = map(self.several, (known.exited, known.entered, known.transitions))
+        commands = "commands" if known.commanded else "()"
+        raised = "".join(f"{variable}, " for variable in known.raised)
+        self.line(f"after = new(Snapshot, ({after}))")
+        self.line(f"return new(Step, (event, {exited}, {entered}, {commands}, after, {taken}, ({raised}), ()))")
+        known.ended = True

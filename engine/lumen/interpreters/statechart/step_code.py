@@ -1,0 +1,61 @@
+"""The text of a step as a function: what the text may name, and what it has in common with the whole algorithm."""
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.expressions.compiler import NAMES as EXPRESSION_NAMES
+from lumen.interpreters.expressions.scope import no_draw
+from lumen.interpreters.statechart.activities import placed
+from lumen.interpreters.statechart.advancing import cancelled, resumption_of
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.drawing import draw
+from lumen.interpreters.statechart.nested_values import with_value
+from lumen.interpreters.statechart.values import Awaiting, Counters, Halted, Snapshot, Step, Timer, Within, awaited
+from lumen.language.commands import Command, GoTo, Log, Publish, Say, Start
+from lumen.language.events import Event
+from lumen.language.nanoseconds import nanoseconds
+
+Positions: TypeAlias = Mapping[str, Within]
+WrittenStep: TypeAlias = Callable[[Snapshot, Event], Step | None]
+"""What takes a step; None where it does not."""
+
+
+def leave(
+    node: StateNode,
+    at: float,
+    timers: tuple[Timer, ...],
+    commands: tuple[Command, ...],
+    doing: Positions,
+    halted: Mapping[str, Halted],
+) -> tuple[tuple[Timer, ...], tuple[Command, ...], Positions, Mapping[str, Halted]]:
+    """End the `do` of a state that is left; where the state says how it is resumed, where it stood is noted."""
+    position = doing[node.path]
+    if resumption_of(node):
+        halted = {**halted, node.path: Halted(position, at)}
+    timers, cancels = cancelled(timers, list(awaited(position)))
+    return timers, commands + cancels, placed(doing, node.path, None), halted
+
+
+def without(mapping: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    """The mapping but for that key."""
+    return {other: value for other, value in mapping.items() if other != key}
+
+
+_NAMES = EXPRESSION_NAMES | {
+    "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "GoTo": GoTo, "Log": Log, "Publish": Publish,
+    "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step, "Timer": Timer, "Within": Within,
+    "draw": draw, "leave": leave, "nanoseconds": nanoseconds, "new": tuple.__new__, "no_draw": no_draw, "len": len,
+    "placed": placed, "with_value": with_value, "without": without,
+    **{kind.__name__: kind for kind in (bool, int, float, str, list, tuple, dict, type(None), Exception)},
+}  # fmt: skip
+
+
+@lru_cache(maxsize=1024)
+def function_of(text: str) -> Callable[[tuple[Any, ...], Snapshot, Event], Step | None]:
+    """The function `play` that the text defines; equal texts give the same one."""
+    names = dict(_NAMES)
+    exec(compile(text, "<step>", "exec", dont_inherit=True), names)
+    play: Callable[[tuple[Any, ...], Snapshot, Event], Step | None] = names["play"]
+    return play

@@ -1,0 +1,234 @@
+"""Writes a macrostep as Python: what the algorithm finds out anew in each step is found out once, and the rest is left.
+
+From an event in a configuration on, the algorithm is walked with what is `Certain`: which states are active, which
+events are raised, which `do` begin. What only a step knows (the context, ids, times) is left to be computed; where that
+decides, as at a guard, both ways are written. What this can't write ends in `return None`: there the whole algorithm
+takes the step, from its beginning. So it does where anything raises.
+
+The text names the user's states and commands by constants (`c0`, `c1`, …): what differs in them only has one text.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from typing import TypeAlias
+
+from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
+from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner
+from lumen.interpreters.statechart.state_changes import StateChange
+from lumen.interpreters.statechart.step_actions import ActionText, Certain, Op
+from lumen.interpreters.statechart.step_code import WrittenStep
+from lumen.interpreters.statechart.step_text import NotPlainError, Sight
+from lumen.interpreters.statechart.values import Within
+from lumen.language.actions import (
+    AskQuestion,
+    Assign,
+    CancelSend,
+    If,
+    LogText,
+    Parallel,
+    PlacedAction,
+    PublishBody,
+    Raise,
+    Send,
+    Wait,
+)
+from lumen.language.machines import State, StateKind
+
+Enabled: TypeAlias = tuple[CompiledTransition, ...]
+DoPlace: TypeAlias = tuple[str, tuple[PlacedAction, ...], int]
+"""Where a `do` stands in one of its blocks: the block's name, its actions, and which of them."""
+
+
+class StepWriter(ActionText):
+    """Writes one function; what is enabled at first is written apart by `apart`, where that is given."""
+
+    def __init__(
+        self, planner: MicrostepPlanner, start: Configuration, apart: Callable[[Enabled], WrittenStep] | None = None
+    ) -> None:
+        super().__init__(planner.chart, start)
+        self.planner, self.apart, self.plain = planner, apart, False
+
+    def heard(self, candidates: Candidates) -> WrittenStep | None:
+        """What an event does that has these candidates; None where nothing of it is plain."""
+        return self.written(partial(self.decide, candidates, ()))
+
+    def taken(self, enabled: Enabled) -> WrittenStep | None:
+        """What these transitions do."""
+        return self.written(partial(self.take, enabled))
+
+    def resumed(self, node: StateNode, position: Within) -> WrittenStep | None:
+        """What is done after the command that the `do` of a state awaits there."""
+        return self.written(partial(self.do, node, _after(_state(node).do, position)))
+
+    def written(self, op: Op) -> WrittenStep | None:
+        self.run(Certain(self.start, (op,)))
+        return self.function() if self.plain else None
+
+    def run(self, known: Certain) -> None:
+        """Write it to the end: every way through it returns."""
+        try:
+            while not known.ended:
+                self.go_on(known)
+        except NotPlainError:
+            self.end()
+
+    def go_on(self, known: Certain) -> None:
+        """What is next: the agenda, internal events, then what begins (`complete`)."""
+        if known.agenda:
+            op, *rest = known.agenda
+            known.agenda = tuple(rest)
+            op(known)
+        elif known.configuration.eventless or known.configuration.finished:
+            raise NotPlainError
+        elif known.queue:
+            (known.event, name), *others = known.queue
+            known.queue = tuple(others)
+            known.first(partial(self.decide, known.configuration.candidates(name), ()))
+        elif known.beginnings:
+            begun = sorted(known.beginnings, key=lambda node: node.index)
+            known.beginnings = ()
+            known.first(*(partial(self.do, node, (("do", _state(node).do, 0),)) for node in begun))
+        else:
+            self.plain = True
+            self.result(known)
+
+    def decide(self, candidates: Candidates, enabled: Enabled, known: Certain) -> None:
+        """The first candidate of each atomic state whose guard holds (`selectTransitions`)."""
+        if not candidates:
+            known.first(partial(self.take, tuple(dict.fromkeys(enabled))))
+            return
+        group, *others = candidates
+        for transition in group:
+            then = partial(self.decide, tuple(others), (*enabled, transition))
+            guard = transition.definition.guard
+            if guard is None:
+                known.first(then)
+                return
+            sight = Sight(known.event, transition.source, known.configuration.known)
+            self.either(self.expression(guard.source, sight, guard=True), known, then)
+        known.first(partial(self.decide, tuple(others), enabled))
+
+    def take(self, enabled: Enabled, known: Certain) -> None:
+        """One microstep, with these transitions."""
+        if not enabled:
+            return
+        if self.apart:
+            self.line(f"return {self.constant(self.apart(enabled))}(snapshot, event)")
+            self.plain = known.ended = True
+            return
+        plan = self.planner.plan(known.configuration, enabled, {})
+        if self.recalls(plan):
+            raise NotPlainError
+        if plan.history:
+            self.line(f"history = {{**history, **{self.constant(plan.history)}}}")
+        known.exited += plan.exited
+        known.entered += plan.entered
+        known.transitions += plan.transitions
+        known.first(
+            *(partial(self.exit, change) for change in plan.exits),
+            *(partial(self.block, t.definition.actions, t.source, plan.between) for t in plan.taken),
+            *(partial(self.enter, change) for change in plan.entries),
+            partial(self.arrive, plan.target),
+        )
+
+    def recalls(self, plan: MicrostepPlan) -> bool:
+        """Whether the states that are entered may depend on what history states remember."""
+        targets = [target for transition in plan.taken for target in transition.targets]
+        inside = [node for name in plan.entered for node in self.chart.by_name[name].initial]
+        return any(node.kind is StateKind.HISTORY for node in (*targets, *inside))
+
+    def arrive(self, target: Configuration, known: Certain) -> None:
+        known.configuration = target
+
+    def exit(self, change: StateChange, known: Certain) -> None:
+        """`exitStates`, of one state: the actions, then its `do` and timers end."""
+        node = change.node
+        if node.invokes or node.schedules or node.computed:
+            raise NotPlainError
+        known.beginnings = tuple(other for other in known.beginnings if other is not node)
+        known.first(partial(self.block, _state(node).exit, node, change.active), partial(self.stop, node))
+
+    def stop(self, node: StateNode, known: Certain) -> None:
+        path = self.constant(node.path)
+        if node.do:
+            left = f"leave({self.constant(node)}, at, timers, commands, doing, halted)"
+            self.line(f"if {path} in doing: timers, commands, doing, halted = {left}")
+            known.commanded = True
+        if node.afters:
+            self.line(f"timers = tuple([t for t in timers if t[6] != 'after' or t[5] != {path}]) if timers else ()")
+
+    def enter(self, change: StateChange, known: Certain) -> None:
+        """`enterStates`, of one state: timers begin, then the actions, and what it has to `do` after the macrostep."""
+        node = change.node
+        if node.invokes or node.schedules or node.computed or any(not parent.path for parent in change.done):
+            raise NotPlainError
+        for event, delay in node.afters:
+            name, length, path = self.constant(event), self.constant(delay), self.constant(node.path)
+            due = f"nanoseconds(at) + {length}"
+            self.line(f"timers += (new(Timer, ({name}, {due}, {length}, {name}, None, {path}, 'after', '')),)")
+        known.first(
+            partial(self.block, _state(node).entry, node, change.active),
+            partial(self.entered, node),
+            *(partial(self.ended, node, parent) for parent in change.done),
+        )
+
+    def entered(self, node: StateNode, known: Certain) -> None:
+        if node.do:
+            path = self.constant(node.path)
+            self.line(f"halted = without(halted, {path}) if {path} in halted else halted")
+            known.beginnings += (node,)
+
+    def ended(self, node: StateNode, parent: StateNode, known: Certain) -> None:
+        """`done.state.*`, without the data of an output."""
+        if node.output is not None and parent is node.parent and parent.kind is StateKind.COMPOUND:
+            raise NotPlainError
+        self.raises(f"done.state.{parent.name}", "None", known)
+
+    def do(self, node: StateNode, place: tuple[DoPlace, ...], known: Certain) -> None:
+        """The `do` of a state from there on (`Advance.block`); the outermost block comes first."""
+        *around, (name, actions, number) = place
+        path = self.constant(node.path)
+        if number == len(actions):
+            if not around:
+                self.line(f"doing = placed(doing, {path}, None)")
+                self.raises(f"done.do.{node.name}", "None", known)
+                return
+            *outer, (name, actions, number) = around
+            known.first(partial(self.do, node, (*outer, (name, actions, number + 1))))
+            return
+        action, sight = actions[number].action, Sight(known.event, node, known.configuration.known)
+        match action:
+            case If(guard, yes, no):
+                condition = self.expression(guard.source, sight, guard=True)
+                self.either(condition, known, partial(self.do, node, (*place, ("then", yes, 0))))
+                known.first(partial(self.do, node, (*place, ("else", no, 0))))
+            case Wait() | Parallel() | AskQuestion():
+                raise NotPlainError
+            case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
+                then = partial(self.do, node, (*around, (name, actions, number + 1)))
+                known.first(partial(self.act, action, node, known.configuration.known), then)
+            case _:
+                command = self.command(action, sight)
+                known.awaited += 1
+                self.line(f"awaited = f'd{{counters[1] + {known.awaited}}}'")
+                self.emit(f"Start(awaited, {command})", known)
+                position = "new(Awaiting, (awaited, at))"
+                for block, _, index in reversed(place):
+                    position = f"new(Within, ({block!r}, {index}, {position}))"
+                self.line(f"doing = placed(doing, {path}, {position})")
+
+
+def _after(actions: tuple[PlacedAction, ...], position: Within) -> tuple[DoPlace, ...]:
+    """What comes after that position of these actions."""
+    block, number, inner = position
+    if not isinstance(inner, Within):
+        return ((block, actions, number + 1),)
+    action = actions[number].action
+    assert isinstance(action, If | AskQuestion)  # which have blocks
+    inside = action.then if isinstance(action, If) and inner.block == "then" else action.otherwise
+    return ((block, actions, number), *_after(inside, inner))
+
+
+def _state(node: StateNode) -> State:
+    assert node.state is not None  # only the document has none, and it is never left or entered
+    return node.state
