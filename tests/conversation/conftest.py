@@ -30,7 +30,7 @@ def with_model(project: Project, url: str, **options: Any) -> Project:
 class Desk:
     """Asks the module; `told` are lines for the operator."""
 
-    def __init__(self, project: Project, model: FakeModel) -> None:
+    def __init__(self, project: Project, model: FakeModel | None = None) -> None:
         self.project, self.model = project, model
         self.told: list[str] = []
         self.bus = connect("memory://", project)

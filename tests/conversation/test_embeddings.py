@@ -11,7 +11,7 @@ from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.language.projects import Project
 from lumen.modules.answers import Answers
-from lumen.modules.answers import embeddings as embedded
+from lumen.modules.answers import server_vectors as embedded
 from tests.conversation.conftest import Desk
 from tests.conversation.fake_model import FakeModel, Handler, fake_model
 

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from lumen.interpreters.retrieval.calibration import Judged, least_probability, left_out, outcome
-from lumen.interpreters.retrieval.choice import RIDGE, fitted, probabilities
+from lumen.interpreters.retrieval.choice import RIDGE, fitted, probabilities, shares
 from lumen.interpreters.retrieval.features import METHODS, coverage
-from lumen.interpreters.retrieval.ranking import NEVER, Weights
+from lumen.interpreters.retrieval.ranking import NEVER, UNANSWERABLE, Weights
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.trials import tried, weights_of
 from lumen.interpreters.retrieval.words import stems
@@ -82,7 +82,7 @@ TOLD = [Judged(0.9, True, True), Judged(0.8, True, True), Judged(0.7, False, Fal
 def test_the_least_probability_answers_most_with_few_wrong() -> None:
     assert least_probability(TOLD) == 0.8
     assert outcome(TOLD, 0.8) == (2 / 3, 0.0)
-    assert outcome(TOLD, least_probability(TOLD, max_wrong=0.25)) == (1.0, 0.25)
+    assert outcome(TOLD, least_probability(TOLD, max_wrong=UNANSWERABLE)) == (1.0, pytest.approx(UNANSWERABLE))
     assert least_probability([]) == least_probability(TOLD[2:3]) == NEVER
     assert least_probability([Judged(0.8, True, True), Judged(0.8, False, False)]) == NEVER
 
@@ -90,7 +90,14 @@ def test_the_least_probability_answers_most_with_few_wrong() -> None:
 def test_each_question_is_judged_by_the_others() -> None:
     told = [Judged(0.9, True, True), Judged(0.8, False, False), Judged(0.7, True, True)]
     assert outcome(told, least_probability(told)).wrong == 0.0
-    assert left_out(told).wrong == pytest.approx(1 / 3)
+    assert left_out(told).wrong == pytest.approx(UNANSWERABLE)
+
+
+def test_how_many_questions_without_an_answer_are_written_changes_no_share() -> None:
+    one, other = Judged(0.9, True, True), Judged(0.8, False, False)
+    assert outcome([one, other], 0.0).wrong == pytest.approx(outcome([one] + 9 * [other], 0.0).wrong)
+    assert shares([True, True, False, True]).tolist() == pytest.approx([2.8 / 3] * 2 + [1.2, 2.8 / 3])
+    assert shares([True]).tolist() == shares([False]).tolist() == [1.0]
 
 
 def test_a_choice_is_learned_as_statistics_say() -> None:
@@ -106,7 +113,8 @@ def test_a_choice_is_learned_as_statistics_say() -> None:
         found = 0.0
         for each, row in zip(features, wanted, strict=True):
             of_each = probabilities(each, tuple(weights), none)
-            found += np.log(of_each[row] if row >= 0 else 1.0 - of_each.sum())
+            told = np.log(of_each[row] if row >= 0 else 1.0 - of_each.sum())
+            found += told * (UNANSWERABLE * 3 if row < 0 else (1 - UNANSWERABLE) * 3 / 2)
         return found - RIDGE / 2 * float(((weights * spread) ** 2).sum())
 
     at = np.array(weights)

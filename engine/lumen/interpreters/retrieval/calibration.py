@@ -4,9 +4,7 @@ from collections.abc import Sequence
 from math import floor
 from typing import NamedTuple
 
-import numpy as np
-
-from lumen.interpreters.retrieval.choice import fitted, probabilities
+from lumen.interpreters.retrieval.choice import fitted, probabilities, shares
 from lumen.interpreters.retrieval.features import Features
 from lumen.interpreters.retrieval.ranking import MAX_WRONG, NEVER, AnswerRates, Weights
 
@@ -69,10 +67,13 @@ def left_out(found: Sequence[Judged], max_wrong: float = MAX_WRONG) -> AnswerRat
 
 def least_probability(found: Sequence[Judged], max_wrong: float = MAX_WRONG) -> float:
     """The one that answers most of these rightly, at most so many wrongly; the highest of equals, to a thousandth."""
-    right = wrong = most = 0
+    right = most = 0
+    wrong = 0.0
     least = NEVER
-    for one in sorted(found, key=lambda each: (-each.probability, each.is_right)):
-        right, wrong = right + one.is_right, wrong + (not one.is_right)
+    counts = shares([one.is_known for one in found]).tolist()
+    ordered = sorted(zip(found, counts, strict=True), key=lambda each: (-each[0].probability, each[0].is_right))
+    for one, count in ordered:
+        right, wrong = right + one.is_right, wrong + count * (not one.is_right)
         if wrong > max_wrong * len(found):
             break
         if right > most:
@@ -85,6 +86,10 @@ def _fitted(samples: Sequence[Sample]) -> tuple[tuple[float, ...], float]:
 
 
 def _rates(found: Sequence[Judged], answered: Sequence[bool]) -> AnswerRates:
-    right = sum(one.is_right for one, is_answered in zip(found, answered, strict=True) if is_answered)
+    counts = shares([one.is_known for one in found]).tolist()
+    told = [
+        (one.is_right, count) for one, count, is_answered in zip(found, counts, answered, strict=True) if is_answered
+    ]
     known = sum(one.is_known for one in found)
-    return AnswerRates(right / max(known, 1), (int(np.sum(answered)) - right) / max(len(found), 1))
+    wrong = sum(count for is_right, count in told if not is_right)
+    return AnswerRates(sum(is_right for is_right, _ in told) / max(known, 1), wrong / max(len(found), 1))

@@ -4,10 +4,13 @@ Each passage is an alternative whose worth is the weighted sum of its features, 
 worth of its own. A question that several passages fit equally well, or none better than “none”, is probably for none.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.interpreters.retrieval.features import Features
+from lumen.interpreters.retrieval.ranking import UNANSWERABLE
 
 RIDGE = 1.0
 """How much weights are held back, in units of what one question tells of features of variance 1."""
@@ -28,6 +31,15 @@ def probabilities(features: NDArray[np.float32], weights: tuple[float, ...], non
     return found
 
 
+def shares(known: Sequence[bool]) -> NDArray[np.float64]:
+    """How much each question counts, 1 on average, by whether it has an answer; together UNANSWERABLE have none."""
+    has = np.array(known, bool)
+    if has.all() or not has.any():
+        return np.ones(len(has))
+    counts: NDArray[np.float64] = np.where(has, (1 - UNANSWERABLE) / has.mean(), UNANSWERABLE / (~has).mean())
+    return counts
+
+
 def fitted(features: list[Features], wanted: list[int]) -> tuple[tuple[float, ...], float]:
     """Weights of the features, and the worth of “none”; `wanted` is a passage's row for each question, -1 for none."""
     told = np.array(features, np.float64)
@@ -37,6 +49,7 @@ def fitted(features: list[Features], wanted: list[int]) -> tuple[tuple[float, ..
     offered = np.zeros((count, passages + 1, kinds + 1))
     offered[:, :passages, 1:] = (told - middle) / spread
     offered[:, passages, 0] = 1.0
+    counts = shares([row >= 0 for row in wanted])
     chosen = offered[np.arange(count), np.where(np.array(wanted) < 0, passages, wanted)]
     ridge = np.diag([NONE_RIDGE, *[RIDGE] * kinds])
     solution = np.zeros(kinds + 1)
@@ -45,9 +58,9 @@ def fitted(features: list[Features], wanted: list[int]) -> tuple[tuple[float, ..
         share = np.exp(worth - worth.max(axis=1, keepdims=True))
         share /= share.sum(axis=1, keepdims=True)
         mean = (share[:, None, :] @ offered)[:, 0]
-        slope = (chosen - mean).sum(axis=0) - ridge @ solution
+        slope = counts @ (chosen - mean) - ridge @ solution
         flat = offered.reshape(-1, kinds + 1)
-        bend = (flat * share.reshape(-1, 1)).T @ flat - mean.T @ mean + ridge
+        bend = (flat * (share * counts[:, None]).reshape(-1, 1)).T @ flat - (mean.T * counts) @ mean + ridge
         step = np.linalg.solve(bend, slope)
         longest = float(np.abs(step).max())
         solution += step * min(1.0, LONGEST / max(longest, 1e-12))

@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 MAX_WRONG = 0.02
 """The share of all questions that may be answered wrongly."""
+UNANSWERABLE = 0.3
+"""The share of visitors' questions that no passage answers: assumed, however many of either kind are written."""
 NEVER = 2.0
 """More than any probability: what is to be answered never."""
 
@@ -24,7 +26,10 @@ class Weights(NamedTuple):
 
 
 class AnswerRates(NamedTuple):
-    """What becomes of questions: the share of those with an answer that get it, and of all that get a wrong one."""
+    """What becomes of questions: the share of those with an answer that get it, and of all that get a wrong one.
+
+    Of all as visitors are taken to ask them, so that UNANSWERABLE of them have none.
+    """
 
     recall: float
     wrong: float

@@ -42,7 +42,7 @@ class Answers(Module):
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
         super().__init__(project, bus, tell)
         self._model = ModelSettings.of(self.settings.options)
-        self._embeddings = embeddings_of(self.settings.options, None)
+        self._embeddings = embeddings_of(self.settings.options, project.root, None)
         self._allowance = Allowance(self._model.hour, self._model.visitor)
 
     def hears(self) -> Mapping[str, MessageHandler]:
@@ -51,8 +51,16 @@ class Answers(Module):
     def use(self, project: Project) -> None:
         super().use(project)
         self._model = ModelSettings.of(self.settings.options)
-        self._embeddings = embeddings_of(self.settings.options, self._embeddings)
+        self._embeddings = embeddings_of(self.settings.options, project.root, self._embeddings)
         self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
+
+    def idle(self) -> float | None:
+        """Make vectors of passages while nobody asks, where that takes no network."""
+        try:
+            return 0.0 if self._embeddings and self._embeddings.prepare(self.project) else None
+        except ModuleError as error:
+            self.tell(str(error))
+            return None
 
     def _ask(self, message: Message) -> None:
         began = time.monotonic()

@@ -1,0 +1,34 @@
+"""Vectors of any server with an OpenAI-compatible `/v1/embeddings`."""
+
+import json
+from collections.abc import Callable, Sequence
+
+from lumen.errors import ModuleError
+from lumen.modules.answers.http_stream import answered
+from lumen.modules.answers.model_settings import ServerSettings
+from lumen.modules.answers.vectors import KnownText, TextVector, unit
+
+BATCH = 32
+"""Texts of one request."""
+MAX_BYTES = 4_000_000
+"""Of an answer: 32 vectors of 4,096 numbers, written out."""
+
+
+class ServerVectors:
+    """Asks that server, a batch at a time; it is sent texts as they are, questions and answers alike."""
+
+    is_here = False
+
+    def __init__(self, settings: ServerSettings) -> None:
+        self.settings = settings
+        self.batch = BATCH
+
+    def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
+        body = {"model": self.settings.name, "input": [text for text, _ in texts]}
+        with answered(self.settings.url, body, self.settings.secret(), deadline, wanted, MAX_BYTES) as (_, pieces):
+            content = b"".join(pieces)
+        try:
+            found = {row["index"]: unit(row["embedding"]) for row in json.loads(content)["data"]}
+            return [found[i] for i in range(len(texts))]
+        except (ValueError, TypeError, KeyError, RecursionError, OverflowError):
+            raise ModuleError("the server of embeddings answers something else than a list of embeddings") from None
