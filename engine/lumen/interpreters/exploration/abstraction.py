@@ -47,7 +47,7 @@ class Abstraction:
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
     def key(self, snapshot: Snapshot) -> ConfigurationKey:
-        live = self._liveness.of(snapshot.configuration) | self._always_live
+        live = self._liveness.of(snapshot.configuration, snapshot.history) | self._always_live
         return (
             snapshot.configuration,
             tuple((k, self._known(k, snapshot.context.get(k))) for k in sorted(live)),

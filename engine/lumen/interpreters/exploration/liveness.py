@@ -1,16 +1,17 @@
 """Which context keys can still matter where a behaviour stands: those read before they are given a new value.
 
 The number of a visitor's tries to tell a name means nothing once nobody will ask for it again; two configurations that
-differ in it alone are one.
+differ in it alone are one. A history leads back to what it remembers and to nothing else.
 """
 
 from collections.abc import Iterator, Mapping
+from itertools import islice, pairwise
 
-from lumen.interpreters.exploration.expression_uses import of_state, relevant, tree_of
+from lumen.interpreters.exploration.certain_assignments import assigned_by, assigned_on_entry
+from lumen.interpreters.exploration.expression_uses import of_state, relevant
+from lumen.interpreters.exploration.history_uses import history_uses
 from lumen.interpreters.expressions import names
-from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction, context_key
-from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
 
 class Liveness:
@@ -21,15 +22,20 @@ class Liveness:
         self.keys = relevant(machine)
         self._reads = {path: self._read(state) for path, state in machine.states.items()}
         self._kills = {path: self._killed(state) for path, state in machine.states.items()}
+        self._histories = history_uses(machine)
         leaves = [s.path for s in machine.states.values() if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
         self._next = {leaf: tuple(self._successors(leaf)) for leaf in leaves}
         self._live = self._solve(leaves)
         names_of = {s.name: s.path for s in machine.states.values() if s.path}
         self._by_name = {name: self._live.get(path, frozenset()) for name, path in names_of.items()}
 
-    def of(self, configuration: frozenset[str]) -> frozenset[str]:
-        """The keys that can still matter in a configuration."""
-        return frozenset().union(*(self._by_name[name] for name in configuration))
+    def of(self, configuration: frozenset[str], history: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
+        """The keys that can still matter in a configuration, of which each history remembers these paths."""
+        again = (path for name, paths in history.items() if self._histories[name] & configuration for path in paths)
+        leaves = (leaf for path in again for leaf in self._below(path))
+        return frozenset().union(
+            *(self._by_name[name] for name in configuration), *(self._live.get(leaf, frozenset()) for leaf in leaves)
+        )
 
     def _read(self, state: State) -> frozenset[str]:
         uses = (use for use in of_state(state) if not use.key or use.key in self.keys)
@@ -37,7 +43,7 @@ class Liveness:
 
     def _killed(self, state: State) -> frozenset[str]:
         """The keys that surely get new values on entering, and that nothing around it may have read before."""
-        return _assigned(state.entry).difference(*(self._reads[path] for path in self._around(state.path)))
+        return assigned_on_entry(state.entry).difference(*(self._reads[path] for path in self._around(state.path)))
 
     def _solve(self, leaves: list[str]) -> Mapping[str, frozenset[str]]:
         """What is read in a leaf or around it, or live after one of its transitions; until nothing is added."""
@@ -53,23 +59,48 @@ class Liveness:
 
     def _successors(self, leaf: str) -> Iterator[tuple[str, frozenset[str]]]:
         """The leaves that transitions of a leaf or around it may lead to, each with the keys given new values there."""
-        targets = {
-            t for path in self._around(leaf) for tr in self._machine.states[path].transitions for t in tr.targets
-        }
-        for target in sorted(targets):
-            for after in self._entered(target):
-                yield after, self._kills[after]
+        for transition in (tr for path in self._around(leaf) for tr in self._machine.states[path].transitions):
+            killed, domain = assigned_by(transition), self._domain(transition)
+            for target in transition.targets:
+                for after in sorted(self._entered(target, domain)):
+                    yield after, self._kills[after] | killed
+        for after in sorted(self._left_and_entered_again(leaf)):
+            yield after, frozenset()
 
-    def _entered(self, target: str) -> set[str]:
-        """The leaves below a target, and those of the regions beside it that may be entered with it."""
-        found = set(self._below(target))
+    def _domain(self, transition: Transition) -> str:
+        """The state within which everything is left and entered (SCXML's `getTransitionDomain`)."""
+        source = self._machine.states[transition.source]
+        inside = source.kind is StateKind.COMPOUND and all(_within(t, source.path) for t in transition.targets)
+        if inside and not transition.reenter:
+            return source.path
+        around = islice(self._around(source.path), 1, None)
+        compound = (path for path in around if self._machine.states[path].kind is StateKind.COMPOUND)
+        return next((path for path in compound if all(_within(t, path) for t in transition.targets)), "")
+
+    def _entered(self, target: str, domain: str) -> set[str]:
+        """The leaves below a target, and those of the regions beside it that are entered with it in that domain.
+
+        Of a history what it leads to as long as it remembers nothing: `of` knows what it remembers.
+        """
         state = self._machine.states[target]
-        while state.parent is not None:
+        if state.kind is StateKind.HISTORY:
+            found = {leaf for path in state.initial for leaf in self._entered(path, domain)}
+        else:
+            found = set(self._below(target))
+        while state.parent is not None and state.path != domain:
             parent = self._machine.states[state.parent]
-            if parent.kind is StateKind.PARALLEL or state.kind is StateKind.HISTORY:
+            if parent.kind is StateKind.PARALLEL:
                 found |= set(self._below(parent.path))
             state = parent
         return found
+
+    def _left_and_entered_again(self, leaf: str) -> Iterator[str]:
+        """The leaves to which a history may lead back that remembers this one, or what it lies in."""
+        around = list(self._around(leaf))
+        homes = {state.parent for state in self._machine.states.values() if state.kind is StateKind.HISTORY}
+        for inner, outer in pairwise(around):
+            if outer in homes:
+                yield from self._below(inner)
 
     def _below(self, path: str) -> Iterator[str]:
         state = self._machine.states[path]
@@ -86,17 +117,6 @@ class Liveness:
             place = self._machine.states[place].parent
 
 
-def _assigned(block: tuple[PlacedAction, ...]) -> frozenset[str]:
-    """The keys that a block surely gives new values, whatever they were."""
-    return frozenset(
-        key
-        for step in block
-        if isinstance(step.action, Assign)
-        for key, value in step.action.values.items()
-        if context_key(key) == key and _certain(value)
-    )
-
-
-def _certain(value: ComputedValue) -> bool:
-    """Whether a value can be had without fail: an expression may have none."""
-    return not isinstance(value, Expression) or isinstance(tree_of(value.source), Literal)
+def _within(path: str, outer: str) -> bool:
+    """Whether a state lies below another."""
+    return path != outer and (not outer or path.startswith(f"{outer}."))
