@@ -24,6 +24,8 @@ How RabbitMQ is used, from the inside out:
     intake.py         what of all that comes is taken, held back or dropped, and counted
     connection.py     a connection that belongs to one thread, and is opened again when it is lost
     properties.py     what AMQP says of a message, whatever it says
+    wire.py           pika's connection, which writes and reads messages itself
+    asked_channel.py  a channel of its own for what the broker is asked, and may refuse
     polled.py         pika's asynchronous connection, driven by that thread
     publisher.py      the connection that sends, and waits for the broker's confirmations
     consumer.py       the connection that receives

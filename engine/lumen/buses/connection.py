@@ -5,14 +5,12 @@ import random
 import threading
 import time
 from concurrent.futures import Future
-from contextlib import suppress
 from typing import Any
 
-import pika
-from pika.exceptions import AMQPChannelError, AMQPError, ChannelClosedByBroker
+from pika.exceptions import AMQPError, ChannelClosedByBroker
 
 from lumen.buses.broker import BrokerAddress
-from lumen.buses.properties import TolerantConnection
+from lumen.buses.polled import PolledConnection
 from lumen.upkeep.threads import WatchedThread
 
 MIN_RECONNECT_DELAY = 0.2
@@ -61,7 +59,7 @@ class OutageLog:
 
 
 class BrokerConnection:
-    """Opens, serves and reopens; a subclass says what there is to do (`begin`, `serve`, `finish`).
+    """Opens, serves and reopens; a subclass says what there is to do (`begin`, `serve`).
 
     All of pika happens on the connection's own thread. A first failure is raised by `open`; later ones are logged,
     and it is opened again, after twice as long each time, up to 10 s, and at random between half and all of that.
@@ -100,31 +98,19 @@ class BrokerConnection:
         """Do what there is to do, at most for a second; false when all is done and the connection may end."""
         raise NotImplementedError
 
-    def connect(self) -> Any:
-        """A new connection, open; raises what pika raises."""
-        return pika.BlockingConnection(self.address.parameters, _impl_class=TolerantConnection)
-
-    def open_channel(self) -> Any:
-        return self.connection.channel()
-
-    def disconnect(self, connection: Any) -> None:
-        """End the connection in good order, where it still lives."""
-        with suppress(AMQPError, OSError):
-            connection.close()
-
     def process(self, seconds: float) -> None:
-        """Let the connection live: heartbeats, deliveries, and whatever the broker has against us, as its exception.
+        """Let the connection live for at most so long, then do what other threads want of it."""
+        self.connection.turn(seconds)
+        self.connection.work()
 
-        pika tells nobody that the broker closed a channel, unless the channel is used; what it knows, it keeps.
-        """
-        self.connection.process_data_events(seconds)
-        if self.channel.is_closed:
-            raise getattr(self.channel, "_closing_reason", None) or AMQPChannelError("the channel is closed")
+    def disconnect(self, connection: PolledConnection) -> None:
+        """End the connection in good order, where it still lives."""
+        connection.close()
 
     def _run(self) -> None:
         while not self.ending.is_set():
             try:
-                self.connection = self.connect()
+                self.connection = PolledConnection(self.address.parameters)
             except Exception as error:
                 if not self._opened.done():
                     self._opened.set_exception(error)
@@ -137,14 +123,13 @@ class BrokerConnection:
     def _live(self) -> None:
         since = time.monotonic()
         try:
-            self.channel = self.open_channel()
+            self.channel = self.connection.open_channel()
             self.begin()
             self._outage.back(self.name)
             if not self._opened.done():
                 self._opened.set_result(None)
             while self.serve():
                 pass
-            self.finish()
         except (AMQPError, OSError) as error:
             self._lost(error, since)
         except Exception as error:
@@ -154,10 +139,6 @@ class BrokerConnection:
         finally:
             connection, self.connection, self.channel = self.connection, None, None
             self.disconnect(connection)
-
-    def finish(self) -> None:
-        """All is done: close the channel."""
-        self.channel.close()
 
     def _lost(self, error: Exception, since: float) -> None:
         if not self._opened.done():

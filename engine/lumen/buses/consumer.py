@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
 
-from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
+from pika.exceptions import AMQPChannelError, ConsumerCancelled
 
 from lumen.buses.bodies import MAX_BODY_BYTES, MAX_KEY_BYTES
 from lumen.buses.broker import BrokerAddress
@@ -16,6 +16,7 @@ from lumen.buses.intake import Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.queues import UNROUTED, queue_of
 from lumen.buses.subscriptions import Delivery, Subscription, Subscriptions
+from lumen.buses.wire import MessageReader
 from lumen.errors import BusRefusedError
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
@@ -165,10 +166,7 @@ class Consumer(BrokerConnection):
         connection = self.connection
         if connection is None:
             return False
-        try:
-            connection.add_callback_threadsafe(work)
-        except AMQPError:
-            return False
+        connection.later(work)
         return True
 
     def _bind(self, subscription: Subscription) -> None:
@@ -193,7 +191,7 @@ class Consumer(BrokerConnection):
 
     def _consume(self, subscription: Subscription) -> None:
         if self.channel is not None and subscription.active and subscription.epoch == self._epoch:
-            subscription.tag = self.channel.basic_consume(subscription.queue, self._callback(subscription))
+            subscription.tag = self.connection.consume(subscription.queue, self._reader(subscription))
 
     def _move(self, subscription: Subscription, old: Route | None) -> None:
         if self.channel is None or not subscription.active:
@@ -202,43 +200,46 @@ class Consumer(BrokerConnection):
         subscription.epoch = 0
         self._bind(subscription)
         self._declarer.unbind(self.connection, unbound)
-        self.connection.call_later(UNBOUND_READ_TIME, lambda: self._drop(unbound))
+        self.connection.call_later(UNBOUND_READ_TIME, lambda: self._later(lambda: self._drop(unbound)))
 
     def _drop(self, subscription: Subscription) -> None:
         """Stop reading a queue; nothing of it stays on the broker but what somebody needs."""
         if self.channel is None or not subscription.queue:
             return
-        if subscription.tag:
-            self.channel.basic_cancel(subscription.tag)
+        self.connection.cancel(subscription.tag)
         if any(other.queue == subscription.queue for other in self.subscriptions()):
             return
         self._declarer.remove(self.connection, subscription)
 
     def _cancelled(self, frame: Any) -> None:
         """The broker ended a subscription (somebody deleted its queue): start anew."""
-        raise ConsumerCancelled(frame.method.consumer_tag)
+        self.connection.fail(ConsumerCancelled(frame.method.consumer_tag))
 
     def _acknowledge(self, delivery: Delivery) -> None:
         if delivery.epoch == self._epoch and self.channel is not None:
-            with suppress(ChannelClosedByBroker):
+            with suppress(AMQPChannelError):  # which the next turn raises
                 self.channel.basic_ack(delivery.number, multiple=True)
 
-    def _callback(self, subscription: Subscription) -> Callable[..., None]:
-        def arrived(_: Any, method: Any, properties: Any, body: bytes) -> None:
+    def _reader(self, subscription: Subscription) -> MessageReader:
+        def arrived(number: int, again: bool, key: bytes, properties: MessageProperties, body: bytes) -> None:
             kept = body if len(body) <= MAX_BODY_BYTES else body[: MAX_BODY_BYTES + 1]
-            key, properties = self._readable(method.routing_key, properties)
-            number, again = method.delivery_tag, method.redelivered
+            name = self._readable(key, properties)
             subscription.received += 1
-            self.intake.take(Delivery(subscription, key, kept, properties, number, self._epoch, again, self._arrival()))
+            self.intake.take(
+                Delivery(subscription, name, kept, properties, number, self._epoch, again, self._arrival())
+            )
 
         return arrived
 
-    def _readable(self, key: str | bytes, properties: MessageProperties) -> tuple[str, MessageProperties]:
-        """The key as a text, and the properties; what is left out of them is counted, and told."""
-        text = key if isinstance(key, str) else _short(key.decode(errors="backslashreplace"))
+    def _readable(self, key: bytes, properties: MessageProperties) -> str:
+        """The key as a text; properties that can't be read are counted, and told."""
+        try:
+            text = key.decode()
+        except UnicodeDecodeError:
+            text = _short(key.decode(errors="backslashreplace"))
         if properties.unreadable:
             self.unreadable.add(text, f"{', '.join(properties.unreadable)} can't be read; the message is taken without")
-        return text, properties
+        return text
 
     def _arrival(self) -> float:
         """When what is received now came at the earliest [s, monotonic], where this process stood still meanwhile.

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
 
 from pika.exceptions import ChannelClosedByBroker
 
+from lumen.buses.asked_channel import AskedChannel
+from lumen.buses.polled import PolledConnection
 from lumen.buses.queues import EXCHANGE, QUORUM_SETTLE_TIME, Queue, queue_of
 from lumen.buses.subscriptions import Subscription
 
@@ -19,38 +20,32 @@ class QueueDeclarer:
     def __init__(self) -> None:
         self.settling: set[str] = set()
 
-    def declare(self, connection: Any, queue: Queue) -> tuple[str, str]:
+    def declare(self, connection: PolledConnection, queue: Queue) -> tuple[str, str]:
         """Declare and bind a queue; its name, and why the broker refuses."""
         for attempt in self._attempts(queue):
-            channel = connection.channel()
             try:
-                name = attempt(channel, queue)
-                channel.close()
-                return name, ""
+                with connection.asking() as channel:
+                    return attempt(channel, queue), ""
             except ChannelClosedByBroker as error:
                 refusal = str(error.reply_text)
                 if error.reply_code != PRECONDITION_FAILED:
                     break
         return "", refusal
 
-    def unbind(self, connection: Any, subscription: Subscription) -> None:
+    def unbind(self, connection: PolledConnection, subscription: Subscription) -> None:
         """Nothing comes to its queue under its key any more; what is in there can still be read."""
-        with suppress(ChannelClosedByBroker):
-            channel = connection.channel()
+        with suppress(ChannelClosedByBroker), connection.asking() as channel:
             channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
-            channel.close()
 
-    def remove(self, connection: Any, subscription: Subscription) -> None:
+    def remove(self, connection: PolledConnection, subscription: Subscription) -> None:
         """A queue that outlives us, and that no other process reads, is bound to nothing any more.
 
         It is deleted if it is empty; a quorum queue can't be deleted so carefully, and stays.
         """
-        with suppress(ChannelClosedByBroker):
-            channel = connection.channel()
+        with suppress(ChannelClosedByBroker), connection.asking() as channel:
             self._remove(channel, subscription)
-            channel.close()
 
-    def _remove(self, channel: Any, subscription: Subscription) -> None:
+    def _remove(self, channel: AskedChannel, subscription: Subscription) -> None:
         name, must = subscription.queue, subscription.must_arrive
         if must:
             if channel.queue_declare(name, passive=True).method.consumer_count:
@@ -59,13 +54,13 @@ class QueueDeclarer:
         if not queue_of("", subscription.route).quorum and (must or not subscription.tag):
             channel.queue_delete(name, if_unused=True, if_empty=must)
 
-    def _attempts(self, queue: Queue) -> tuple[Callable[[Any, Queue], str], ...]:
+    def _attempts(self, queue: Queue) -> tuple[Callable[[AskedChannel, Queue], str], ...]:
         """What to try, one after the other, where there is a queue of that name with other arguments."""
         if queue.quorum:
             return self._declare_quorum, _adopt
         return (_declare, _renew, _adopt) if queue.name else (_declare,)
 
-    def _declare_quorum(self, channel: Any, queue: Queue) -> str:
+    def _declare_quorum(self, channel: AskedChannel, queue: Queue) -> str:
         """A quorum queue, which is bound when a crash of the broker can't lose it any more.
 
         Where the broker was killed before that, it has no log for it and never answers for it: it is declared anew.
@@ -75,22 +70,21 @@ class QueueDeclarer:
         if not _exists(channel, queue.name):
             self.settling.add(queue.name)
             channel.queue_declare(queue.name, durable=True, arguments=queue.arguments)
-            channel.connection.sleep(QUORUM_SETTLE_TIME)
+            channel.connection.rest(QUORUM_SETTLE_TIME)
             self.settling.discard(queue.name)
         return _declare(channel, queue)
 
 
-def _exists(channel: Any, name: str) -> bool:
-    other = channel.connection.channel()
+def _exists(channel: AskedChannel, name: str) -> bool:
     try:
-        other.queue_declare(name, passive=True)
+        with channel.connection.asking() as other:
+            other.queue_declare(name, passive=True)
     except ChannelClosedByBroker:
         return False
-    other.close()
     return True
 
 
-def _declare(channel: Any, queue: Queue) -> str:
+def _declare(channel: AskedChannel, queue: Queue) -> str:
     exclusive = not queue.name
     declared = channel.queue_declare(
         queue.name, durable=not exclusive, exclusive=exclusive, auto_delete=exclusive, arguments=queue.arguments
@@ -99,13 +93,13 @@ def _declare(channel: Any, queue: Queue) -> str:
     return str(declared.method.queue)
 
 
-def _renew(channel: Any, queue: Queue) -> str:
+def _renew(channel: AskedChannel, queue: Queue) -> str:
     """There is one of that name with other arguments: where it holds nothing, another takes its place."""
     channel.queue_delete(queue.name, if_unused=True, if_empty=True)
     return _declare(channel, queue)
 
 
-def _adopt(channel: Any, queue: Queue) -> str:
+def _adopt(channel: AskedChannel, queue: Queue) -> str:
     """Use the one that there is: nothing in it is lost, and it is replaced when it is empty."""
     channel.queue_bind(queue.name, EXCHANGE, queue.key)
     return queue.name

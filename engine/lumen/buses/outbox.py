@@ -5,6 +5,8 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from queue import Empty, SimpleQueue
 from typing import NamedTuple
 
 from lumen.errors import BusFullError
@@ -64,7 +66,8 @@ class Outbox:
         self._newest: dict[str, deque[OutgoingMessage]] = {}
         self._bytes = {True: 0, False: 0}
         self._changed = threading.Condition()
-        self._asleep = False
+        self._asleep = self._awaited = False
+        self._news = SimpleQueue[None]()
 
     def put(self, message: OutgoingMessage) -> None:
         with self._changed:
@@ -79,18 +82,20 @@ class Outbox:
             while len(self._may) > MAX_PENDING_MESSAGES or self._bytes[False] > MAX_PENDING_BYTES:
                 self.drops.add(self._pop().key, "too much waits to be sent")
             asleep, self._asleep = self._asleep, False
-            self._changed.notify_all()
+            awaited, self._awaited = self._awaited, False
+        if awaited:
+            self._news.put(None)
         if asleep:
             self._awaken()
 
     def take(self, limit: int, timeout: float) -> list[OutgoingMessage]:
         """The next messages still wanted, at most so many; none if there is nothing within `timeout` [s]."""
+        if timeout and not self:
+            self._await(timeout)
         with self._changed:
-            if timeout and not self:
-                self._changed.wait(timeout)
             now = time.monotonic()
             taken: list[OutgoingMessage] = []
-            while self and len(taken) < limit:
+            while (self._must or self._may) and len(taken) < limit:
                 message = self._pop()
                 if message.deadline is None or message.deadline > now:
                     taken.append(message)
@@ -128,9 +133,16 @@ class Outbox:
 
     def wake(self) -> None:
         """Let `take` return."""
-        with self._changed:
-            self._changed.notify_all()
+        self._news.put(None)
         self._awaken()
+
+    def _await(self, timeout: float) -> None:
+        """Return when something was put, at the latest in `timeout` [s]; a condition would wake its thread twice."""
+        with self._changed:
+            self._awaited = not self
+        if self._awaited:
+            with suppress(Empty):
+                self._news.get(timeout=timeout)
 
     def __len__(self) -> int:
         return len(self._must) + len(self._may)

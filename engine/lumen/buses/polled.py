@@ -1,39 +1,17 @@
 """pika's asynchronous connection, driven by whoever owns it: no callback of ours runs but inside `turn`."""
 
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
-import pika
 from pika.adapters.select_connection import IOLoop
-from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelClosedByBroker
+from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelWrongStateError
 
+from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BROKER_TIMEOUT
-from lumen.buses.queues import ChannelCall
-
-FLUSH_BYTES = 8 * 1024
-"""From how many bytes on frames are sent at once; what is less is sent at the next turn."""
-
-
-class _BufferedConnection(pika.SelectConnection):  # type: ignore[misc]  # pika is not typed
-    """Frames are sent together: a message has three, and pika would call the system for each."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        self._frames: list[bytes] = []
-        self._size = 0
-        super().__init__(*args, **kwargs)
-
-    def flush(self) -> None:
-        if self._frames:
-            data, self._frames, self._size = b"".join(self._frames), [], 0
-            if not self.is_closed:
-                super()._adapter_emit_data(data)
-
-    def _adapter_emit_data(self, data: bytes) -> None:
-        self._frames.append(data)
-        self._size += len(data)
-        if self._size > FLUSH_BYTES:
-            self.flush()
+from lumen.buses.wire import MessageReader, WireConnection
 
 
 class PolledConnection:
@@ -46,6 +24,7 @@ class PolledConnection:
         self._loop = IOLoop()
         self._loop.activate_poller()
         self._error: BaseException | None = None
+        self._works: deque[Callable[[], None]] = deque()
         self._alarm: object = None
         self.channel: Any = None
         self._connection: Any = None
@@ -62,39 +41,51 @@ class PolledConnection:
 
     def open_channel(self) -> Any:
         """A channel; the one before is gone."""
-        opened: list[Any] = []
-        self.channel = self._connection.channel(on_open_callback=opened.append)
+        self.channel = self._open_channel()
         self.channel.add_on_close_callback(lambda _, reason: self._closed(reason))
-        self.until(lambda: opened)
+        self._connection.unread = self.channel.basic_reject
         return self.channel
 
-    def attempt(self, work: Callable[[ChannelCall, Any], None]) -> str:
-        """Do something on a channel of its own, which closes where the broker refuses; empty, or why it does."""
-        opened: list[Any] = []
-        closed: list[BaseException] = []
-        channel = self._connection.channel(on_open_callback=opened.append)
-        channel.add_on_close_callback(lambda _, reason: closed.append(reason))
-        self.until(lambda: opened or closed)
-
-        def call(method: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
-            answers: list[Any] = []
-            method(*args, callback=answers.append, **kwargs)
-            self.until(lambda: answers or closed)
-            if closed:
-                raise closed[0]
-
+    @contextmanager
+    def asking(self) -> Iterator[AskedChannel]:
+        """A channel of its own for questions, which closes where the broker refuses."""
+        channel = AskedChannel(self, self._open_channel())
         try:
-            work(call, channel)
-        except ChannelClosedByBroker as error:
-            return str(error.reply_text)
-        channel.close()
-        return ""
+            yield channel
+        finally:
+            channel.close()
 
     def ask(self, method: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
         """Call a method of the channel and wait for the broker's answer."""
         answers: list[Any] = []
         method(*args, callback=answers.append, **kwargs)
         self.until(lambda: answers)
+
+    def publish(self, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
+        """Send a message with the next turn; raises ValueError where AMQP can't carry it."""
+        if not self.channel.is_open:
+            raise ChannelWrongStateError("the channel is closed")
+        self._connection.send(self.channel.channel_number, exchange, key, properties, body, mandatory=mandatory)
+
+    def confirm(self, has: Callable[[int, bool], None], lacks: Callable[[int, bool], None]) -> None:
+        """Have the broker say which of the messages sent from now on it has, by number, and by `True` all before."""
+
+        def refused(frame: Any) -> None:
+            lacks(frame.method.delivery_tag, frame.method.multiple)
+
+        self._connection.confirmed = has
+        self.ask(self.channel.confirm_delivery, refused)
+
+    def consume(self, queue: str, reader: MessageReader, arguments: Mapping[str, Any] | None = None) -> str:
+        """Have messages of a queue read; the tag by which to `cancel` that."""
+        tag: str = self.channel.basic_consume(queue, lambda *_: None, arguments=arguments)
+        self._connection.readers[tag.encode()] = reader
+        return tag
+
+    def cancel(self, tag: str) -> None:
+        """Read no more; what comes meanwhile goes back to the queue."""
+        if self._connection.readers.pop(tag.encode(), None):
+            self.ask(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
         """Turn until that is so, for as long as the broker may take to answer."""
@@ -124,6 +115,30 @@ class PolledConnection:
         """From any thread: let `turn` return."""
         self._loop.add_callback_threadsafe(lambda: None)
 
+    def later(self, work: Callable[[], None]) -> None:
+        """From any thread: have the thread that owns the connection do this in `work`, where it may ask the broker."""
+        self._works.append(work)
+        self.wake()
+
+    def work(self) -> None:
+        """Do what others wanted done `later`, between two turns."""
+        while self._works:
+            self._works.popleft()()
+
+    def call_later(self, seconds: float, work: Callable[[], None]) -> None:
+        """Do this within a turn in so many seconds; it may not ask the broker."""
+        self._loop.call_later(seconds, work)
+
+    def rest(self, seconds: float) -> None:
+        """Turn for so long."""
+        rung: list[bool] = []
+        self.call_later(seconds, lambda: rung.append(True))
+        self.until(lambda: rung)
+
+    def fail(self, error: BaseException) -> None:
+        """Within a callback: have the turn raise this."""
+        self._error = error
+
     def close(self) -> None:
         """End in good order where it can be; the loop is gone afterwards."""
         try:
@@ -137,9 +152,15 @@ class PolledConnection:
             self._loop.deactivate_poller()
             self._loop.close()
 
+    def _open_channel(self) -> Any:
+        opened: list[Any] = []
+        channel = self._connection.channel(on_open_callback=opened.append)
+        self.until(lambda: opened or channel.is_closed)
+        return channel
+
     def _open(self, parameters: Any) -> None:
         opened: list[Any] = []
-        self._connection = _BufferedConnection(
+        self._connection = WireConnection(
             parameters,
             on_open_callback=opened.append,
             on_open_error_callback=lambda _, error: self._failed(error),

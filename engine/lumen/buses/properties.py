@@ -6,13 +6,15 @@ texts stands before it, and where in a stream the message stands; the others are
 no text is left out, and named.
 """
 
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from struct import Struct, pack, unpack_from
 from struct import error as struct_error
-from struct import unpack_from
 from typing import Any, NamedTuple
 
 import pika
 from pika import frame, spec
+from pika.data import encode_table
 
 _HEADER_START = spec.FRAME_HEADER_SIZE + 12
 """Where in a frame the properties begin: behind the class, the weight and the length of the body."""
@@ -84,6 +86,26 @@ def read_properties(data: bytes) -> MessageProperties:
     except struct_error:
         unreadable.append("the rest")
     return MessageProperties(**found, unreadable=tuple(unreadable))
+
+
+def write_properties(said: Mapping[str, Any]) -> bytes:
+    """Properties by their names in AMQP, as it has them; what is empty is left out.
+
+    Raises ValueError for a text that is too long, or no Unicode.
+    """
+    flags, parts = 0, [b""]
+    for bit, (name, kind) in zip(range(15, 1, -1), _FIELDS, strict=True):
+        if value := said.get(name):
+            flags |= 1 << bit
+            parts.append(_WRITERS[kind](value))
+    parts[0] = pack(">H", flags)
+    return b"".join(parts)
+
+
+def short_text(text: str) -> bytes:
+    """A text of 255 bytes at most, as AMQP has it; raises ValueError for another."""
+    said = text.encode()
+    return bytes((len(said),)) + said
 
 
 def _flags(data: bytes) -> tuple[int, int]:
@@ -161,6 +183,12 @@ def header_fields(table: bytes) -> dict[str, str | int]:
     return found
 
 
+def _table_of(entries: dict[str, Any]) -> bytes:
+    pieces: list[bytes] = []
+    encode_table(pieces, entries)
+    return b"".join(pieces)
+
+
 def _byte(data: bytes, at: int) -> tuple[int | None, int]:
     return unpack_from("B", data, at)[0], at + 1
 
@@ -180,3 +208,6 @@ _NUMBERS = {
 }  # fmt: skip
 """How those are read that are whole numbers, or true or false."""
 _READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}
+_WRITERS: dict[str, Callable[[Any], bytes]] = {
+    "text": short_text, "table": _table_of, "byte": Struct("B").pack, "time": Struct(">Q").pack,
+}  # fmt: skip

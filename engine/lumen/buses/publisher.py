@@ -5,15 +5,15 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import pika
-from pika.exceptions import AMQPChannelError, AMQPConnectionError
+from pika.exceptions import AMQPChannelError, AMQPConnectionError, ChannelClosedByBroker
 
+from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.outbox import Outbox, OutgoingMessage
 from lumen.buses.polled import PolledConnection
-from lumen.buses.properties import CAUSE_HEADER
-from lumen.buses.queues import SIDE_QUEUES, UNROUTED, ChannelCall, Queue, declare_side_queues
+from lumen.buses.properties import CAUSE_HEADER, write_properties
+from lumen.buses.queues import SIDE_QUEUES, UNROUTED, Queue, declare_side_queues
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
@@ -22,6 +22,8 @@ MAX_UNCONFIRMED_MESSAGES = 1_000
 """Messages that are sent and not confirmed yet; more wait in the outbox."""
 MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
 """Their bodies [bytes]."""
+GATHER_TIME = 0.01
+"""How long the next message is waited for before what the broker says of the last one is waited for [s]."""
 IDLE_TIME = 0.5
 """How long the connection is left to itself while there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
@@ -53,23 +55,18 @@ class Publisher(BrokerConnection):
         self._refused: set[str] = set()
         self._window: dict[int, OutgoingMessage] = {}
         self._bytes = self._number = 0
+        self._busy = False
         self._warned: set[str] = set()
         self._probed: set[str] = set()
         self._missed: dict[str, float] = {}
         self.unsendable = DropLog(_log)
-
-    def connect(self) -> PolledConnection:
-        return PolledConnection(self.address.parameters)
-
-    def open_channel(self) -> Any:
-        return self.connection.open_channel()
 
     def begin(self) -> None:
         self.address.check_version(self.connection.server)
         self._number, self._declared, self._refused = 0, set(), set()
         self._declare(SIDE_QUEUES, declare_side_queues)
         self.channel.add_on_return_callback(self._returned)
-        self.connection.ask(self.channel.confirm_delivery, self._confirmed)
+        self.connection.confirm(self._confirmed, self._nacked)
 
     @property
     def has_side_queues(self) -> bool:
@@ -80,20 +77,18 @@ class Publisher(BrokerConnection):
         for key, queue in self.journals.items():
             self._declare(key, queue.declare)
         room = self._room()
-        messages = self.outbox.take(room, 0.0) if room > 0 else []
+        messages = self.outbox.take(room, GATHER_TIME if self._busy else 0.0) if room > 0 else []
         for sent, message in enumerate(messages):
             try:
                 self._send(message)
             except BaseException:
                 self.outbox.put_back(messages[sent:])
                 raise
-        self.connection.turn(IDLE_TIME if self._idle(bool(messages)) else 0.0)
+        self._busy = bool(messages)
+        self.connection.turn(0.0 if self._busy or not self._idle() else IDLE_TIME)
         self.outbox.drops.tell()
         self.unsendable.tell()
         return bool(self.outbox or self._window) or not self.ending.is_set()
-
-    def finish(self) -> None:
-        """There is nothing left to wait for."""
 
     def disconnect(self, connection: PolledConnection) -> None:
         lost, self._window, self._bytes = self._window, {}, 0
@@ -113,30 +108,31 @@ class Publisher(BrokerConnection):
     def _room(self) -> int:
         return 0 if self._bytes > MAX_UNCONFIRMED_BYTES else MAX_UNCONFIRMED_MESSAGES - len(self._window)
 
-    def _idle(self, busy: bool) -> bool:
+    def _idle(self) -> bool:
         """Whether there is nothing to do until the broker says something, or there is something to send."""
         if self._room() <= 0:
             return True
-        return not busy and self.outbox.sleep() and not (self.ending.is_set() and not self._window)
+        return self.outbox.sleep() and not (self.ending.is_set() and not self._window)
 
     def _send(self, message: OutgoingMessage) -> None:
         id, sender, sent, cause = message.origin
-        properties = pika.BasicProperties(
-            content_type=message.content_type,
-            content_encoding="utf-8" if message.content_type not in (JPEG_TYPE, FLOATS_TYPE) else None,
-            reply_to=message.reply_to or None,
-            correlation_id=message.correlation_id or None,
-            expiration=message.expiration,
-            type=message.type or None,
-            message_id=id or None,
-            app_id=sender or None,
-            timestamp=int(sent) or None,
-            delivery_mode=PERSISTENT_DELIVERY if message.must else None,
-            headers={**({CAUSE_HEADER: cause} if cause else {}), **(message.headers or {})} or None,
-        )
+        said = {
+            "content_type": message.content_type,
+            "content_encoding": "" if message.content_type in (JPEG_TYPE, FLOATS_TYPE) else "utf-8",
+            "reply_to": message.reply_to,
+            "correlation_id": message.correlation_id,
+            "expiration": message.expiration,
+            "type": message.type,
+            "message_id": id,
+            "app_id": sender,
+            "timestamp": int(sent),
+            "delivery_mode": message.must and PERSISTENT_DELIVERY,
+            "headers": {**({CAUSE_HEADER: cause} if cause else {}), **(message.headers or {})},
+        }
         try:
             wanted = bool(message.must or (self.returned and message.exchange) or message.key in self._probed)
-            self.channel.basic_publish(message.exchange, message.key, message.body, properties, mandatory=wanted)
+            properties = write_properties(said)
+            self.connection.publish(message.exchange, message.key, properties, message.body, mandatory=wanted)
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
         except Exception as error:  # it can't be written down: sent again, it would end the connection again
@@ -146,16 +142,21 @@ class Publisher(BrokerConnection):
         self._window[self._number] = message
         self._bytes += len(message.body)
 
-    def _confirmed(self, frame: Any) -> None:
-        """The broker has this message, and with `multiple` all before it; or (a nack) could not take it."""
-        method = frame.method
-        first = next(iter(self._window), 0) if method.multiple else method.delivery_tag
-        numbers = range(first, method.delivery_tag + 1)
-        messages = [message for n in numbers if (message := self._window.pop(n, None))]
+    def _confirmed(self, number: int, several: bool) -> None:
+        """The broker has this message, and with `several` all before it."""
+        self._settled(number, several)
+
+    def _nacked(self, number: int, several: bool) -> None:
+        messages = self._settled(number, several)
+        _log.warning("the broker at %s could not take %d messages", self.address, len(messages))
+        self.outbox.put_back([message for message in messages if message.must])
+
+    def _settled(self, number: int, several: bool) -> list[OutgoingMessage]:
+        """Messages that are in the broker's hands no more, or for good."""
+        first = next(iter(self._window), 0) if several else number
+        messages = [message for n in range(first, number + 1) if (message := self._window.pop(n, None))]
         self._bytes -= sum(len(message.body) for message in messages)
-        if isinstance(method, pika.spec.Basic.Nack):
-            _log.warning("the broker at %s could not take %d messages", self.address, len(messages))
-            self.outbox.put_back([message for message in messages if message.must])
+        return messages
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
         """Nobody is there for a message; one that must arrive is put where somebody can find it."""
@@ -199,12 +200,15 @@ class Publisher(BrokerConnection):
         hint = f": {did_you_mean(key, others)}" if others else ""
         _log.warning("nobody takes what is sent on `%s`%s", key, hint if "mean" in hint else "")
 
-    def _declare(self, name: str, work: Callable[[ChannelCall, Any], None]) -> None:
+    def _declare(self, name: str, work: Callable[[AskedChannel], None]) -> None:
         """Declare something on the broker once; where it refuses, as it does to a user of few rights, all goes on."""
         if name in self._declared or name in self._refused:
             return
-        if refusal := self.connection.attempt(work):
-            self._refused.add(name)
-            _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, refusal)
-        else:
+        try:
+            with self.connection.asking() as channel:
+                work(channel)
             self._declared.add(name)
+        except ChannelClosedByBroker as error:
+            self._refused.add(name)
+            why = error.reply_text
+            _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, why)

@@ -7,10 +7,10 @@ bound: what can't be kept is refused to the sender, or is the oldest of what may
 """
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from lumen.buses.asked_channel import AskedChannel
 from lumen.language.routes import Carried, Route
 
 EXCHANGE = "amq.topic"
@@ -40,9 +40,6 @@ QUORUM_SETTLE_TIME = 1.0
 """How long a new quorum queue stays unbound [s]: RabbitMQ writes down half a second later which log is whose; killed
 before that, it loses what the queue held (docs/decisions)."""
 
-ChannelCall = Callable[..., Any]
-"""Calls a method of a channel with these arguments, and waits for the broker's answer."""
-
 
 @dataclass(frozen=True)
 class Queue:
@@ -57,10 +54,10 @@ class Queue:
     def quorum(self) -> bool:
         return self.arguments.get("x-queue-type") == "quorum"
 
-    def declare(self, call: ChannelCall, channel: Any) -> None:
+    def declare(self, channel: AskedChannel) -> None:
         """Declare one that has a name, and bind it to its key."""
-        call(channel.queue_declare, self.name, durable=True, arguments=self.arguments)
-        call(channel.queue_bind, self.name, EXCHANGE, self.key)
+        channel.queue_declare(self.name, durable=True, arguments=self.arguments)
+        channel.queue_bind(self.name, EXCHANGE, self.key)
 
 
 def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXCHANGE) -> Queue:
@@ -94,7 +91,7 @@ def journal_of(key: str) -> Queue:
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 
 
-def declare_side_queues(call: ChannelCall, channel: Any) -> None:
+def declare_side_queues(channel: AskedChannel) -> None:
     """Declare the places for what nobody could use: bounded, the oldest gives way."""
     for name, lifetime in ((DEAD_LETTERS, 7 * 24 * HOUR), (UNROUTED, HOUR)):
         limits = {
@@ -102,9 +99,9 @@ def declare_side_queues(call: ChannelCall, channel: Any) -> None:
             "x-max-length-bytes": MAX_SIDE_QUEUE_BYTES,
             "x-message-ttl": lifetime,
         }
-        call(channel.exchange_declare, name, "fanout", durable=True)
-        call(channel.queue_declare, name, durable=True, arguments=limits)
-        call(channel.queue_bind, name, name, "")
+        channel.exchange_declare(name, "fanout", durable=True)
+        channel.queue_declare(name, durable=True, arguments=limits)
+        channel.queue_bind(name, name, "")
 
 
 def _lifetime(route: Route | None) -> dict[str, int]:

@@ -54,7 +54,7 @@ class StreamReader(BrokerConnection):
     def begin(self) -> None:
         self.channel.basic_qos(prefetch_count=PREFETCH)
         self.channel.add_on_cancel_callback(self._cancelled)
-        self.channel.basic_consume(self._stream, self._came, arguments={"x-stream-offset": self._next})
+        self.connection.consume(self._stream, self._came, arguments={"x-stream-offset": self._next})
 
     def serve(self) -> bool:
         if self._last and len(self._read) < MOST_READ:
@@ -63,13 +63,13 @@ class StreamReader(BrokerConnection):
         self.process(TURN)
         return not self.ending.is_set()
 
-    def _came(self, _: Any, method: Any, properties: MessageProperties, data: bytes) -> None:
-        self._last = method.delivery_tag
+    def _came(self, number: int, _: bool, name: bytes, properties: MessageProperties, data: bytes) -> None:
+        self._last = number
         offset = properties.offset if properties.offset >= 0 else self._next
         if offset < self._next:  # a stream is sent from the beginning of the piece in which the offset lies
             return
         self._next = offset + 1
-        key = method.routing_key if isinstance(method.routing_key, str) else ""
+        key = name.decode(errors="ignore")
         try:
             body = decode(data, properties.content_type or JSON)
         except ValueError:
@@ -77,7 +77,7 @@ class StreamReader(BrokerConnection):
         self._read.append(StreamEntry(offset, key, body, properties.message_id, float(properties.timestamp)))
 
     def _cancelled(self, frame: Any) -> None:
-        raise ConsumerCancelled(frame.method.consumer_tag)
+        self.connection.fail(ConsumerCancelled(frame.method.consumer_tag))
 
 
 def has_stream(url: str, name: str) -> bool:
