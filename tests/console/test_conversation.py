@@ -62,17 +62,18 @@ def violations(viewer: Viewer) -> object:
 def test_what_nobody_could_answer_becomes_a_passage(viewer: Viewer, asked: Hosted, console: str) -> None:
     viewer.open(console, "robot/NAO/day", ready=".unanswered")
     viewer.shows("none", ".unanswered")
+    viewer.open(console, "robot/NAO/day", ready=".unanswered", mode="author")
     asked.send("heard", {"result": QUESTION, "language": "en"})
-    until(lambda: Browser(console).get("/api/day").data["numbers"]["unanswered"], WAIT)
-    viewer.open(console, "robot/NAO/day", ready=".unanswered li button", mode="author")
-    viewer.shows(QUESTION, ".unanswered")
+    viewer.shows(QUESTION, ".unanswered li")
     viewer.click(".unanswered button")
     until(lambda: viewer.run("return document.activeElement.matches('.unanswered input')"), WAIT)
     assert violations(viewer) == []
     viewer.type("A question.", Keys.ENTER)
     viewer.shows("saved as knowledge/what-is-b-love-b.yaml", ".unanswered")
+    assert QUESTION not in viewer.text(".unanswered")
     passage = yaml.safe_load((asked.root / "knowledge" / "what-is-b-love-b.yaml").read_text("utf-8"))
     assert passage == {"questions": {"en": [QUESTION]}, "answer": {"en": "A question."}}
+    assert Browser(console).get("/api/day").data["numbers"]["unanswered"] == []
 
 
 def test_the_language_model_is_silenced(viewer: Viewer, asked: Hosted, console: str) -> None:

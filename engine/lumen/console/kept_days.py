@@ -10,9 +10,11 @@ from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.console.day import Day, day_of
 from lumen.errors import JournalError
 from lumen.interpreters.replay.entries import RecordedEntry, read_entry
+from lumen.interpreters.retrieval.words import words
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
+from lumen.loading.project import knowledge_parts
 from lumen.rules import check_files
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import each_entry
@@ -41,11 +43,26 @@ class KeptDays:
         wanted_files = [file for file, _, began in files if end - WINDOW <= began <= end]
         found = day_of(_entries(wanted_files), self._machine, chosen)
         found.dates = sorted({*dates, *found.dates})
-        return found
+        return self._still_open(found)
 
     def told(self, pages: Iterable[Any], wanted: date | None) -> Day:
         """A day from pages of entries with their positions, as an exhibition tells them."""
-        return day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted)
+        return self._still_open(day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted))
+
+    def _still_open(self, found: Day) -> Day:
+        """The day without those unanswered questions that stand in a passage by now."""
+        if found.unanswered:
+            known = knowledge_parts(read_files(self._root, self._robot)).knowledge.values()
+            answered = {
+                (language, *words(text))
+                for passage in known
+                for language, texts in passage.questions.items()
+                for text in texts
+            }
+            for text, language in [*found.unanswered]:
+                if (language, *words(text)) in answered:
+                    del found.unanswered[text, language]
+        return found
 
     def _machine(self, hash: str, behavior: str) -> MachineDefinition | None:
         """What ran then; where that was not kept, what is here now."""

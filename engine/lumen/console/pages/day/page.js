@@ -1,6 +1,6 @@
 // The day: a time line to go along, visit by visit, with what happened, its why, its numbers, and what would have been.
 import { command } from "../commands.js";
-import { get } from "../live.js";
+import { get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
 import { may } from "../session.js";
 import { Part, clock, html, lineOf, span, t, useEffect, useRedraw, useState } from "../ui.js";
@@ -9,6 +9,7 @@ import { Line, bounds, stretches } from "./line.js";
 import { Numbers } from "./numbers.js";
 
 const AROUND = 40; // entries that are shown around a moment
+const SOON = 500, AGAIN = 15000; // [ms] after what happened last, and between two looks at the day: a look is dear
 
 function Visits({ day, visit, choose }) {
   return html`<${Part} title=${t("day.visits")} kind="visits">
@@ -61,6 +62,19 @@ export default function DayPage({ name }) {
       if (last) look(last); else choose(null);
     }, (error) => gone || fail(error.message));
     return () => { gone = true; };
+  }, [date]);
+  useEffect(() => { // what happens counts at once, where the day that is shown is the one that goes on
+    let timer = 0, looked = 0, gone = false;
+    const look = () => get("/api/day", { robot: name }, 60000).then((found) => {
+      looked = Date.now();
+      if (!gone) set((shown) => (shown?.date === found.date ? { ...shown, numbers: found.numbers, marks: found.marks } : shown));
+    }, () => {}); // the console is away: what is shown stays
+    const leave = date ? () => {} : listen((kind, body) => {
+      if (kind !== "entry" || body.robot !== name || !body.text || live.state !== "live") return; // before that comes what was
+      clearTimeout(timer);
+      timer = setTimeout(look, Math.max(SOON, looked + AGAIN - Date.now()));
+    });
+    return () => { gone = true; clearTimeout(timer); leave(); };
   }, [date]);
   const scrub = (at) => {
     move(at), mark(null);
