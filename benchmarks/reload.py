@@ -13,7 +13,7 @@ import platform
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,6 +27,7 @@ from tests.guarded import PIPE, Guarded
 
 import lumen
 from lumen.app.narrator import Narrator
+from lumen.app.parts.part import Part
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
@@ -36,6 +37,7 @@ from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.clocks.simulated import SimulatedClock
+from lumen.language.events import Event
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
@@ -143,6 +145,16 @@ class Load(threading.Thread):
             self._bus.close()
 
 
+class LookPart(Part):
+    """Looks once everything else has had its tick: what is told in a tick is seen in it."""
+
+    def __init__(self, look: Callable[[], None]) -> None:
+        self._look = look
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._look()
+
+
 class Soak:
     """A show in real time with a writer beside it."""
 
@@ -157,8 +169,7 @@ class Soak:
         records = RunRecords(home)
         self.reloading = Reloader(self.show.behavior, narrator, records=records, quiet=quiet)
         self.show.add(ReloadPart(self.reloading))
-        self.show.before.append(self.look)
-        self.show.parts.append(RecordsPart(records, self.show.behavior))
+        self.show.parts += [RecordsPart(records, self.show.behavior), LookPart(self.look)]
         self.show.closing += [records.close, home.release]
         self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.8 * SHORT_QUIET_FRACTION * quiet)
         self.show.closing.append(self.writer.close)
@@ -171,7 +182,7 @@ class Soak:
         self._editing = threading.Thread(target=self.edit, daemon=True)
         self._done, self._pause = threading.Event(), threading.Event()
 
-    def look(self, _: float) -> None:
+    def look(self) -> None:
         """On the running thread: every tick, every verdict, every bundle."""
         now, outcome = time.monotonic(), self.outcome
         gap, self._before = now - self._before, now

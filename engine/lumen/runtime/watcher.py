@@ -15,7 +15,7 @@ from lumen.loading.kept_contents import KeptContents
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
-SHORT_QUIET_FRACTION = 0.3
+SHORT_QUIET_FRACTION = 0.2
 """The part of the quiet period for which a single file that is whole and good has to stay as it is."""
 MAX_READ_PERIOD = 1.0
 HINT_DEBOUNCE = 10
