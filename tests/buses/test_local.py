@@ -144,6 +144,12 @@ def test_a_fault_of_ours_in_handling_a_frame_costs_one_connection(
         client.still_hears()
 
 
+def test_whoever_closes_waits_for_no_thread_that_has_nothing_to_do(opened: Opened) -> None:
+    client = LocalBusClient(opened.server.address)
+    client.close()
+    assert not any(thread.is_alive() for thread in client._threads)
+
+
 def test_who_never_says_a_word_is_forgotten(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lumen.buses.local.server.PROOF_TIMEOUT", 0.1)
     with opened.raw() as wire:

@@ -142,6 +142,7 @@ class LocalBusClient:
         for answered, _ in list(self._answers.values()):
             answered.set()
         self._marked.set()
+        self._unsent.end()
         with self._arriving:
             self._arriving.notify_all()
 
@@ -151,7 +152,7 @@ class LocalBusClient:
     def _send(self) -> None:
         try:
             while not self.gone.is_set():
-                for data in self._unsent.take(0.5):
+                for data in self._unsent.take():
                     self._wire.sendall(data)
         except OSError:
             self._end()

@@ -13,6 +13,7 @@ class SendBuffer:
     def __init__(self) -> None:
         self._frames: deque[bytes] = deque()
         self._bytes = 0
+        self._ended = False
         self._changed = threading.Condition()
 
     def put(self, frame: bytes) -> None:
@@ -23,10 +24,10 @@ class SendBuffer:
                 self._bytes -= len(self._frames.popleft())
             self._changed.notify_all()
 
-    def take(self, timeout: float) -> list[bytes]:
-        """All that waits; nothing if there is nothing within `timeout` [s]."""
+    def take(self) -> list[bytes]:
+        """All that waits, once there is something; nothing where it has ended before."""
         with self._changed:
-            self._changed.wait_for(lambda: self._frames, timeout)
+            self._changed.wait_for(lambda: self._frames or self._ended)
             taken = list(self._frames)
             self._frames.clear()
             self._bytes = 0
@@ -37,3 +38,9 @@ class SendBuffer:
         """Wait until everything has been taken; whether it has, within `timeout` [s]."""
         with self._changed:
             return self._changed.wait_for(lambda: not self._frames, timeout)
+
+    def end(self) -> None:
+        """Let nobody wait for more."""
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
