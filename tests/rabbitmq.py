@@ -91,6 +91,11 @@ class RabbitMQ:
 
     def start(self) -> None:
         """Start it, or start it again with what it had stored, and wait until it accepts connections."""
+        self.begin()
+        self.wait()
+
+    def begin(self) -> None:
+        """Start it; whoever uses it has to `wait` first."""
         plugins = (*self._plugins, *["rabbitmq_mqtt"] * self._speaks_mqtt)
         (self.folder / "plugins").write_text(f"[{','.join(plugins)}].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
@@ -103,6 +108,10 @@ class RabbitMQ:
             self._names = self._begin("epmd", "-address", "127.0.0.1", "-port", str(self.epmd))
             self._await(self._names, lambda: _listens(self.epmd))
         self._process = self._begin(self._script)
+
+    def wait(self) -> None:
+        """Return once it accepts connections."""
+        assert self._process
         self._await(self._process, lambda: _speaks_amqp(self.port))
         if self._speaks_mqtt:
             self._await(self._process, lambda: _listens(self.mqtt))

@@ -42,8 +42,11 @@ class FleetBrokers:
         self.passwords[name] = json.loads((folder / name / "passwords.json").read_text())
 
     def start(self) -> None:
+        """Side by side, since each waits for its disk and its plugins more than it calculates."""
         for broker in self.brokers.values():
-            broker.start()
+            broker.begin()
+        for broker in self.brokers.values():
+            broker.wait()
 
     def url(self, name: str, user: str = "") -> str:
         """The address of a broker for one of its users: the robots of a house, the operators of the centre."""
