@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 from selenium import webdriver
@@ -105,6 +106,17 @@ class Chromium:
     def shows(self, *texts: str) -> bool:
         shown = self.text()
         return all(text in shown for text in texts)
+
+    def click(self, selector: str, text: str) -> None:
+        """Click the first that says this, wherever it is by then: what comes meanwhile moves it."""
+
+        def clicked() -> bool:
+            with suppress(WebDriverException, StopIteration):
+                next(one for one in self.all(selector) if text in one.text).click()
+                return True
+            return False
+
+        until(clicked, TIMEOUT)
 
     def rest(self, *, keys: bool = False) -> None:
         """Press Rest as a person does, as soon as the page has it: with the mouse, or Escape twice."""
