@@ -72,7 +72,7 @@ def test_a_state_and_nothing_at_all(greeted: Exhibition) -> None:
 
 
 def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
-    answer = greeted.why_not("how_are_you")
+    answer = greeted.why_not("check_name")
     assert all(set(reason) == REASON for reason in answer["reasons"])
     first = answer["reasons"][0]
     assert first["because"] == "guard"
@@ -107,7 +107,7 @@ def test_what_is_no_question_is_refused(greeted: Exhibition) -> None:
 
 
 def test_it_reads_well(greeted: Exhibition) -> None:
-    told = [*why_lines(greeted.why("not hear your name")), *why_not_lines(greeted.why_not("how_are_you"))]
+    told = [*why_lines(greeted.why("not hear your name")), *why_not_lines(greeted.why_not("check_name"))]
     assert all(len(line) <= 100 for line in told)
     text = "\n".join(told)
     assert "because ask_name → ask_name, on heard, as context.name_tries < 2" in text

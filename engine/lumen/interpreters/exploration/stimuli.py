@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.exploration.expression_uses import of_transition
+from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_block, of_transition
 from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS
@@ -114,7 +114,7 @@ class StimulusFinder:
         return self._known[known]
 
     def _sorts(self, name: str, heard: tuple[HeardTransition, ...]) -> Iterator[Any]:
-        trees = [(one, use.tree) for one in heard for use in of_transition(one.transition)]
+        trees = [(one, use.tree) for one in heard for use in _uses(one)]
         atoms = [(one, unparse(node)) for one, tree in trees for node in _known_of_events(tree, loop_keys(one.machine))]
         seen = set()
         for machine in dict.fromkeys(id(one.machine) for one in heard):
@@ -125,6 +125,13 @@ class StimulusFinder:
                 if sort not in seen:
                     seen.add(sort)
                     yield data
+
+
+def _uses(heard: HeardTransition) -> Iterator[ExpressionUse]:
+    """What a transition reads, and the states that it enters as they begin: they see the same event."""
+    yield from of_transition(heard.transition)
+    for target in heard.transition.targets:
+        yield from of_block(heard.machine.states[target].entry)
 
 
 def loop_keys(machine: MachineDefinition) -> frozenset[str]:
