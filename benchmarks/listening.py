@@ -22,7 +22,7 @@ from lumen.language.projects import Project
 from lumen.modules.ears import Ears
 from lumen.modules.ears.recogniser import Recogniser
 from lumen.modules.ears.resampling import resampled
-from lumen.modules.ears.shared_sphinx import SharedSphinx
+from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.voice_activity import VoiceActivity
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
@@ -151,7 +151,7 @@ class Hall:
 
 def half_duplex(project: Project) -> None:
     """How often the robot hears itself, and what it still hears of others."""
-    recogniser, nothing = SharedSphinx(), np.zeros(0)
+    recogniser, nothing = shared_sphinx(), np.zeros(0)
     said = [(text, spoken(text, "en-us+m3", 150)) for text in texts(ROBOT)]
     for name, knows in (("always listening", False), ("half duplex", True)):
         hall = Hall(project, recogniser, knows=knows)

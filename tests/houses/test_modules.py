@@ -7,7 +7,7 @@ import pytest
 
 from lumen.bus import connect
 from lumen.modules.ears.recogniser import Hypothesis
-from lumen.modules.ears.shared_sphinx import SharedSphinx
+from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
 from tests.houses.test_over_rabbitmq import PATIENCE, Hall
@@ -53,7 +53,7 @@ def test_the_recogniser_of_a_process_is_one(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(Sphinx, "__init__", lambda self: asked.append(self))
     monkeypatch.setattr(Sphinx, "expect", lambda self, sentences: asked.append(sentences))
     monkeypatch.setattr(Sphinx, "hypotheses", lambda self, sound: [Hypothesis("hello")])
-    ears = [SharedSphinx(), SharedSphinx()]
+    ears = [shared_sphinx(), shared_sphinx()]
     ears[1].expect([["hello"]])
     assert [one.recognise(Sound(16_000, b"")) for one in ears] == ["hello", "hello"]
     assert asked[1:] == [(), [["hello"]]], "one was made, and each says what it expects"

@@ -4,7 +4,7 @@ Each is a folder or a file, started by `lumen run` or as a process of its own:
 
     memory/     the database: a journal and the visitors, in SQLite
     eyes/       faces, whose they are, and people in a camera's images, with OpenCV
-    ears/       recordings that become texts, with PocketSphinx
+    ears/       recordings that become texts, with PocketSphinx or a Whisper of the house
     voice/      texts that become sound, with espeak-ng
     show/       lamps, screens and sound desks, which speak MQTT, OSC or DMX
     answers/    a language model on a short leash, asked what no passage answers

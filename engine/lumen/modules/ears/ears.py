@@ -3,6 +3,8 @@
 import time
 from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
 
 from lumen.errors import ModuleError
 from lumen.interpreters.expressions.phrases import padded
@@ -13,6 +15,7 @@ from lumen.modules.ears.addressing import NOBODY, SPEAKS, Addressing
 from lumen.modules.ears.expected import expected
 from lumen.modules.ears.own_voice import OwnVoice, Utterance
 from lumen.modules.ears.recogniser import Hypothesis, Recogniser, hypotheses
+from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.voice_activity import VoiceActivity, voice_activity
 from lumen.modules.module import Module
 from lumen.modules.sound import Sound, sound_of
@@ -32,8 +35,8 @@ class Ears(Module):
     Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard; so it is
     where `listens` is set and nobody means the robot. A sound has just ended when it comes. Whether they listen, and
     why, goes out on the route `listening` as it changes. A recogniser of one's own may be handed in, and who finds
-    speech in sounds; else they are PocketSphinx and Silero's network. Raises ModuleError where PocketSphinx is not
-    there.
+    speech in sounds; else they are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises
+    ModuleError where the recogniser is not there.
     """
 
     name = EARS
@@ -49,7 +52,7 @@ class Ears(Module):
     ) -> None:
         super().__init__(project, bus, tell, clock)
         self._activity = activity if recogniser else voice_activity()
-        self._recogniser = recogniser or _sphinx()
+        self._recogniser = recogniser or _recogniser(project, self.settings.options)
         self._recogniser.expect(expected(project))
         self._own_voice = OwnVoice()
         self._addressing = Addressing(self.settings.options.get("listens", {}), self.tell)
@@ -158,7 +161,11 @@ def _row(found: Hypothesis) -> dict[str, object]:
     return {"result": found.text, **sure}
 
 
-def _sphinx() -> Recogniser:
-    from lumen.modules.ears.shared_sphinx import SharedSphinx  # nobody who brings another needs it
+def _recogniser(project: Project, options: Mapping[str, Any]) -> Recogniser:
+    """The one that lumen.yaml says; nobody needs the packages of another."""
+    folder = options.get("whisper")
+    if folder is None:
+        return shared_sphinx()
+    from lumen.modules.ears.whisper import shared_whisper
 
-    return SharedSphinx()
+    return shared_whisper(Path(project.root) / folder, project.languages)

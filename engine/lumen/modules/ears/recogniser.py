@@ -29,7 +29,18 @@ class Hypothesis(NamedTuple):
 
 @runtime_checkable
 class RankingRecogniser(Protocol):
-    """A recogniser that also knows what else may have been said."""
+    """A recogniser that also knows what else may have been said; who inherits gets `recognise`."""
+
+    languages: tuple[str, ...]
+
+    def expect(self, sentences: Sequence[Sequence[str]]) -> None:
+        """As of any recogniser."""
+        ...
+
+    def recognise(self, sound: Sound) -> str:
+        """The likeliest of the hypotheses."""
+        found = self.hypotheses(sound)
+        return found[0].text if found else ""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
         """What may be said in it, the likeliest first; none where nothing is."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
 from lumen.modules.ears.bigrams import arpa
-from lumen.modules.ears.recogniser import Hypothesis
+from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
 from lumen.modules.sound import Sound
@@ -40,7 +40,7 @@ FILLERS = "<[+"
 TINY = 1e-9
 
 
-class Sphinx:
+class Sphinx(RankingRecogniser):
     """What is expected, by a language model of its own, else English freely spoken.
 
     Faster than it is spoken. Raises ModuleError where the package or its model is missing.
@@ -65,10 +65,6 @@ class Sphinx:
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
         self._expected = sentences
-
-    def recognise(self, sound: Sound) -> str:
-        found = self.hypotheses(sound)
-        return found[0].text if found else ""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
         """As many as are wanted. How sure only the first is, is known: the others' scores hardly differ."""
