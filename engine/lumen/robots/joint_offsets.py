@@ -13,10 +13,11 @@ def approach(
     `settling` [s] is the time constant of the way, `speeds` [rad/s] is the most for each joint. Those that are back are
     taken out.
     """
+    share = min(1.0, dt / settling)
     for joint in (*offsets, *(goals.keys() - offsets.keys())):
         offset, goal = offsets.get(joint, 0.0), goals.get(joint, 0.0)
-        most = speeds[joint] * dt
-        offset += max(-most, min(most, (goal - offset) * min(1.0, dt / settling)))
+        most, way = speeds[joint] * dt, (goal - offset) * share
+        offset += way if -most < way < most else most if way > 0.0 else -most
         if goal == 0.0 and abs(offset) < _REACHED:
             offsets.pop(joint, None)
         else:

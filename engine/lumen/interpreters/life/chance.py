@@ -1,9 +1,11 @@
 """Chance without a generator: what happens when depends on the seed alone, not on who asked before."""
 
+from functools import lru_cache
 from math import floor
 from zlib import crc32
 
 
+@lru_cache(4096)
 def chance(seed: int, what: str, number: int) -> float:
     """A number from 0 up to 1, always the same for the same three."""
     return crc32(f"{seed} {what} {number}".encode()) / 2**32

@@ -1,6 +1,7 @@
 """The force sensors under the feet: four in each, as NAO's `FSR`."""
 
 from collections.abc import Iterable, Mapping
+from itertools import compress
 
 import mujoco
 import numpy as np
@@ -27,18 +28,18 @@ class ForceSensors:
             for corner, site in _corners(model, names, prefix)
             if site in places
         }
-        self._data = data
+        self._data, self._addresses = data, np.array(list(self._places.values()), np.intp)
+        self._feet = {foot: [name.startswith(foot) for name in self._places] for foot in SENSED_FEET.values()}
 
     def weigh(self) -> Mapping[str, float]:
         """What each sensor feels [kg] by ALMemory's name (`LFoot/FSR/FrontLeft`), and each foot's `TotalWeight`."""
         if not self._places:
             return {}
-        felt = {
-            name: float(self._data.sensordata[place]) / NEWTONS_PER_KILOGRAM for name, place in self._places.items()
-        }
-        feet = SENSED_FEET.values()
-        total = {f"{foot}/FSR/TotalWeight": sum(felt[n] for n in felt if n.startswith(foot)) for foot in feet}
-        return {name: round(weight, 3) for name, weight in (felt | total).items()}
+        felt = [newtons / NEWTONS_PER_KILOGRAM for newtons in self._data.sensordata.take(self._addresses).tolist()]
+        weights = {name: round(weight, 3) for name, weight in zip(self._places, felt, strict=True)}
+        for foot, own in self._feet.items():
+            weights[f"{foot}/FSR/TotalWeight"] = round(sum(compress(felt, own)), 3)
+        return weights
 
 
 def _corners(model: mujoco.MjModel, names: Iterable[str], prefix: str) -> list[tuple[str, int]]:

@@ -20,7 +20,8 @@ PROPS = ("microphone",)
 """What the robot can hold for show; materials of the MJCF, invisible until then."""
 
 _SPEAKING = (0.4, 0.9, 1.0)
-_WHITE = tuple(channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big"))
+_WHITE = np.array([channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big")], np.float32)
+_UNSEEN = 1e-5
 
 
 class Lights:
@@ -72,7 +73,7 @@ class Lights:
         for light in self._groups.get("eyes", ()):
             if (i := self._ids.get(light)) is not None:
                 beneath = self.shown(light)
-                lit = not (np.allclose(beneath, self._first[i, :3]) or np.allclose(beneath, _WHITE))
+                lit = not (_alike(beneath, self._first[i, :3]) or _alike(beneath, _WHITE))
                 self._cover(light, rendered(colour) if colour == "off" or not lit else None)
 
     def _cover(self, light: str, shown: tuple[float, float, float] | None) -> None:
@@ -107,6 +108,11 @@ class Lights:
         if i is not None:
             self._unlit.get(i, self._colours[i])[:3] = shown
             self._worn = None
+
+
+def _alike(one: NDArray[np.float32], other: NDArray[np.float32]) -> bool:
+    """Whether nobody sees a difference between two colours."""
+    return bool((np.abs(one - other) < _UNSEEN).all())
 
 
 class LightFade:

@@ -12,6 +12,8 @@ from lumen.robots.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
 from lumen.robots.simulation.mean_rates import MeanRates
 from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
+_INERTIAL = [f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer") for axis in "XYZ"]
+
 
 class BodySensors:
     """Reads joint angles and turning speeds as the robot's own computer would; the same seed gives the same noise.
@@ -48,8 +50,7 @@ class BodySensors:
         forward, left, up = self._world.up
         turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration
         angles = atan2(left, up), atan2(-forward, hypot(left, up)), self.heading
-        values = zip(("Angle", "Gyroscope", "Accelerometer"), (angles, turning, pushed), strict=True)
-        return {f"{kind}{axis}": round(v, 4) for kind, three in values for axis, v in zip("XYZ", three, strict=True)}
+        return {name: round(v, 4) for name, v in zip(_INERTIAL, (*angles, *turning, *pushed), strict=True)}
 
     def feel(self, *, at_rest: bool) -> None:
         """Read encoders and gyrometer, once in each control period.
