@@ -96,11 +96,29 @@ def head_meets_the_floor(body: Body, seed: int, to: float) -> float:
     return fastest
 
 
-@pytest.mark.parametrize("to", [0.0, pytest.param(pi / 2, marks=pytest.mark.soak)])
-def test_arms_and_head_are_held_up_against_a_fall(body: Body, to: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_arms_and_head_are_held_up_against_a_fall(body: Body) -> None:
+    robot = any_robot(body, seed=3)
+    found = [(body.roles.joint(path), angle) for path, angle in skills.BREAKS_A_FALL.items()]
+    goals = {role.joint: role.sign * angle for role, angle in found if role}
+    before = dict(zip(body.joints, robot.world.angles.tolist(), strict=True))
+    push = Push(60.0, robot.time, 0.0)
+    while not robot.fallen:
+        push.act(robot, robot.time)
+        robot.advance(0.01)
+    robot.advance(0.3)
+    after = dict(zip(body.joints, robot.world.angles.tolist(), strict=True))
+    left = {name: abs(after[name] - goal) / abs(before[name] - goal) for name, goal in goals.items()}
+    held = {name: part for name, part in left.items() if "Shoulder" not in name}  # these the floor turns back
+    assert len(held) == 3
+    assert max(held.values()) < 0.5, left
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("to", [0.0, pi / 2])
+def test_heads_meet_the_floor_more_slowly_for_that(body: Body, to: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def falls() -> float:
-        return sum(head_meets_the_floor(body, seed, to) for seed in (2, 3, 4))
+        return sum(head_meets_the_floor(body, seed, to) for seed in range(20))
 
     held = falls()
     monkeypatch.setattr(skills, "BACKWARDS", -inf)
-    assert held < 0.85 * falls()
+    assert held < 0.9 * falls()

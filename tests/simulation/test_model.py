@@ -128,13 +128,13 @@ def test_a_robot_of_the_same_files_is_a_copy_which_moves_alike_and_shares_nothin
         robot.advance(2.0)
     assert np.array_equal(compiled.world.data.qpos, copied.world.data.qpos)
     copied.world.model.opt.timestep = 0.5
-    assert compiled.world.model.opt.timestep == 0.002
-    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.002
+    assert compiled.world.model.opt.timestep == 0.0025
+    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.0025
 
 
 def test_a_file_that_has_changed_makes_another_robot(body: Body, tmp_path: Path) -> None:
     models = Path(shutil.copytree(MODELS, tmp_path / "models"))
-    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.002
+    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.0025
     hall = models / "hall.xml"
-    hall.write_text(hall.read_text().replace('timestep="0.002"', 'timestep="0.001"'))
+    hall.write_text(hall.read_text().replace('timestep="0.0025"', 'timestep="0.001"'))
     assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.001
