@@ -41,12 +41,6 @@ tolong jelaskan pameran ini;siapa kamu;berapa tinggi kamu;berapa umurmu;siapa ya
 nama saya dewi;saya siti;saya baik;baik terima kasih;saya sehat;saya lelah;tidak cukup;sampai jumpa;berhenti;tunggu
 bahasa inggris;berapa berat kamu;apa arti namamu;bisa melihat saya
 """
-TALK = """
-the weather is nice;where can i buy something to drink;the train leaves at seven;my brother works in a bank
-look at those people over there;the moon is very bright tonight;we parked the car behind the building
-what time does the museum open;i left my umbrella at home;these shoes are too small;the children are playing outside
-purple is her favourite colour
-"""
 VOICES = ("", "+f3", "+m3")
 NOISES: Mapping[str, float | None] = {"quiet": None, "20 dB": 20.0}
 PACE = 150
@@ -117,7 +111,7 @@ def main() -> None:
     project = lumen.load(".")
     machine = project.behaviors[project.behavior]
     for noise, level in NOISES.items():
-        talk = spoken(TALK, "en-us", level)
+        talk = spoken(listening.TALK, "en-us", level)
         for language, sentences in (("en-us", ENGLISH), ("id", INDONESIAN)):
             said = spoken(sentences, language, level)
             for name in ("alone", "told what is expected"):

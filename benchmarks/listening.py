@@ -9,7 +9,8 @@ recorded. What counts is how the rows differ. A sound has a second of rest befor
 import re
 import statistics
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 
@@ -18,8 +19,12 @@ from numpy.typing import NDArray
 
 import lumen
 from lumen.bus import connect
+from lumen.interpreters.expressions.phrases import padded
+from lumen.language.machines import MachineDefinition
+from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
 from lumen.modules.ears import Ears
+from lumen.modules.ears.expected import expected
 from lumen.modules.ears.recogniser import Recogniser
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.shared_recogniser import shared_sphinx
@@ -41,6 +46,17 @@ What can I do for you? I can explain, dance, sing, or take a photo with you.;Do 
 I am 57 centimetres tall.;With pleasure! Please leave me some room.;Thank you for listening!
 I will sing Manuk Jajali for you.;My body was developed by Aldebaran Robotics.;I am sorry, I did not understand that."""
 STOP = "stop"
+TALK = """the weather is nice;where can i buy something to drink;the train leaves at seven;my brother works in a bank
+look at those people over there;the moon is very bright tonight;we parked the car behind the building
+what time does the museum open;i left my umbrella at home;these shoes are too small;the children are playing outside
+purple is her favourite colour"""
+NEAR: Mapping[str, object] = {"x": 160, "y": 120, "distance": 1.2}
+FAR: Mapping[str, object] = {"x": 40, "y": 120, "distance": 2.8}
+"""The eyes see who looks; of those who talk aside, now and then somebody farther off."""
+NAMES = (
+    ("en-us", "my name is", "peter maria susan budi ani rudi dewi putri robert yusuf"),
+    ("id", "nama saya", "budi dewi siti rudi agus wahyu bambang sri"),
+)
 WALL_DELAY, WALL_LEVEL = 0.08, 0.3
 """What a wall gives back of a voice: when [s], and how much."""
 
@@ -143,6 +159,17 @@ class Hall:
         assert self.ears.settle(60.0)
         return [body["result"] for body in self.heard.bodies[before:]]
 
+    def overhear(self, said: Samples, faces: Mapping[str, object]) -> list[str]:
+        """What they hear of somebody whose face the eyes see so, ten times a second."""
+        begin, before = self.now + 20.0, len(self.heard.bodies)
+        for tenth in range(round(10 * len(said) / RATE)):
+            self.now = begin + tenth / 10
+            self.bus.publish(self.project.key_of("face"), dict(faces))
+        self.now = begin + len(said) / RATE
+        self.bus.publish(self.project.key_of("recording"), {"name": "hall", "content": sound(said).text()})
+        assert self.ears.settle(60.0)
+        return [body["result"] for body in self.heard.bodies[before:]]
+
     def _tell(self, at: float, body: dict[str, object]) -> None:
         self.now = at
         self.bus.publish(self.project.key_of("state"), {"robot": self.project.robot, "time": at, **body})
@@ -170,12 +197,66 @@ def half_duplex(project: Project) -> None:
         print(f"  {'':17} an answer 0.6 s after it, word by word: {sum(answers)} of {len(answers)}", flush=True)
 
 
+def talk_beside(project: Project) -> None:
+    """What is heard of people beside the robot who do not mean it, and of a visitor who does."""
+    listens = {"face": {"within": 1.5, "after": 3}}
+    settings = ModuleSettings(True, {"listens": listens})
+    choosing = replace(project, modules={**project.modules, EARS: settings})
+    machine, recogniser = project.behaviors[project.behavior], shared_sphinx()
+    talk, asked = texts(TALK), texts(VISITOR)
+    for name, chosen in (("always listening", project), ("a face near and looking", choosing)):
+        hall = Hall(chosen, recogniser, knows=True)
+        try:
+            for level in (None, 20.0):
+                aside, meant = [], []
+                for seed, (text, faces) in enumerate([(t, FAR) for t in talk] + [(t, NEAR) for t in asked]):
+                    voice, pace = VOICES[seed % 4]
+                    found = hall.overhear(rested(spoken(text, voice, pace), level, seed), faces)
+                    (meant if faces is NEAR else aside).append((text, found))
+                texts_heard = sum(bool(found) for _, found in aside)
+                phrases = sum(any(_phrases(machine, one) for one in found) for _, found in aside)
+                right = sum(any(_phrases(machine, t) <= _phrases(machine, one) for one in found) for t, found in meant)
+                print(f"  {name:23} {_noise(level):6} talk heard {texts_heard:2} of {len(aside)}, ", end="")
+                print(f"taken for something {phrases:2}; a visitor understood {right} of {len(meant)}", flush=True)
+        finally:
+            hall.close()
+
+
+def _phrases(machine: MachineDefinition, text: str) -> frozenset[str]:
+    """Which phrases and questions of a behaviour stand in a text, in any language."""
+    rows = {f"{table} {i}": row.phrases for table, rows in machine.answers.items() for i, row in enumerate(rows)}
+    found = {**machine.phrases, **rows}.items()
+    return frozenset(name for name, by in found if any(padded(p) in padded(text) for ps in by.values() for p in ps))
+
+
+def names(project: Project) -> None:
+    """How many names are understood, and how sure the ears are of what they make of them."""
+    recogniser = shared_sphinx()
+    recogniser.expect(expected(project))
+    right, wrong = [], []
+    for language, begin, those in NAMES:
+        for seed, name in enumerate(those.split()):
+            for voice, pace in ((language, 150), (f"{language}+f3", 170)):
+                [*found] = recogniser.hypotheses(sound(rested(spoken(f"{begin} {name}", voice, pace), 20.0, seed)))
+                sure = (found[0].confidence or 0.0) if found else 0.0
+                (right if found and found[0].text == f"{begin} {name}" else wrong).append(sure)
+    for what, those_sure in (("right", right), ("wrong", wrong)):
+        print(
+            f"  {what}: {len(those_sure):2}, of which asked back below 0.99: {sum(s < 0.99 for s in those_sure)}",
+            flush=True,
+        )
+
+
 def main() -> None:
     project = lumen.load(str(Path(__file__).parents[1]))
     print("what finds speech, by the noise beneath it:")
     activity()
     print("the robot's own voice:")
     half_duplex(project)
+    print("talk beside the robot by people who look elsewhere, and a visitor who looks at it:")
+    talk_beside(project)
+    print("names, with noise 20 dB below the voice:")
+    names(project)
 
 
 if __name__ == "__main__":
