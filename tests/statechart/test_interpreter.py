@@ -7,8 +7,8 @@ import pytest
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
-from lumen.interpreters.statechart.execution_context import MAX_TIMERS
 from lumen.interpreters.statechart.stepping import elapse
+from lumen.interpreters.statechart.values import MAX_TIMERS
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
 
 COUNTING = {"assign": {"n": "context.n + 1"}}

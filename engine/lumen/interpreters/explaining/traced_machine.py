@@ -79,8 +79,9 @@ def _deed(action: Action, step: PlacedAction) -> CompiledAction:
         case Parallel(branches):
             return ParallelActions(_do(branches))
         case AskQuestion(_, within, otherwise):
-            make, say = _making(step.where, compile_question(action)), _saying(step.where)
-            return AskedQuestion(make, say, within, _do(otherwise), step.where)
+            question = compile_question(action)
+            make = _making(step.where, lambda context: question(context.scope()))
+            return AskedQuestion(make, _saying(step.where), within, _do(otherwise), step.where)
     match compile_do((step,))[0]:
         case InstantAction(act, where):
             return InstantAction(_placed(where, act), where)

@@ -12,7 +12,7 @@ from types import CodeType
 from lumen.interpreters.expressions.error_explanation import EXPRESSION_FILE
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.interpreters.expressions.kinds import BOOLEAN
-from lumen.interpreters.expressions.scope import Scope
+from lumen.interpreters.expressions.scope import MAX_INT, MIN_INT, Scope
 from lumen.interpreters.expressions.tree import (
     Binary,
     Conditional,
@@ -34,6 +34,7 @@ OPERATOR_FUNCTIONS = {
     "+": "add", "-": "subtract", "*": "multiply", "/": "divide", "%": "remainder",
 }  # fmt: skip
 _ORDER = {"<": ast.Lt, "<=": ast.LtE, ">": ast.Gt, ">=": ast.GtE}
+_SHIFT = {"+": ast.Add, "-": ast.Sub}
 _YES_OR_NO = {"==", "!=", "<", "<=", ">", ">=", "in"}
 
 
@@ -187,6 +188,8 @@ class CodeBuilder:
             return ast.UnaryOp(ast.Not(), self.call("equal", self.node(left), self.node(right)))
         if sign in _ORDER and isinstance(right, Literal) and type(right.value) in (int, float):
             return self.compares_number(sign, left, right)
+        if sign in _SHIFT and isinstance(right, Literal) and type(right.value) is int:
+            return self.adds_number(sign, left, right)
         return self.call(OPERATOR_FUNCTIONS[sign], self.node(left), self.node(right))
 
     def equals_literal(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
@@ -208,6 +211,15 @@ class CodeBuilder:
         is_number = ast.Compare(self.call("type", value), [ast.In()], [_load("numbers")])
         fast = ast.Compare(again, [_ORDER[sign]()], [ast.Constant(right.value)])
         return ast.IfExp(is_number, fast, self.call(OPERATOR_FUNCTIONS[sign], again, ast.Constant(right.value)))
+
+    def adds_number(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
+        """`left + number` at once where both are whole and the sum is not too large; with all checks where not."""
+        value, again = self.named(self.node(left))
+        total, sum_ = self.named(ast.BinOp(again, _SHIFT[sign](), ast.Constant(right.value)))
+        is_whole = ast.Compare(self.call("type", value), [ast.Is()], [_load("whole")])
+        fits = ast.Compare(ast.Constant(MIN_INT), [ast.LtE(), ast.LtE()], [total, ast.Constant(MAX_INT)])
+        slow = self.call(OPERATOR_FUNCTIONS[sign], again, ast.Constant(right.value))
+        return ast.IfExp(ast.BoolOp(ast.And(), [is_whole, fits]), sum_, slow)
 
 
 def _load(name: str) -> ast.expr:

@@ -48,7 +48,7 @@ _HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item
 NAMES: dict[str, Any] = (
     {name: getattr(values, name) for name in _HELPERS}
     | {f"call_{name}": function.call for name, function in FUNCTIONS.items()}
-    | {"type": type, "map": dict, "numbers": frozenset((int, float))}
+    | {"type": type, "map": dict, "numbers": frozenset((int, float)), "whole": int}
     | {"both": both, "either": either, "__builtins__": {}}
 )
 """What the code of expressions may name, and nothing else."""

@@ -1,12 +1,13 @@
 """Hearing phrases in what somebody said: whole words, whatever their case and punctuation, in every script."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, cast
 from unicodedata import category, normalize
 
 from lumen.interpreters.expressions.kinds import FaultError
 from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
+from lumen.language.machines import Answer
 
 _APOSTROPHES = frozenset("'’ʼ‘`´")
 BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
@@ -120,17 +121,30 @@ def answer(scope: Scope, text: str, table: Any) -> Any:
     Of a value that is a map of languages, the current one's, or the first where that is missing. A map counts as one
     of languages where every key of it is a language that the table has phrases in, or the current one.
     """
-    prepared = _answers.get(table)
-    if prepared is None:
-        entries = tuple((_prepared(entry.phrases), entry.value) for entry in table)
-        languages = frozenset(language for entry in table for language in entry.phrases)
-        prepared = _answers.put(table, (entries, languages))
-    entries, languages = prepared
-    said = padded(text[:MAX_TEXT_EXAMINED])
-    for phrases, value in entries:
-        if any(phrase in said for phrase in phrases):
-            return _in_language(value, scope.language, languages)
-    return None
+    prepared = _answers.get(table) or _answers.put(table, _AnswerTable(table))
+    found = prepared.entry(padded(text[:MAX_TEXT_EXAMINED]))
+    return None if found is None else _in_language(found.value, scope.language, prepared.languages)
+
+
+class _AnswerTable:
+    """An `answers:` table with its phrases prepared, and the text looked up last: a guard and its actions ask twice."""
+
+    def __init__(self, table: Sequence[Answer]) -> None:
+        self.rows = [(phrase, entry) for entry in table for phrase in _prepared(entry.phrases)]
+        self.languages = frozenset(language for entry in table for language in entry.phrases)
+        self.last: tuple[str, Answer | None] = ("", None)
+
+    def entry(self, said: str) -> Answer | None:
+        """The first row one of whose phrases stands in the words."""
+        before, found = self.last
+        if before is not said:
+            found = None
+            for phrase, entry in self.rows:
+                if phrase in said:
+                    found = entry
+                    break
+            self.last = said, found
+        return found
 
 
 def _in_language(value: Any, language: str, languages: frozenset[str]) -> Any:

@@ -36,24 +36,23 @@ class Sentence(NamedTuple):
     data: Any = None
 
 
-def compile_question(action: AskQuestion) -> Callable[[ActionContext], BodyCommand]:
+def compile_question(action: AskQuestion) -> Callable[[Scope], BodyCommand]:
     """What makes the command that a question stands for."""
     asked = compile_expression(action.question.source)
 
-    def ask(context: ActionContext) -> BodyCommand:
-        scope = context.scope()
+    def ask(scope: Scope) -> BodyCommand:
         question = asked(scope)
         if not isinstance(question, str):
             raise ActionError(f"the question is no text: {question!r}")
         known = "".join(sign if sign.isprintable() else " " for sign in question[:MAX_QUESTION])
-        return Ask(" ".join(unnamed(known, context.data).split()), context.language, action.within, _place(scope))
+        return Ask(" ".join(unnamed(known, scope.context).split()), scope.language, action.within, _place(scope))
 
     return ask
 
 
 def unnamed(text: str, context: Mapping[str, Any]) -> str:
     """The text without the names that the context holds: the visitor's, and what is written as one is."""
-    for name in sorted(_names(context), key=len, reverse=True):
+    for name in sorted(dict.fromkeys(_names(context)), key=len, reverse=True):
         text = PersonName(name).taken_from(text)
     return text
 

@@ -99,7 +99,10 @@ def _compile(action: Action, where: NodePath) -> CompiledAction:
         case If(guard, then, otherwise):
             return ConditionalAction(compile_guard(guard.source), compile_do(then), compile_do(otherwise), guard.where)
         case AskQuestion(_, within, otherwise):
-            return AskedQuestion(compile_question(action), spoken, within, compile_do(otherwise), where)
+            question = compile_question(action)
+            return AskedQuestion(
+                lambda context: question(context.scope()), spoken, within, compile_do(otherwise), where
+            )
         case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
             return InstantAction(compile_action(action), where)
     return AwaitedCommand(compile_command(action), where)

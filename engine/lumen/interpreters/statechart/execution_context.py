@@ -12,16 +12,13 @@ from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
 from lumen.interpreters.statechart.drawing import draw
 from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.values import Counters, Halted, Invoked, Snapshot, Step, Timer
+from lumen.interpreters.statechart.values import MAX_TIMERS, Counters, Halted, Invoked, Snapshot, Step, Timer
 from lumen.language.actions import PARENT
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import nanoseconds
-
-MAX_TIMERS = 10_000
-"""How many timers may wait before a `send` is refused: events that send two each would fill the memory."""
 
 _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
 

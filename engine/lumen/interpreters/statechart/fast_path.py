@@ -14,7 +14,7 @@ from lumen.interpreters.statechart.chart import CompiledTransition
 from lumen.interpreters.statechart.plans import Candidates, MicrostepPlanner, make_room
 from lumen.interpreters.statechart.step_code import WrittenStep
 from lumen.interpreters.statechart.step_writer import StepWriter
-from lumen.interpreters.statechart.values import Awaiting, Snapshot, Step, Within
+from lumen.interpreters.statechart.values import Awaiting, Fork, Snapshot, Step, Within
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.shared import SHARED_EVENT
@@ -60,6 +60,8 @@ class FastPaths:
 
     def _written(self, names: frozenset[str], name: str) -> WrittenStep | None:
         start = self.planner.configuration(names)
+        if name.startswith("after."):  # a timer, which has the same `sendid`
+            return StepWriter(self.planner, start).elapsed(name)
         candidates = start.candidates(name)
         if _ways(candidates) <= MAX_WAYS:
             return StepWriter(self.planner, start).heard(candidates)
@@ -83,10 +85,15 @@ class FastPaths:
             while type(inner) is Within:
                 place += inner[:2]
                 inner = inner[2]
-            if type(inner) is not Awaiting:
-                return whole  # several things are awaited at once
-            if inner[0] == id:
-                key += tuple(place)
+            if type(inner) is Awaiting:
+                if inner[0] == id:
+                    key += (None, *place)
+            elif any(type(branch) is Fork or type(branch) is Within for branch in inner[0]):
+                return whole
+            else:
+                ids = [branch and branch[0] for branch in inner[0]]
+                if id in ids:
+                    key += (ids.index(id), *place, *(branch is None for branch in ids))
         return self.answers.get(key) or noted(self.answers, key, lambda: self._resumed(key, snapshot))
 
     def _resumed(self, key: tuple[Any, ...], snapshot: Snapshot) -> WrittenStep | None:
@@ -94,7 +101,8 @@ class FastPaths:
         writer = StepWriter(self.planner, self.planner.configuration(names))
         if not place:
             return writer.heard(())
-        return writer.resumed(self.planner.chart.nodes[place[0]], snapshot.doing[place[0]])
+        branch, path, *_ = place
+        return writer.resumed(self.planner.chart.nodes[path], snapshot.doing[path], branch)
 
 
 def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenStep | None]) -> WrittenStep:

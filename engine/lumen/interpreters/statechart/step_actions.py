@@ -4,12 +4,16 @@ from collections.abc import Callable, Container
 from copy import copy
 from dataclasses import dataclass
 from functools import partial
+from math import isfinite
 from typing import TypeAlias
 
+from lumen.interpreters.expressions.inlining import scope_needs
+from lumen.interpreters.statechart.asking import compile_question
 from lumen.interpreters.statechart.blocks import alternatives
 from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.step_text import NotPlainError, Sight, StepText, template_needs
+from lumen.interpreters.statechart.values import MAX_TIMERS
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -28,6 +32,7 @@ from lumen.language.actions import (
 )
 from lumen.language.commands import GoTo, Language
 from lumen.language.machines import Transition
+from lumen.language.nanoseconds import nanoseconds
 
 Op: TypeAlias = Callable[["Certain"], None]
 
@@ -37,7 +42,8 @@ class Certain:
     """What is certain of the step where the writing has come to; `agenda` is what the algorithm does next.
 
     `event` is the variable of the event that is handled, `queue` those of internal events, with their names, and
-    `raised` of all of them. `started` and `awaited` count the ids given out; `commanded` where there may be commands.
+    `raised` of all of them. `started`, `awaited` and `timed` count the ids given out; `commanded` where there may be
+    commands.
     """
 
     configuration: Configuration
@@ -51,6 +57,7 @@ class Certain:
     raised: tuple[str, ...] = ()
     started: int = 0
     awaited: int = 0
+    timed: int = 0
     commanded: bool = False
     ended: bool = False
 
@@ -98,7 +105,13 @@ class ActionText(StepText):
                 condition = self.expression(guard.source, sight, guard=True)
                 self.either(condition, known, partial(self.block, then, node, active))
                 known.first(partial(self.block, otherwise, node, active))
-            case Send() | CancelSend() | Wait() | Parallel() | AskQuestion():
+            case Send(event, data, float() as delay, id, "") if isfinite(delay):
+                self.line(f"if len(timers) >= {MAX_TIMERS}: return None")
+                own = repr(id) if id else self.timer_id("s", known)
+                self.timer(own, nanoseconds(delay), repr(event), self.value(data, sight), "''", "send")
+            case CancelSend(id):
+                self.line(f"timers = tuple([t for t in timers if t[6] != 'send' or t[0] != {id!r}])")
+            case Send() | Wait() | Parallel() | AskQuestion():
                 raise NotPlainError
             case _:
                 command = self.command(action, sight)
@@ -106,7 +119,7 @@ class ActionText(StepText):
                 self.emit(f"Start(f'c{{counters[0] + {known.started}}}', {command})", known)
 
     def assign(self, way: str, value: ComputedValue, sight: Sight) -> None:
-        """A context key becomes another value, if that is certain to be of its type (`compile_assignment`)."""
+        """A context key becomes another value, if that is known to be of its type (`compile_assignment`)."""
         self.line(f"value = {self.value(value, sight)}")
         key, *within = way.split(".")
         if within:
@@ -134,6 +147,52 @@ class ActionText(StepText):
                 return f"GoTo({self.filled(to, sight)})"
         return self.constant(action)
 
+    def begin(self, action: Action, node: StateNode, known: Certain) -> str:
+        """Begin an action of a `do` (`Advance.begin`): its position, `None` where it takes no time."""
+        sight = Sight(known.event, node, known.configuration.known)
+        match action:
+            case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
+                self.act(action, node, known.configuration.known, known)
+                return "None"
+            case Parallel(branches):
+                begun = [self.begin(branch.action, node, known) for branch in branches]
+                return f"new(Fork, (({', '.join(begun)},),))" if set(begun) != {"None"} else "None"
+            case Wait(seconds):
+                return self.wait(seconds, node, known)
+            case AskQuestion(question, within):
+                self.see(scope_needs(question.source) | {"context", "state"}, sight)
+                asked = self.awaits(f"{self.constant(compile_question(action))}(scope)", known)
+                return f"new(Fork, (({asked}, {self.wait(within, node, known)}, None),))"
+            case If():
+                raise NotPlainError
+        return self.awaits(self.command(action, sight), known)
+
+    def awaits(self, command: str, known: Certain) -> str:
+        """Start a command that is awaited; the position before its end."""
+        known.awaited += 1
+        variable = f"d{known.awaited}"
+        self.line(f"{variable} = f'd{{counters[1] + {known.awaited}}}'")
+        self.emit(f"Start({variable}, {command})", known)
+        return f"new(Awaiting, ({variable}, at))"
+
+    def wait(self, seconds: float, node: StateNode, known: Certain) -> str:
+        """Set the timer of a `wait`; the position before its end."""
+        id = self.timer_id("w", known)
+        self.timer(id, nanoseconds(seconds), f"'wait.' + {id}", "None", self.constant(node.path), "wait")
+        return f"new(Awaiting, ({id}, at))"
+
+    def timer_id(self, letter: str, known: Certain) -> str:
+        known.timed += 1
+        variable = f"t{known.timed}"
+        self.line(f"{variable} = f'{letter}{{counters[2] + {known.timed}}}'")
+        return variable
+
+    def timer(self, id: str, delay: int, event: str, data: str, path: str, kind: str) -> None:
+        """Set a timer, `delay` [ns] from now."""
+        length = self.constant(delay)
+        timer = f"({id}, nanoseconds(at) + {length}, {length}, {event}, {data}, {path}, {kind!r}, '')"
+        self.line(f"timers += (new(Timer, {timer}),)")
+
     def emit(self, command: str, known: Certain) -> None:
         self.line(f"commands += ({command},)")
         known.commanded = True
@@ -147,8 +206,9 @@ class ActionText(StepText):
 
     def result(self, known: Certain) -> None:
         """The Step that it comes to."""
-        given = f"(counters[0] + {known.started}, counters[1] + {known.awaited}, counters[2])"
-        counters = f"new(Counters, {given})" if known.started or known.awaited else "counters"
+        given = (known.started, known.awaited, known.timed)
+        counted = ", ".join(f"counters[{number}] + {count}" for number, count in enumerate(given))
+        counters = f"new(Counters, ({counted}))" if any(given) else "counters"
         target = "names" if known.configuration is self.start else self.constant(known.configuration.names)
         after = (
             f"{target}, context, at, language, timers, doing, history, {counters}, generator, epoch, invoked, halted,"

@@ -12,7 +12,18 @@ from lumen.interpreters.statechart.advancing import cancelled, resumption_of
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.drawing import draw
 from lumen.interpreters.statechart.nested_values import with_value
-from lumen.interpreters.statechart.values import Awaiting, Counters, Halted, Snapshot, Step, Timer, Within, awaited
+from lumen.interpreters.statechart.values import (
+    Awaiting,
+    Counters,
+    Fork,
+    Halted,
+    Position,
+    Snapshot,
+    Step,
+    Timer,
+    Within,
+    awaited,
+)
 from lumen.language.commands import Command, GoTo, Log, Publish, Say, Start
 from lumen.language.events import Event
 from lumen.language.nanoseconds import nanoseconds
@@ -38,16 +49,33 @@ def leave(
     return timers, commands + cancels, placed(doing, node.path, None), halted
 
 
+def settled(position: Position | None, branch: int) -> Any:
+    """The position of a `parallel` of which that branch is over."""
+    if isinstance(position, Within):
+        return position._replace(inner=settled(position.inner, branch))
+    assert isinstance(position, Fork)  # what else has branches
+    return Fork((*position.branches[:branch], None, *position.branches[branch + 1 :]))
+
+
+def without_ended(timers: tuple[Timer, ...], event: Event) -> tuple[Timer, ...]:
+    """The timers but for the `after` that an event is the end of; raises LookupError where there is not just one."""
+    (number,) = [i for i, timer in enumerate(timers) if timer[0] == event[3]] or [-1]
+    if number < 0 or timers[number][6] != "after" or timers[number][3] != event[0]:
+        raise LookupError(event[0])
+    return timers[:number] + timers[number + 1 :]
+
+
 def without(mapping: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     """The mapping but for that key."""
     return {other: value for other, value in mapping.items() if other != key}
 
 
 _NAMES = EXPRESSION_NAMES | {
-    "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "GoTo": GoTo, "Log": Log, "Publish": Publish,
-    "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step, "Timer": Timer, "Within": Within,
-    "draw": draw, "leave": leave, "nanoseconds": nanoseconds, "new": tuple.__new__, "no_draw": no_draw, "len": len,
-    "placed": placed, "with_value": with_value, "without": without,
+    "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "Fork": Fork, "GoTo": GoTo, "Log": Log,
+    "Publish": Publish, "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step, "Timer": Timer,
+    "Within": Within, "draw": draw, "leave": leave, "nanoseconds": nanoseconds, "new": tuple.__new__,
+    "no_draw": no_draw, "len": len, "placed": placed, "settled": settled, "with_value": with_value, "without": without,
+    "without_ended": without_ended,
     **{kind.__name__: kind for kind in (bool, int, float, str, list, tuple, dict, type(None), Exception)},
 }  # fmt: skip
 

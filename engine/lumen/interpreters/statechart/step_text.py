@@ -23,7 +23,7 @@ def play(constants, snapshot, event):
         zone, output,
     ) = snapshot
     at = event[2]
-    if event[3] or invoked:
+    if event[3] != {sendid} or invoked:
         return None
     if not at >= before:
         at = before
@@ -44,7 +44,10 @@ class Sight(NamedTuple):
 
 
 class StepText:
-    """One function being written; `scope` is what the variable of that name shows now, None where there is none."""
+    """One function being written; `scope` is what the variable of that name shows now, None where there is none.
+
+    It is for events of that `sendid`, by how it is written; most have none.
+    """
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
@@ -52,12 +55,17 @@ class StepText:
         self.constants: list[Any] = []
         self.depth = 2
         self.scope: Sight | None = None
+        self.sendid = "''"
 
     def text(self) -> str:
         """What was written."""
         names = "".join(f"c{number}, " for number in range(len(self.constants)))
         body = "\n".join(self.lines)
-        head = _HEAD + f"    {names}= constants\n" * bool(names) + "    commands = ()\n" * ("commands" in body)
+        head = (
+            _HEAD.format(sendid=self.sendid)
+            + f"    {names}= constants\n" * bool(names)
+            + "    commands = ()\n" * ("commands" in body)
+        )
         return f"{head}    try:\n{body}\n    except Exception:\n        return None\n"
 
     def function(self) -> WrittenStep:

@@ -18,20 +18,8 @@ from lumen.interpreters.statechart.state_changes import StateChange
 from lumen.interpreters.statechart.step_actions import ActionText, Certain, Op
 from lumen.interpreters.statechart.step_code import WrittenStep
 from lumen.interpreters.statechart.step_text import NotPlainError, Sight
-from lumen.interpreters.statechart.values import Within
-from lumen.language.actions import (
-    AskQuestion,
-    Assign,
-    CancelSend,
-    If,
-    LogText,
-    Parallel,
-    PlacedAction,
-    PublishBody,
-    Raise,
-    Send,
-    Wait,
-)
+from lumen.interpreters.statechart.values import Fork, Position, Within
+from lumen.language.actions import AskQuestion, If, Parallel, PlacedAction
 from lumen.language.machines import State, StateKind
 
 Enabled: TypeAlias = tuple[CompiledTransition, ...]
@@ -56,9 +44,27 @@ class StepWriter(ActionText):
         """What these transitions do."""
         return self.written(partial(self.take, enabled))
 
-    def resumed(self, node: StateNode, position: Within) -> WrittenStep | None:
-        """What is done after the command that the `do` of a state awaits there."""
-        return self.written(partial(self.do, node, _after(_state(node).do, position)))
+    def elapsed(self, event: str) -> WrittenStep | None:
+        """What the end of the timer of an `after` does."""
+        self.sendid = "event[0]"
+        self.line("timers = without_ended(timers, event)")
+        return self.heard(self.start.timed(event))
+
+    def resumed(self, node: StateNode, position: Within, branch: int | None) -> WrittenStep | None:
+        """What is done after the command that the `do` of a state awaits there; in a `parallel`, in that branch."""
+        place, awaiting = _after(_state(node).do, position)
+        if not isinstance(awaiting, Fork):
+            return self.written(partial(self.do, node, place))
+        _, actions, number = place[-1]
+        if branch is None or not isinstance(actions[number - 1].action, Parallel):
+            return None
+        if not any(other for i, other in enumerate(awaiting.branches) if i != branch):
+            return self.written(partial(self.do, node, place))
+        return self.written(partial(self.settle, node, branch))
+
+    def settle(self, node: StateNode, branch: int, known: Certain) -> None:
+        path = self.constant(node.path)
+        self.line(f"doing = placed(doing, {path}, settled(doing[{path}], {branch}))")
 
     def written(self, op: Op) -> WrittenStep | None:
         self.run(Certain(self.start, (op,)))
@@ -163,9 +169,8 @@ class StepWriter(ActionText):
         if node.invokes or node.schedules or node.computed or any(not parent.path for parent in change.done):
             raise NotPlainError
         for event, delay in node.afters:
-            name, length, path = self.constant(event), self.constant(delay), self.constant(node.path)
-            due = f"nanoseconds(at) + {length}"
-            self.line(f"timers += (new(Timer, ({name}, {due}, {length}, {name}, None, {path}, 'after', '')),)")
+            name = self.constant(event)
+            self.timer(name, delay, name, "None", self.constant(node.path), "after")
         known.first(
             partial(self.block, _state(node).entry, node, change.active),
             partial(self.entered, node),
@@ -196,37 +201,30 @@ class StepWriter(ActionText):
             *outer, (name, actions, number) = around
             known.first(partial(self.do, node, (*outer, (name, actions, number + 1))))
             return
-        action, sight = actions[number].action, Sight(known.event, node, known.configuration.known)
-        match action:
-            case If(guard, yes, no):
-                condition = self.expression(guard.source, sight, guard=True)
-                self.either(condition, known, partial(self.do, node, (*place, ("then", yes, 0))))
-                known.first(partial(self.do, node, (*place, ("else", no, 0))))
-            case Wait() | Parallel() | AskQuestion():
-                raise NotPlainError
-            case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
-                then = partial(self.do, node, (*around, (name, actions, number + 1)))
-                known.first(partial(self.act, action, node, known.configuration.known), then)
-            case _:
-                command = self.command(action, sight)
-                known.awaited += 1
-                self.line(f"awaited = f'd{{counters[1] + {known.awaited}}}'")
-                self.emit(f"Start(awaited, {command})", known)
-                position = "new(Awaiting, (awaited, at))"
-                for block, _, index in reversed(place):
-                    position = f"new(Within, ({block!r}, {index}, {position}))"
-                self.line(f"doing = placed(doing, {path}, {position})")
+        action = actions[number].action
+        if isinstance(action, If):
+            sight = Sight(known.event, node, known.configuration.known)
+            condition = self.expression(action.guard.source, sight, guard=True)
+            self.either(condition, known, partial(self.do, node, (*place, ("then", action.then, 0))))
+            known.first(partial(self.do, node, (*place, ("else", action.otherwise, 0))))
+        elif (position := self.begin(action, node, known)) == "None":
+            known.first(partial(self.do, node, (*around, (name, actions, number + 1))))
+        else:
+            for block, _, index in reversed(place):
+                position = f"new(Within, ({block!r}, {index}, {position}))"
+            self.line(f"doing = placed(doing, {path}, {position})")
 
 
-def _after(actions: tuple[PlacedAction, ...], position: Within) -> tuple[DoPlace, ...]:
-    """What comes after that position of these actions."""
+def _after(actions: tuple[PlacedAction, ...], position: Within) -> tuple[tuple[DoPlace, ...], Position]:
+    """What comes after that position of these actions, and what is awaited there."""
     block, number, inner = position
     if not isinstance(inner, Within):
-        return ((block, actions, number + 1),)
+        return ((block, actions, number + 1),), inner
     action = actions[number].action
     assert isinstance(action, If | AskQuestion)  # which have blocks
     inside = action.then if isinstance(action, If) and inner.block == "then" else action.otherwise
-    return ((block, actions, number), *_after(inside, inner))
+    place, awaiting = _after(inside, inner)
+    return ((block, actions, number), *place), awaiting
 
 
 def _state(node: StateNode) -> State:

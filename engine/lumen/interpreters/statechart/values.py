@@ -8,6 +8,9 @@ from lumen.language.events import Event
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import in_seconds
 
+MAX_TIMERS = 10_000
+"""How many timers may wait before a `send` is refused: events that send two each would fill the memory."""
+
 
 class Timer(NamedTuple):
     """Something that happens at `due_ns` [ns], `delay_ns` [ns] after it was set: whole numbers, which add up exactly.
