@@ -11,6 +11,8 @@ from lumen import bus, fuzzy, motion
 from lumen.errors import SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, VirtualClock, initial, step
 
+KEPT = Path(__file__).parents[2] / ".cache/mypy"
+"""What mypy found out about the engine, for later runs; the one of `make check`, which may run beside, is another."""
 MACHINE = Machine.from_dict({"context": {"list": [1]}, "states": {"a": {"on": {"go": "b"}}, "b": None}})
 CONTROLLER = fuzzy.Controller.load(Path(__file__).parents[2] / "fuzzy" / "head.yaml")
 X, *_ = CONTROLLER.inputs
@@ -144,5 +146,5 @@ def test_the_clock_of_an_interpreter_has_its_own_type(tmp_path: Path) -> None:
     from mypy import api
 
     (tmp_path / "typed.py").write_text(TYPED)
-    said, errors, code = api.run(["--strict", f"--cache-dir={tmp_path / 'cache'}", str(tmp_path / "typed.py")])
+    said, errors, code = api.run(["--strict", f"--cache-dir={KEPT}", str(tmp_path / "typed.py")])
     assert (code, errors) == (0, ""), said
