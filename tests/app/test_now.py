@@ -182,9 +182,10 @@ def test_what_can_be_no_event_is_refused(mine: Path) -> None:
         ask = asker(exhibition, bus)
         for event in ("", 3, None, "x" * 101):
             assert ask("event", event=event) == {"verdict": "refused", "reason": "`event` is the name of an event"}
-        refused = ask("event", event="done.command.d1")
-        assert refused["verdict"] == "refused"
-        assert "only the robot says what is done" in refused["reason"]
+        for event in ("done.command.d1", "shared.changed"):
+            refused = ask("event", event=event)
+            assert refused["verdict"] == "refused"
+            assert "only robots say that" in refused["reason"]
         assert '`{"ask": "now"}`' in ask("nothing")["reason"]
 
 

@@ -8,14 +8,15 @@ from lumen.interpreters.explaining.pressing import pressed, takes
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause
 from lumen.language.events import Event
+from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Message
 from lumen.runtime.loop import BehaviorLoop, Observer
 
 SOMEBODY = "somebody"
 MAX_NAME = 100
 """Characters of the name of an event, and of a person."""
-_INTERNAL = ("done.", "error.", "cancelled.", "lost.")
-"""How the names of answers begin: an event of such a name would be taken for one."""
+_INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
+"""How the names begin of what robots tell themselves or one another: an event of such a name would be taken for it."""
 
 Reply = Callable[[Message, Mapping[str, Any]], None]
 
@@ -59,7 +60,7 @@ class RaisedEvents(Observer):
                     self._let(message, found)
             case {"ask": "event", "event": str(name), **more} if name and len(name) <= MAX_NAME:
                 if name.startswith(_INTERNAL):
-                    self._reply(message, refusal(f"`{name}` is not for people: only the robot says what is done"))
+                    self._reply(message, refusal(f"`{name}` is not for people: only robots say that"))
                     return
                 cause = Cause("person", message.id, sender=person_in(message.body))
                 data = more.get("data")

@@ -7,7 +7,7 @@ from lumen.app.resting import TAKEN
 from lumen.cli.commanding import told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
-from lumen.cli.reach import configure_reach, names_meant, reach
+from lumen.cli.reach import configure_reach, for_each_robot, reach
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -18,11 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 once it is so, 1 where it could not be."""
-    codes = []
-    for name in names_meant(options):
-        options.robot_name = name
-        codes.append(_switch(options))
-    return max(codes)
+    return for_each_robot(options, _switch)
 
 
 def _switch(options: argparse.Namespace) -> int:

@@ -1,6 +1,7 @@
 """Which exhibition a verb is about."""
 
 import argparse
+from collections.abc import Callable
 
 from lumen.app.reaching import Reached, reach_exhibition, robots_meant
 
@@ -14,8 +15,17 @@ def configure_reach(parser: argparse.ArgumentParser) -> None:
 
 
 def configure_robot_name(parser: argparse.ArgumentParser) -> None:
-    what = "which of `robots:`; default: all for status, stop and resume, else the first that runs"
+    what = "which of `robots:`; default: all for status, stop, resume and model, else the first that runs"
     parser.add_argument("--robot-name", metavar="NAME", default="", help=what)
+
+
+def for_each_robot(options: argparse.Namespace, do: Callable[[argparse.Namespace], int]) -> int:
+    """Do it for each robot that is meant, which is `robot_name` then; the highest code of them."""
+    codes = []
+    for name in names_meant(options):
+        options.robot_name = name
+        codes.append(do(options))
+    return max(codes)
 
 
 def names_meant(options: argparse.Namespace) -> list[str]:

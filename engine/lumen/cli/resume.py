@@ -9,7 +9,7 @@ from lumen.cli.agreeing import agrees
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
-from lumen.cli.reach import configure_reach, names_meant, reach
+from lumen.cli.reach import configure_reach, for_each_robot, reach
 from lumen.errors import UsageError
 
 RESUME_TIMEOUT = 10.0
@@ -25,11 +25,7 @@ def run(options: argparse.Namespace) -> int:
     """0 once it may move, 1 where it could not or nobody wants it."""
     if options.format == "json" and not options.yes:
         raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
-    codes = []
-    for name in names_meant(options):
-        options.robot_name = name
-        codes.append(_resume(options))
-    return max(codes)
+    return for_each_robot(options, _resume)
 
 
 def _resume(options: argparse.Namespace) -> int:

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
-from lumen.language.actions import Assign
+from lumen.language.actions import Assign, Send
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
-from lumen.language.shared import SHARED
+from lumen.language.shared import SHARED, SHARED_EVENT
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.walk import action_sites
 
@@ -14,11 +14,15 @@ NOT_OWNER = Code("not-owner", "robot", ERROR, "a robot assigns a key of `shared`
 SHARED_TAKEN = Code(
     "shared-taken", "robot", ERROR, "a behaviour has a key `shared` of its own beside that of the house"
 )
+MAKES_SHARED_EVENT = Code(
+    "makes-shared-event", "robot", ERROR, "a route or a `send` makes the event by which robots hear of `shared`"
+)
 
 
 def check(draft: ProjectDraft) -> None:
     """Report what this robot's behaviour does with the keys of others, and what none may do."""
     settings = draft.settings
+    _made(draft)
     machine = draft.behaviors.get(settings.behavior) if settings else None
     if settings is None or machine is None or not settings.shared:
         return
@@ -36,6 +40,20 @@ def check(draft: ProjectDraft) -> None:
         elif (owner := settings.shared[key].owner) != settings.robot:
             hint = f"let `{owner}` assign it: `send: {{to: {owner}, event: …}}` asks for that"
             report(NOT_OWNER, where, f"`{key}` is `{owner}`'s, and `{settings.robot}` assigns it", hint, key=True)
+
+
+def _made(draft: ProjectDraft) -> None:
+    """Who makes that event gives any key any value, whoever owns it."""
+    message = f"`{SHARED_EVENT}` gives keys of `shared` values past their owners"
+    hint = "call the event otherwise, and let the owner of the key assign it"
+    if draft.settings and draft.main:
+        for route in draft.settings.routes.values():
+            if route.event == SHARED_EVENT:
+                draft.main(MAKES_SHARED_EVENT, (*route.where, "event"), message, hint)
+    for name, machine in draft.behaviors.items():
+        for site in action_sites(machine):
+            if isinstance(site.step.action, Send) and site.step.action.event == SHARED_EVENT:
+                draft.report("behaviors", name)(MAKES_SHARED_EVENT, (*site.step.where, "send"), message, hint)
 
 
 def _assigned(machine: MachineDefinition) -> Iterator[tuple[str, NodePath]]:
