@@ -142,7 +142,8 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
     ("file", "text", "name", "edits", "moved"),
     [
         (TOUR, "target: how_are|_you", "mood", 40, None),
-        (TOUR, "context.name_|tries <", "tries", 10, None),
+        (TOUR, "whenever: In('fall|en')", "lying", 8, None),
+        (TOUR, "context.name_|tries <", "tries", 16, None),
         (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
         (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 5, None),
         (TOUR, "words: [f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),

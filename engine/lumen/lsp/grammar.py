@@ -99,6 +99,7 @@ _VALUES: Mapping[str, Table] = {
         ("guard",): NameKind.EXPRESSION,
         ("if",): NameKind.EXPRESSION,
         ("output",): NameKind.EXPRESSION,
+        ("properties", "*", "*"): NameKind.EXPRESSION,
         ("always",): NameKind.STATE,
         ("onDone",): NameKind.STATE,
         ("onError",): NameKind.STATE,
@@ -119,6 +120,7 @@ _VALUES: Mapping[str, Table] = {
     },
     "story": {
         ("expect", "state"): NameKind.STATE,
+        ("properties", "*", "*"): NameKind.EXPRESSION,
         ("never",): NameKind.STATE,
         ("played",): NameKind.MOTION,
         ("expect", "place"): NameKind.PLACE,

@@ -86,7 +86,8 @@ def _action(event: Event, project: Project) -> VisitorAction:
     row = next((row for row in project.routes.values() if row.event == event.name), None)
     said = data.get("result") if isinstance(data, Mapping) else None
     if row and row.name == SPEECH_ROUTE and said and isinstance(said, str) and isinstance(data, Mapping):
-        return Speak(said, str(data.get("language", "")))
+        heard = {key: data[key] for key in ("result", "confidence", "language") if key in data}
+        return SendMessage(row.name, heard) if "confidence" in heard else Speak(said, str(data.get("language", "")))
     if event.name in ("touched", "released") and isinstance(data, Mapping):
         return TouchSensor(str(data.get("sensor")), event.name == "touched")
     if row and event.cause and event.cause.key:
