@@ -1,9 +1,10 @@
 """The command line: one module for each verb, imported when it is called."""
 
 import argparse
+import atexit
 import errno
+import gc
 import importlib
-import logging
 import os
 import sys
 import time
@@ -18,6 +19,8 @@ from lumen.errors import LumenError, ProjectError
 from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
+
+atexit.register(gc.freeze)  # what is left is freed with the process: a last search for garbage would take a tenth of it
 
 
 def ready() -> float:
@@ -89,7 +92,6 @@ def command_line(wanted: Collection[str]) -> Suggesting:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
-    logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
     open_streams()
     arguments = sys.argv[1:] if argv is None else list(argv)
     if not arguments:
@@ -104,6 +106,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    import logging  # not for --help and --version
+
+    logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
     try:
         return int(options.run(options))
     except ProjectError as error:

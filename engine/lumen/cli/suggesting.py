@@ -4,8 +4,6 @@ import argparse
 from collections.abc import Sequence
 from typing import Any
 
-from lumen.language.diagnostics import did_you_mean, nearest
-
 
 class Suggesting(argparse.ArgumentParser):
     """Python's parser, which knows what comes near to a verb, an option or a choice that is none."""
@@ -34,6 +32,8 @@ class Suggesting(argparse.ArgumentParser):
             return
         if isinstance(action, argparse._SubParsersAction):
             raise argparse.ArgumentError(None, f"there is no verb `{value}`{_meant(value, action.choices)}")
+        from lumen.language.diagnostics import did_you_mean  # only who mistyped waits for it
+
         hint = did_you_mean(value, map(str, action.choices), "one of")
         raise argparse.ArgumentError(action, f"`{value}` can't stand here: {hint}")
 
@@ -47,5 +47,7 @@ def parse(parser: Suggesting, arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def _meant(word: str, known: Any) -> str:
+    from lumen.language.diagnostics import nearest
+
     near = nearest(word, known)
     return f": did you mean `{near}`?" if near else "; --help lists them"
