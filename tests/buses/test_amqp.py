@@ -11,6 +11,7 @@ import pytest
 
 from lumen.bus import Bus, BusError, Message, connect
 from lumen.buses.amqp import CLOSE_TIMEOUT
+from lumen.buses.outbox import OutgoingMessage
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import Collector, until
@@ -164,6 +165,27 @@ def test_a_publisher_does_not_wait_for_a_broker_that_hears_nothing(broker: Rabbi
     assert seen.wait(1000) == list(range(1000))
     far.close()
     relay.close()
+
+
+def test_who_publishes_sends_unless_the_connection_is_in_use(bus: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    publisher, seen, senders = bus._transport.publisher, Collector(), dict[bytes, str]()
+    send = publisher._send
+
+    def noting(message: OutgoingMessage) -> None:
+        senders[message.body] = threading.current_thread().name
+        send(message)
+
+    bus.subscribe("lumen.sent", seen)
+    monkeypatch.setattr(publisher, "_send", noting)
+
+    def sent_here() -> bool:
+        bus.publish("lumen.sent", "here")
+        return senders.get(b'"here"') == threading.current_thread().name
+
+    until(sent_here)
+    until(lambda: publisher.connection.lend(lambda: bus.publish("lumen.sent", "in use") or True))
+    until(lambda: "in use" in seen.bodies)
+    assert senders[b'"in use"'] == "lumen-bus-out"
 
 
 def test_a_flood_arrives_whole(bus: Bus) -> None:

@@ -26,8 +26,9 @@ How RabbitMQ is used, from the inside out:
     properties.py     what AMQP says of a message, whatever it says
     wire.py           pika's connection, which writes and reads messages itself
     asked_channel.py  a channel of its own for what the broker is asked, and may refuse
-    polled.py         pika's asynchronous connection, driven by that thread
-    publisher.py      the connection that sends, and waits for the broker's confirmations
+    poll_loop.py      the loop that pika's connection lives in: waiting apart from what is done then
+    polled.py         pika's asynchronous connection, driven by that thread, and lent to others while it waits
+    publisher.py      the connection that sends, on the thread of whoever publishes, and hears what the broker has
     consumer.py       the connection that receives
     dispatcher.py     the thread that runs handlers, one at a time
     transport.py      a publisher, a consumer and a dispatcher; routes of stops have one of their own

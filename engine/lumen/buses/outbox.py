@@ -5,8 +5,6 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
-from queue import Empty, SimpleQueue
 from typing import NamedTuple
 
 from lumen.errors import BusFullError
@@ -51,23 +49,20 @@ class OutgoingMessage(NamedTuple):
 
 
 class Outbox:
-    """Any thread puts, one thread takes, first what must arrive.
+    """Any thread puts and takes, first what must arrive.
 
     When it is full the oldest gives way; what must arrive never does: `put` raises BusError instead. That, and what
-    became too old before it could be sent, is counted in `drops`, by key. `awaken` is called where the thread that
-    takes has gone to sleep and there is something again.
+    became too old before it could be sent, is counted in `drops`, by key. `came` is called when there is something new.
     """
 
-    def __init__(self, awaken: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, came: Callable[[], None] = lambda: None) -> None:
         self.drops = DropLog(_log)
-        self._awaken = awaken
+        self._came = came
         self._must: deque[OutgoingMessage] = deque()
         self._may: deque[OutgoingMessage | str] = deque()
         self._newest: dict[str, deque[OutgoingMessage]] = {}
         self._bytes = {True: 0, False: 0}
         self._changed = threading.Condition()
-        self._asleep = self._awaited = False
-        self._news = SimpleQueue[None]()
 
     def put(self, message: OutgoingMessage) -> None:
         with self._changed:
@@ -81,17 +76,10 @@ class Outbox:
             self._weigh(message, +1)
             while len(self._may) > MAX_PENDING_MESSAGES or self._bytes[False] > MAX_PENDING_BYTES:
                 self.drops.add(self._pop().key, "too much waits to be sent")
-            asleep, self._asleep = self._asleep, False
-            awaited, self._awaited = self._awaited, False
-        if awaited:
-            self._news.put(None)
-        if asleep:
-            self._awaken()
+        self._came()
 
-    def take(self, limit: int, timeout: float) -> list[OutgoingMessage]:
-        """The next messages still wanted, at most so many; none if there is nothing within `timeout` [s]."""
-        if timeout and not self:
-            self._await(timeout)
+    def take(self, limit: int) -> list[OutgoingMessage]:
+        """The next messages still wanted, at most so many."""
         with self._changed:
             now = time.monotonic()
             taken: list[OutgoingMessage] = []
@@ -120,29 +108,10 @@ class Outbox:
                     self._may.appendleft(message)
                 self._weigh(message, +1)
 
-    def sleep(self) -> bool:
-        """Whether there is nothing: then `awaken` is called at the next `put`."""
-        with self._changed:
-            self._asleep = not self
-            return self._asleep
-
     def emptied(self, timeout: float) -> bool:
         """Wait until everything has been taken; whether it has, within `timeout` [s]."""
         with self._changed:
             return self._changed.wait_for(lambda: not self, timeout)
-
-    def wake(self) -> None:
-        """Let `take` return."""
-        self._news.put(None)
-        self._awaken()
-
-    def _await(self, timeout: float) -> None:
-        """Return when something was put, at the latest in `timeout` [s]; a condition would wake its thread twice."""
-        with self._changed:
-            self._awaited = not self
-        if self._awaited:
-            with suppress(Empty):
-                self._news.get(timeout=timeout)
 
     def __len__(self) -> int:
         return len(self._must) + len(self._may)

@@ -1,16 +1,20 @@
-"""pika's asynchronous connection, driven by whoever owns it: no callback of ours runs but inside `turn`."""
+"""pika's asynchronous connection, driven by the thread that owns it: no callback of ours runs but inside `turn`.
 
+That thread has the connection for itself but while it waits; then others may use it (`lend`), without waking it.
+"""
+
+import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from pika.adapters.select_connection import IOLoop
 from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelWrongStateError
 
 from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BROKER_TIMEOUT
+from lumen.buses.poll_loop import PollLoop
 from lumen.buses.wire import MessageReader, WireConnection
 
 
@@ -21,11 +25,12 @@ class PolledConnection:
     """
 
     def __init__(self, parameters: Any) -> None:
-        self._loop = IOLoop()
-        self._loop.activate_poller()
+        self._loop = PollLoop()
+        self._used = threading.Lock()
+        self._used.acquire()
+        self._woken = threading.Event()
         self._error: BaseException | None = None
         self._works: deque[Callable[[], None]] = deque()
-        self._alarm: object = None
         self.channel: Any = None
         self._connection: Any = None
         try:
@@ -95,25 +100,39 @@ class PolledConnection:
                 raise TimeoutError(f"no answer within {BROKER_TIMEOUT:g} s")
             self.turn(0.5)
 
-    def turn(self, seconds: float) -> None:
-        """Let the connection live: at most so long, or until something happens or `wake` is called."""
-        if not seconds:
-            self._loop.call_later(0.0, lambda: None)
-        elif self._alarm is None:  # one for many turns: a timer that is removed would still wake it
-            self._alarm = self._loop.call_later(seconds, self._rung)
+    def turn(self, seconds: float, pause: float = 0.0) -> None:
+        """Let the connection live: at most so long, or until something happens or `wake` is called.
+
+        Before that only `wake` is waited for, as long as `pause` [s]: what happens meanwhile is used at once.
+        """
         self._connection.flush()
-        self._loop.poll()
-        self._loop.process_timeouts()
+        self._used.release()
+        try:
+            if pause:
+                self._woken.wait(pause)
+            events = self._loop.wait(seconds)
+        finally:
+            self._used.acquire()
+        self._woken.clear()
+        self._loop.call(events)
         self._connection.flush()
         if self._error:
             raise self._error
 
-    def _rung(self) -> None:
-        self._alarm = None
+    def lend(self, work: Callable[[], bool]) -> bool:
+        """From any thread: do this with the connection while its owner waits; what it says, or false: it is in use."""
+        if not self._used.acquire(blocking=False):
+            return False
+        try:
+            return work()
+        finally:
+            self._connection.flush()
+            self._used.release()
 
     def wake(self) -> None:
         """From any thread: let `turn` return."""
-        self._loop.add_callback_threadsafe(lambda: None)
+        self._woken.set()
+        self._loop.add_callback(lambda: None)
 
     def later(self, work: Callable[[], None]) -> None:
         """From any thread: have the thread that owns the connection do this in `work`, where it may ask the broker."""
@@ -149,7 +168,6 @@ class PolledConnection:
         except (AMQPError, OSError):
             pass
         finally:
-            self._loop.deactivate_poller()
             self._loop.close()
 
     def _open_channel(self) -> Any:

@@ -3,9 +3,9 @@
 import logging
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
-from pika.exceptions import AMQPChannelError, AMQPConnectionError, ChannelClosedByBroker
+from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelClosedByBroker
 
 from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BrokerAddress
@@ -20,10 +20,12 @@ from lumen.upkeep.drops import DropLog
 
 MAX_UNCONFIRMED_MESSAGES = 1_000
 """Messages that are sent and not confirmed yet; more wait in the outbox."""
+MAX_BY_GUEST = 8
+"""How many messages that wait, after an outage perhaps, somebody who publishes another one sends with it."""
 MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
 """Their bodies [bytes]."""
-GATHER_TIME = 0.01
-"""How long the next message is waited for before what the broker says of the last one is waited for [s]."""
+CONFIRM_TIME = 0.01
+"""For how long what the broker says of messages is left to gather while more are sent [s]."""
 IDLE_TIME = 0.5
 """How long the connection is left to itself while there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
@@ -36,9 +38,17 @@ PERSISTENT_DELIVERY = 2
 _log = logging.getLogger(__name__)
 
 
+class _Sent(NamedTuple):
+    """A message that was sent, of so many bytes, and what to send `again` where the connection is lost."""
+
+    size: int
+    again: OutgoingMessage | None
+
+
 class Publisher(BrokerConnection):
     """Sends what is in the outbox; what is there when the broker is away waits for it to come back.
 
+    Who publishes sends, on its own thread; the connection's hears what the broker says of it, and sends what waited.
     At most `MAX_UNCONFIRMED_MESSAGES` are sent without the broker's confirmation. When the connection is lost, those of
     them that must arrive are the next again. What nobody takes is logged with the nearest of the `known` keys.
     `journals` are the queues that keep what goes out until a module reads it. `returned` is called with each key whose
@@ -47,15 +57,16 @@ class Publisher(BrokerConnection):
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
         super().__init__(address, name, outage)
-        self.outbox = Outbox(self._awaken)
+        self.outbox = Outbox(self._send_now)
         self.known: tuple[str, ...] = ()
         self.journals: Mapping[str, Queue] = {}
         self.returned: Callable[[str], None] | None = None
         self._declared: set[str] = set()
         self._refused: set[str] = set()
-        self._window: dict[int, OutgoingMessage] = {}
+        self._window: dict[int, _Sent] = {}
         self._bytes = self._number = 0
-        self._busy = False
+        self._seen = 0
+        self._prepared: Mapping[str, Queue] | None = None
         self._warned: set[str] = set()
         self._probed: set[str] = set()
         self._missed: dict[str, float] = {}
@@ -74,45 +85,59 @@ class Publisher(BrokerConnection):
         return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
-        for key, queue in self.journals.items():
+        journals = self.journals
+        for key, queue in journals.items():
             self._declare(key, queue.declare)
-        room = self._room()
-        messages = self.outbox.take(room, GATHER_TIME if self._busy else 0.0) if room > 0 else []
+        self._prepared = journals
+        self._send_waiting()
+        new, self._seen = self._number != self._seen, self._number
+        paused = new and self._room() > 0 and not self.ending.is_set()
+        self.connection.turn(IDLE_TIME, CONFIRM_TIME if paused else 0.0)
+        self.outbox.drops.tell()
+        self.unsendable.tell()
+        return bool(self.outbox or self._window) or not self.ending.is_set()
+
+    def disconnect(self, connection: PolledConnection) -> None:
+        self._prepared = None
+        lost, self._window, self._bytes = self._window, {}, 0
+        self.outbox.put_back([sent.again for sent in lost.values() if sent.again])
+        connection.close()
+
+    def end(self, timeout: float) -> bool:
+        """Send the rest and end; whether that was done within `timeout` [s]."""
+        self.ending.set()
+        if connection := self.connection:
+            connection.wake()
+        return self.join(timeout)
+
+    def _send_now(self) -> None:
+        """Whoever has put something sends it; unless the connection is in use, then its thread does."""
+        connection = self.connection
+        if connection and not connection.lend(self._send_as_guest):
+            connection.wake()
+
+    def _send_as_guest(self) -> bool:
+        """Send what waits, if it is not much; false where the connection's thread has something to do."""
+        if self._prepared is not self.journals:
+            return False
+        try:
+            self._send_waiting(MAX_BY_GUEST)
+        except AMQPError:
+            return False
+        return not self.outbox or self._room() <= 0
+
+    def _send_waiting(self, most: int = MAX_UNCONFIRMED_MESSAGES) -> None:
+        room = min(most, self._room())
+        messages = self.outbox.take(room) if room > 0 else []
         for sent, message in enumerate(messages):
             try:
                 self._send(message)
             except BaseException:
                 self.outbox.put_back(messages[sent:])
                 raise
-        self._busy = bool(messages)
-        self.connection.turn(0.0 if self._busy or not self._idle() else IDLE_TIME)
-        self.outbox.drops.tell()
-        self.unsendable.tell()
-        return bool(self.outbox or self._window) or not self.ending.is_set()
-
-    def disconnect(self, connection: PolledConnection) -> None:
-        lost, self._window, self._bytes = self._window, {}, 0
-        self.outbox.put_back([message for message in lost.values() if message.must])
-        connection.close()
-
-    def end(self, timeout: float) -> bool:
-        """Send the rest and end; whether that was done within `timeout` [s]."""
-        self.ending.set()
-        self.outbox.wake()
-        return self.join(timeout)
-
-    def _awaken(self) -> None:
-        if connection := self.connection:
-            connection.wake()
 
     def _room(self) -> int:
         return 0 if self._bytes > MAX_UNCONFIRMED_BYTES else MAX_UNCONFIRMED_MESSAGES - len(self._window)
-
-    def _idle(self) -> bool:
-        """Whether there is nothing to do until the broker says something, or there is something to send."""
-        if self._room() <= 0:
-            return True
-        return self.outbox.sleep() and not (self.ending.is_set() and not self._window)
 
     def _send(self, message: OutgoingMessage) -> None:
         id, sender, sent, cause = message.origin
@@ -139,7 +164,7 @@ class Publisher(BrokerConnection):
             self.unsendable.add(message.key, f"AMQP can't carry it: {error!r}")
             return
         self._number += 1
-        self._window[self._number] = message
+        self._window[self._number] = _Sent(len(message.body), message if message.must else None)
         self._bytes += len(message.body)
 
     def _confirmed(self, number: int, several: bool) -> None:
@@ -149,13 +174,13 @@ class Publisher(BrokerConnection):
     def _nacked(self, number: int, several: bool) -> None:
         messages = self._settled(number, several)
         _log.warning("the broker at %s could not take %d messages", self.address, len(messages))
-        self.outbox.put_back([message for message in messages if message.must])
+        self.outbox.put_back([sent.again for sent in messages if sent.again])
 
-    def _settled(self, number: int, several: bool) -> list[OutgoingMessage]:
-        """Messages that are in the broker's hands no more, or for good."""
+    def _settled(self, number: int, several: bool) -> list[_Sent]:
+        """Messages of which the broker has said something."""
         first = next(iter(self._window), 0) if several else number
-        messages = [message for n in range(first, number + 1) if (message := self._window.pop(n, None))]
-        self._bytes -= sum(len(message.body) for message in messages)
+        messages = [sent for n in range(first, number + 1) if (sent := self._window.pop(n, None))]
+        self._bytes -= sum(sent.size for sent in messages)
         return messages
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:

@@ -74,7 +74,7 @@ class WireConnection(TolerantConnection):
         """Hand the frames to the system at once, where it takes them; the rest is sent when it has room."""
         if self._frames:
             data, self._frames, self._size = b"".join(self._frames), [], 0
-            if not self.is_closed and (rest := data[self._sent(data) :]):
+            if self._transport and not self.is_closed and (rest := data[self._sent(data) :]):
                 super()._adapter_emit_data(rest)
 
     def _proto_connection_made(self, transport: Any) -> None:
