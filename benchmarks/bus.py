@@ -42,7 +42,7 @@ ROUNDS = 5
 PACE = 1_000
 FILLER = "x" * 160
 TELEMETRY = Route("bench", KEY, Direction.IN, keep=1_000_000)
-COMMAND = Route("bench", KEY, Direction.IN, carried=Carried.COMMAND, must_arrive=True)
+COMMAND = Route("bench", KEY, Direction.IN, carried=Carried.COMMAND, must_arrive=True, most=10 * PACE)
 
 
 def main() -> None:
