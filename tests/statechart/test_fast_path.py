@@ -238,6 +238,27 @@ def test_a_do_goes_on_short() -> None:
     assert taken.snapshot.configuration == {"a"}
 
 
+def test_a_question_without_an_answer_goes_on_short() -> None:
+    do = {"ask": {"question": "'why'", "within": "4s", "else": {"say": "who knows"}}}
+    machine = Machine.from_dict({"states": {"a": {"on": {"go": "b"}}, "b": {"do": do}}})
+    snapshot = same(machine, initial(machine).snapshot, Event("go")).snapshot
+    answer = Event("done.command.d1", at=2.0)
+    taken = same(machine, snapshot, answer)
+    assert quick(machine, snapshot, answer) == taken
+    assert not taken.snapshot.timers
+    assert taken.commands
+
+
+def test_a_guard_of_two_regions_is_asked_once() -> None:
+    region = {"states": {"a": {"on": {"go": {"guard": "context.n < 9", "target": "b"}}}, "b": {}}}
+    machine = Machine.from_dict({"type": "parallel", "context": {"n": 0}, "states": {"l": region, "r": region}})
+    planner = compiled(machine).planner
+    start = planner.configuration(frozenset({"l", "l.a", "r", "r.a"}))
+    writer = StepWriter(planner, start)
+    assert writer.heard(start.candidates("go"))
+    assert writer.text().count("9") == 2  # a number, and what is no number
+
+
 def test_what_happens_once_is_not_written() -> None:
     machine = Machine.from_dict({"context": {"n": 0}, "states": RING})
     snapshot, event, paths = initial(machine).snapshot, Event("go"), compiled(machine).fast_paths

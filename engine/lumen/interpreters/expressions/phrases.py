@@ -127,10 +127,14 @@ def answer(scope: Scope, text: str, table: Any) -> Any:
 
 
 class _AnswerTable:
-    """An `answers:` table with its phrases prepared, and the text looked up last: a guard and its actions ask twice."""
+    """An `answers:` table: `phrases` of each row by their first word, and the text looked up last."""
 
     def __init__(self, table: Sequence[Answer]) -> None:
-        self.rows = [(phrase, entry) for entry in table for phrase in _prepared(entry.phrases)]
+        self.table = tuple(table)
+        self.phrases: dict[str, list[tuple[int, str]]] = {}
+        for number, entry in enumerate(table):
+            for phrase in _prepared(entry.phrases):
+                self.phrases.setdefault(phrase.split()[0], []).append((number, phrase))
         self.languages = frozenset(language for entry in table for language in entry.phrases)
         self.last: tuple[str, Answer | None] = ("", None)
 
@@ -138,11 +142,9 @@ class _AnswerTable:
         """The first row one of whose phrases stands in the words."""
         before, found = self.last
         if before is not said:
-            found = None
-            for phrase, entry in self.rows:
-                if phrase in said:
-                    found = entry
-                    break
+            begun = (row for word in said.split() if word in self.phrases for row in self.phrases[word])
+            first = min((number for number, phrase in begun if phrase in said), default=None)
+            found = None if first is None else self.table[first]
             self.last = said, found
         return found
 

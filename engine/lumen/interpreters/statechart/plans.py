@@ -87,6 +87,7 @@ class MicrostepPlanner:
     def __init__(self, chart: Chart) -> None:
         self.chart = chart
         self._by_names: dict[frozenset[str], Configuration] = {}
+        self._names: dict[tuple[str, ...], tuple[str, ...]] = {}
         self.nothing = Configuration(frozenset())
 
     def configuration(self, names: frozenset[str]) -> Configuration:
@@ -141,11 +142,16 @@ class MicrostepPlanner:
             exits=exits(left, start.nodes),
             between=names_of(staying),
             entries=entries(entered, staying),
-            exited=tuple(node.name for node in exit_order(left) if node.path),
-            entered=tuple(node.name for node in entry_order(entered) if node.path),
+            exited=self._shared(tuple(node.name for node in exit_order(left) if node.path)),
+            entered=self._shared(tuple(node.name for node in entry_order(entered) if node.path)),
             history={**history, **recorded(start.nodes, left)},
             target=self.configuration(frozenset(node.name for node in staying | entered if node.path)),
         )
+
+    def _shared(self, names: tuple[str, ...]) -> tuple[str, ...]:
+        """Equal names that are there already, or these: with a thousand states it counts what memory a step visits."""
+        make_room(self._names)
+        return self._names.setdefault(names, names)
 
 
 def make_room(cache: dict[Any, Any]) -> None:

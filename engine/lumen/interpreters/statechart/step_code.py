@@ -57,6 +57,17 @@ def settled(position: Position | None, branch: int) -> Any:
     return Fork((*position.branches[:branch], None, *position.branches[branch + 1 :]))
 
 
+def without_deadline(timers: tuple[Timer, ...], position: Position | None) -> tuple[Timer, ...]:
+    """The timers but for that of the `ask` that is awaited; raises LookupError where there is none."""
+    while isinstance(position, Within):
+        position = position.inner
+    assert isinstance(position, Fork)  # as every question has
+    kept, cancels = cancelled(timers, list(awaited(position.branches[1])))
+    if cancels:
+        raise LookupError(cancels)
+    return kept
+
+
 def without_ended(timers: tuple[Timer, ...], event: Event) -> tuple[Timer, ...]:
     """The timers but for the `after` that an event is the end of; raises LookupError where there is not just one."""
     (number,) = [i for i, timer in enumerate(timers) if timer[0] == event[3]] or [-1]
@@ -75,7 +86,7 @@ _NAMES = EXPRESSION_NAMES | {
     "Publish": Publish, "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step, "Timer": Timer,
     "Within": Within, "draw": draw, "leave": leave, "nanoseconds": nanoseconds, "new": tuple.__new__,
     "no_draw": no_draw, "len": len, "placed": placed, "settled": settled, "with_value": with_value, "without": without,
-    "without_ended": without_ended,
+    "without_deadline": without_deadline, "without_ended": without_ended,
     **{kind.__name__: kind for kind in (bool, int, float, str, list, tuple, dict, type(None), Exception)},
 }  # fmt: skip
 

@@ -8,10 +8,11 @@ takes the step, from its beginning. So it does where anything raises.
 The text names the user's states and commands by constants (`c0`, `c1`, …): what differs in them only has one text.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeAlias
 
+from lumen.interpreters.expressions.inlining import scope_needs
 from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner
 from lumen.interpreters.statechart.state_changes import StateChange
@@ -38,7 +39,7 @@ class StepWriter(ActionText):
 
     def heard(self, candidates: Candidates) -> WrittenStep | None:
         """What an event does that has these candidates; None where nothing of it is plain."""
-        return self.written(partial(self.decide, candidates, ()))
+        return self.written(partial(self.decide, candidates, (), {}))
 
     def taken(self, enabled: Enabled) -> WrittenStep | None:
         """What these transitions do."""
@@ -55,12 +56,21 @@ class StepWriter(ActionText):
         place, awaiting = _after(_state(node).do, position)
         if not isinstance(awaiting, Fork):
             return self.written(partial(self.do, node, place))
-        _, actions, number = place[-1]
-        if branch is None or not isinstance(actions[number - 1].action, Parallel):
+        name, actions, number = place[-1]
+        action = actions[number - 1].action
+        if branch == 0 and isinstance(action, AskQuestion) and awaiting.branches[2:] == (None,):
+            otherwise = (*place[:-1], (name, actions, number - 1), ("else", action.otherwise, 0))
+            return self.written(partial(self.unanswered, node, otherwise))
+        if branch is None or not isinstance(action, Parallel):
             return None
         if not any(other for i, other in enumerate(awaiting.branches) if i != branch):
             return self.written(partial(self.do, node, place))
         return self.written(partial(self.settle, node, branch))
+
+    def unanswered(self, node: StateNode, otherwise: tuple[DoPlace, ...], known: Certain) -> None:
+        """A question has got no answer: its time is not awaited any more, and what is to be done then begins."""
+        self.line(f"timers = without_deadline(timers, doing[{self.constant(node.path)}])")
+        known.first(partial(self.do, node, otherwise))
 
     def settle(self, node: StateNode, branch: int, known: Certain) -> None:
         path = self.constant(node.path)
@@ -89,7 +99,7 @@ class StepWriter(ActionText):
         elif known.queue:
             (known.event, name), *others = known.queue
             known.queue = tuple(others)
-            known.first(partial(self.decide, known.configuration.candidates(name), ()))
+            known.first(partial(self.decide, known.configuration.candidates(name), (), {}))
         elif known.beginnings:
             begun = sorted(known.beginnings, key=lambda node: node.index)
             known.beginnings = ()
@@ -98,8 +108,11 @@ class StepWriter(ActionText):
             self.plain = True
             self.result(known)
 
-    def decide(self, candidates: Candidates, enabled: Enabled, known: Certain) -> None:
-        """The first candidate of each atomic state whose guard holds (`selectTransitions`)."""
+    def decide(self, candidates: Candidates, enabled: Enabled, facts: Mapping[str, bool], known: Certain) -> None:
+        """The first candidate of each atomic state whose guard holds (`selectTransitions`).
+
+        `facts` are the guards that were asked before, for another candidate, and have no other answer here.
+        """
         if not candidates:
             known.first(partial(self.take, tuple(dict.fromkeys(enabled))))
             return
@@ -107,12 +120,16 @@ class StepWriter(ActionText):
         for transition in group:
             then = partial(self.decide, tuple(others), (*enabled, transition))
             guard = transition.definition.guard
-            if guard is None:
-                known.first(then)
+            if guard is None or facts.get(guard.source):
+                known.first(partial(then, facts))
                 return
-            sight = Sight(known.event, transition.source, known.configuration.known)
-            self.either(self.expression(guard.source, sight, guard=True), known, then)
-        known.first(partial(self.decide, tuple(others), enabled))
+            if guard.source not in facts:
+                sight = Sight(known.event, transition.source, known.configuration.known)
+                condition = self.expression(guard.source, sight, guard=True)
+                everywhere = scope_needs(guard.source).isdisjoint(("state", "In"))
+                self.either(condition, known, partial(then, {**facts, guard.source: True} if everywhere else facts))
+                facts = {**facts, guard.source: False} if everywhere else facts
+        known.first(partial(self.decide, tuple(others), enabled, facts))
 
     def take(self, enabled: Enabled, known: Certain) -> None:
         """One microstep, with these transitions."""

@@ -96,7 +96,7 @@ def due(snapshot: Snapshot) -> Event | None:
     """
     found = None
     if snapshot.timers:
-        timer = min(snapshot.timers, key=_DUE)
+        timer = min(snapshot.timers, key=_DUE) if len(snapshot.timers) > 1 else snapshot.timers[0]
         found = _new(Event, (timer.event, timer.data, in_seconds(timer.due_ns), timer.id, None))
     for owner, child in snapshot.invoked.items():
         event = due(child.snapshot)
