@@ -1,4 +1,4 @@
-"""What a person does about what the robot answers: passages of what nobody could, and the language model's switch."""
+"""What a person does about a conversation: passages of what nobody could answer, the model's switch, the ears."""
 
 from collections.abc import Iterator
 
@@ -22,6 +22,7 @@ robot: {name: NAO, model: nao}
 modules: {answers: {model: {url: "http://127.0.0.1:9/v1/chat/completions", name: none}}}
 routes:
   heard: {key: "lumen.{robot}.heard", direction: in, schema: speech.recognition, event: heard, ttl: 5s}
+  listening: {key: "lumen.{robot}.audio.listening", direction: in, schema: listening, ttl: 5s}
 """
 ASKED = """
 initial: hall
@@ -85,3 +86,11 @@ def test_the_language_model_is_silenced(viewer: Viewer, asked: Hosted, console: 
     viewer.shows("Model bahasa dibungkam: selesai", ".told")
     until(lambda: viewer.all("input[name=model-NAO][value=false]:checked"), WAIT)
     assert violations(viewer) == []
+
+
+def test_whether_the_ears_listen_is_shown_with_the_reason(viewer: Viewer, asked: Hosted, console: str) -> None:
+    asked.send("listening", {"listening": False, "because": "nobody"})
+    viewer.open(console, "robot/NAO", ready=".body-facts")
+    viewer.shows("deaf: nobody looks or touches", ".body")
+    asked.send("listening", {"listening": True, "because": "face"})
+    viewer.shows("listen: a face is near and looks", ".body")
