@@ -9,7 +9,8 @@ import pytest
 from lumen.language.events import Event
 from lumen.loading.files import read_files
 from lumen.rules import check_files
-from lumen.runtime.story import StoryPlayer, expects_fall
+from lumen.runtime.story import StoryPlayer
+from lumen.runtime.story_observations import expects_fall
 
 ROOT = Path(__file__).parents[2]
 

@@ -19,7 +19,8 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.runtime.loop import Observer
-from lumen.runtime.story import StoryFailure, StoryPlayer, UnmetExpectation
+from lumen.runtime.story import StoryFailure, StoryPlayer
+from lumen.runtime.story_observations import UnmetExpectation
 
 REMEMBERED = 12
 """How many lines of what happened last are told with a failure."""

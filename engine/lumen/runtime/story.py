@@ -1,11 +1,10 @@
 """Plays a story: does what it says, waits for what it expects, and reports where it failed."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from math import inf
 from typing import Any, NamedTuple, Protocol, assert_never
 
-from lumen.errors import BusError
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.interpreters.statechart.property_monitor import Violation, monitors
@@ -16,7 +15,6 @@ from lumen.language.commands import Ask, Cancel, Command, Play, Publish, Say, St
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.hours import Schedule
-from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import (
     AnswerQuestion,
@@ -37,21 +35,11 @@ from lumen.language.stories import (
 )
 from lumen.ports import Bus, Hall
 from lumen.runtime.loop import Observer
-from lumen.runtime.questions import ANSWER_ROUTE
 from lumen.runtime.sending import send
+from lumen.runtime.story_answers import QUESTION_WITHIN, answered
+from lumen.runtime.story_observations import FALLEN, StoryObservations, UnmetExpectation, expects_fall, listed
 from lumen.runtime.story_time import story_moment
 from lumen.runtime.visitor import VisitorActor
-
-FALLEN = "fallen"
-QUESTION_WITHIN = 30.0
-"""How long `answers` waits for a question [s]."""
-
-
-class UnmetExpectation(NamedTuple):
-    """What was expected, and what was instead, in words."""
-
-    expected: str
-    was: str
 
 
 class StoryFailure(NamedTuple):
@@ -75,62 +63,6 @@ class StoryFailure(NamedTuple):
 def staged(project: Project, story: Story | None) -> Project:
     """The project with the behaviour that the story is about as the one that runs."""
     return replace(project, behavior=story.behavior) if story and story.behavior else project
-
-
-@dataclass
-class StoryObservations:
-    """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
-    played and published; `asked` is the question that nobody has answered yet, by its id.
-    """
-
-    states: frozenset[str] = frozenset()
-    context: dict[str, object] = field(default_factory=dict)
-    place: str = ""
-    said: list[str] = field(default_factory=list)
-    played: list[str] = field(default_factory=list)
-    published: list[tuple[str, Any]] = field(default_factory=list)
-    playing: dict[str, str] = field(default_factory=dict)
-    asked: str = ""
-
-    def lacks(self, expected: Expect) -> UnmetExpectation | None:
-        """The first thing of `expected` that does not hold."""
-        if missing := [s for s in expected.states if s not in self.states]:
-            return UnmetExpectation(f"state `{missing[0]}`", f"active are {_names(self.states)}")
-        if expected.place is not None and expected.place != self.place:
-            return UnmetExpectation(f"the robot at `{expected.place}`", f"it is {_at(self.place)}")
-        return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
-
-    def _unheard(self, expected: Expect) -> UnmetExpectation | None:
-        part, whole = expected.said, expected.said_exactly
-        if part is not None and not any(part.lower() in text.lower() for text in self.said):
-            return UnmetExpectation(f"to hear “{part}”", f"it said {_texts(self.said)}")
-        if whole is not None and whole not in self.said:
-            return UnmetExpectation(f"to hear exactly “{whole}”", f"it said {_texts(self.said)}")
-        if expected.played is not None and expected.played not in self.played:
-            return UnmetExpectation(f"the motion `{expected.played}`", f"it played {_names(self.played)}")
-        return None
-
-    def _unsent(self, expected: Expect) -> UnmetExpectation | None:
-        route, body = expected.published, expected.body
-        if route is None or any(name == route and _holds(sent, body) for name, sent in self.published):
-            return None
-        wanted = f" with {body!r}" if body is not None else ""
-        sent = "; ".join(f"{sent!r} on `{name}`" for name, sent in self.published)
-        return UnmetExpectation(f"a message on `{route}`{wanted}", f"it sent {sent or 'nothing'}")
-
-    def _unlike(self, context: Mapping[str, Any]) -> UnmetExpectation | None:
-        for key, value in context.items():
-            if self.context.get(key) != value:
-                return UnmetExpectation(f"{key} = {value!r}", f"it is {self.context.get(key)!r}")
-        return None
-
-    def hear(self, event: Event | None) -> None:
-        """The behaviour took this event: one that answers the question leaves none open, but for a filler."""
-        if event and self.asked and event.name.endswith(f".command.{self.asked}"):
-            self.asked = self.asked if event.data and event.data.get("filler") else ""
-
-    def forget(self) -> None:
-        self.said, self.played, self.published = [], [], []
 
 
 class StoryEnvironment(Protocol):
@@ -210,7 +142,7 @@ class StoryPlayer(Observer):
         """
         self._witness.states, self._witness.context, self._witness.place = states, dict(context), place
         if bad := states.union(entered).intersection(self.story.never):
-            self.fail(UnmetExpectation(f"never state {_names(bad)}", "it was entered"))
+            self.fail(UnmetExpectation(f"never state {listed(bad)}", "it was entered"))
 
     def performing(self, command: Command, now: float) -> None:
         match command:
@@ -320,18 +252,8 @@ class StoryPlayer(Observer):
         id, self._witness.asked = self._witness.asked, ""
         if id:
             self._tell(answer)
-            said = (
-                {"raise": {"event": answer.event, "data": dict(answer.data)}} if answer.event else {"text": answer.text}
-            )
-            body = {"id": id, "source": "story", **said}
-            try:
-                self._exhibition.bus.publish(self._exhibition.project.key_of(ANSWER_ROUTE), body)
-            except BusError as error:
-                self.fail(UnmetExpectation("to answer a question", str(error)))
-        elif now >= self._since + QUESTION_WITHIN:
-            self.fail(
-                UnmetExpectation(f"within {QUESTION_WITHIN:g} s a question to the module `answers`", "none was asked")
-            )
+        if lack := answered(self._exhibition.bus, self._exhibition.project, id, answer, now - self._since):
+            self.fail(lack)
         return bool(id)
 
     def _moment(self, now: float) -> int:
@@ -356,38 +278,3 @@ class StoryPlayer(Observer):
         self.failed = self.failed or StoryFailure(
             self.story.name, position + 1, self.story.steps[position].where, *lack
         )
-
-
-def expects_fall(story: Story, machine: MachineDefinition) -> bool:
-    """Whether a story says that the robot falls: by the event, or by expecting a state that answers it."""
-    answers = {
-        machine.states[target].name
-        for state in machine.states.values()
-        for transition in state.transitions
-        if transition.event == FALLEN
-        for target in transition.targets
-    }
-    actions = [step.action for step in story.steps]
-    return any(isinstance(a, Happen) and a.name == FALLEN for a in actions) or any(
-        isinstance(a, Expect) and not answers.isdisjoint(a.states) for a in actions
-    )
-
-
-def _holds(body: Any, wanted: Any) -> bool:
-    """Whether a body has all that is wanted of it: of a map the keys given, of a list every item."""
-    if isinstance(wanted, Mapping) and isinstance(body, Mapping):
-        return all(key in body and _holds(body[key], value) for key, value in wanted.items())
-    return wanted is None or bool(body == wanted)
-
-
-def _names(names: object) -> str:
-    listed = ", ".join(f"`{n}`" for n in sorted(names))  # type: ignore[call-overload]
-    return listed or "nothing"
-
-
-def _at(place: str) -> str:
-    return f"at `{place}`" if place else "at none of the places"
-
-
-def _texts(texts: list[str]) -> str:
-    return "; ".join(f"“{t}”" for t in texts) or "nothing"

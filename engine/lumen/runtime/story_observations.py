@@ -1,0 +1,110 @@
+"""What has been seen while a story plays, and what of an expectation does not hold."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+from lumen.language.stories import Expect, Happen, Story
+
+FALLEN = "fallen"
+
+
+class UnmetExpectation(NamedTuple):
+    """What was expected, and what was instead, in words."""
+
+    expected: str
+    was: str
+
+
+@dataclass
+class StoryObservations:
+    """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
+    played and published; `asked` is the question that nobody has answered yet, by its id.
+    """
+
+    states: frozenset[str] = frozenset()
+    context: dict[str, object] = field(default_factory=dict)
+    place: str = ""
+    said: list[str] = field(default_factory=list)
+    played: list[str] = field(default_factory=list)
+    published: list[tuple[str, Any]] = field(default_factory=list)
+    playing: dict[str, str] = field(default_factory=dict)
+    asked: str = ""
+
+    def lacks(self, expected: Expect) -> UnmetExpectation | None:
+        """The first thing of `expected` that does not hold."""
+        if missing := [s for s in expected.states if s not in self.states]:
+            return UnmetExpectation(f"state `{missing[0]}`", f"active are {listed(self.states)}")
+        if expected.place is not None and expected.place != self.place:
+            return UnmetExpectation(f"the robot at `{expected.place}`", f"it is {_at(self.place)}")
+        return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
+
+    def _unheard(self, expected: Expect) -> UnmetExpectation | None:
+        part, whole = expected.said, expected.said_exactly
+        if part is not None and not any(part.lower() in text.lower() for text in self.said):
+            return UnmetExpectation(f"to hear “{part}”", f"it said {_texts(self.said)}")
+        if whole is not None and whole not in self.said:
+            return UnmetExpectation(f"to hear exactly “{whole}”", f"it said {_texts(self.said)}")
+        if expected.played is not None and expected.played not in self.played:
+            return UnmetExpectation(f"the motion `{expected.played}`", f"it played {listed(self.played)}")
+        return None
+
+    def _unsent(self, expected: Expect) -> UnmetExpectation | None:
+        route, body = expected.published, expected.body
+        if route is None or any(name == route and _holds(sent, body) for name, sent in self.published):
+            return None
+        wanted = f" with {body!r}" if body is not None else ""
+        sent = "; ".join(f"{sent!r} on `{name}`" for name, sent in self.published)
+        return UnmetExpectation(f"a message on `{route}`{wanted}", f"it sent {sent or 'nothing'}")
+
+    def _unlike(self, context: Mapping[str, Any]) -> UnmetExpectation | None:
+        for key, value in context.items():
+            if self.context.get(key) != value:
+                return UnmetExpectation(f"{key} = {value!r}", f"it is {self.context.get(key)!r}")
+        return None
+
+    def hear(self, event: Event | None) -> None:
+        """The behaviour took this event: one that answers the question leaves none open, but for a filler."""
+        if event and self.asked and event.name.endswith(f".command.{self.asked}"):
+            self.asked = self.asked if event.data and event.data.get("filler") else ""
+
+    def forget(self) -> None:
+        self.said, self.played, self.published = [], [], []
+
+
+def expects_fall(story: Story, machine: MachineDefinition) -> bool:
+    """Whether a story says that the robot falls: by the event, or by expecting a state that answers it."""
+    answers = {
+        machine.states[target].name
+        for state in machine.states.values()
+        for transition in state.transitions
+        if transition.event == FALLEN
+        for target in transition.targets
+    }
+    actions = [step.action for step in story.steps]
+    return any(isinstance(a, Happen) and a.name == FALLEN for a in actions) or any(
+        isinstance(a, Expect) and not answers.isdisjoint(a.states) for a in actions
+    )
+
+
+def _holds(body: Any, wanted: Any) -> bool:
+    """Whether a body has all that is wanted of it: of a map the keys given, of a list every item."""
+    if isinstance(wanted, Mapping) and isinstance(body, Mapping):
+        return all(key in body and _holds(body[key], value) for key, value in wanted.items())
+    return wanted is None or bool(body == wanted)
+
+
+def listed(names: object) -> str:
+    """`a`, `b`: or nothing."""
+    all_of_them = ", ".join(f"`{n}`" for n in sorted(names))  # type: ignore[call-overload]
+    return all_of_them or "nothing"
+
+
+def _at(place: str) -> str:
+    return f"at `{place}`" if place else "at none of the places"
+
+
+def _texts(texts: list[str]) -> str:
+    return "; ".join(f"“{t}”" for t in texts) or "nothing"
