@@ -12,6 +12,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from threading import get_ident
 from time import time
 from typing import Any
 from weakref import WeakValueDictionary
@@ -102,7 +103,7 @@ class _Hub:
         queue, delivering = self.queue, self.delivering
         while queue and delivering.acquire(False):
             try:
-                self.deliverer = threading.get_ident()
+                self.deliverer = get_ident()
                 while queue:
                     item = queue.popleft()
                     if type(item) is tuple:
@@ -110,7 +111,8 @@ class _Hub:
                             self.refuse(message, reason)
                     else:
                         item()  # type: ignore[operator]
-                self.drops.tell(all=True)
+                if self.drops.untold:
+                    self.drops.tell(all=True)
             finally:
                 self.deliverer = 0
                 delivering.release()
@@ -218,7 +220,7 @@ class MemoryBus:
         gone = threading.Event()
         self._hub.queue.append(lambda: self._leave(gone))
         self._hub.deliver()
-        if self._hub.deliverer != threading.get_ident() and not gone.wait(HANDLER_TIMEOUT):
+        if self._hub.deliverer != get_ident() and not gone.wait(HANDLER_TIMEOUT):
             _log.warning("the bus was closed while a subscriber still works, after %g s", HANDLER_TIMEOUT)
 
     def _leave(self, gone: threading.Event) -> None:

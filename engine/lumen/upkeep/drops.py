@@ -24,6 +24,7 @@ class DropLog:
     """Counts what is dropped (`counts`, by key) and logs it: the first at once, then each ten seconds how many.
 
     Safe from any thread. Whoever owns it calls `tell` now and then, and at its end: what nothing follows is told then.
+    Where `untold` is empty there is nothing to tell.
     """
 
     def __init__(
@@ -31,7 +32,7 @@ class DropLog:
     ) -> None:
         self._log, self._what, self._clock = log, what, clock
         self._counts: dict[str, int] = {}
-        self._untold: dict[str, tuple[int, str]] = {}
+        self.untold: dict[str, tuple[int, str]] = {}
         self._told: dict[str, float] = {}
         self._changing = threading.Lock()
 
@@ -50,7 +51,7 @@ class DropLog:
             if first:
                 self._told[key] = self._clock()
             else:
-                self._untold[key] = (self._untold.get(key, (0, ""))[0] + count, why)
+                self.untold[key] = (self.untold.get(key, (0, ""))[0] + count, why)
         if first:
             self._log.warning("%s on `%s` are dropped: %s", self._what, key, why)
 
@@ -63,12 +64,12 @@ class DropLog:
 
     def tell(self, *, all: bool = False) -> None:
         """Log what was dropped since the last line about its key, where that was long enough ago, or `all`."""
-        if not self._untold:
+        if not self.untold:
             return
         now = self._clock()
         with self._changing:
-            due = [key for key in self._untold if all or now - self._told[key] >= TELL_PERIOD]
-            told = [(key, *self._untold.pop(key), now - self._told[key]) for key in due]
+            due = [key for key in self.untold if all or now - self._told[key] >= TELL_PERIOD]
+            told = [(key, *self.untold.pop(key), now - self._told[key]) for key in due]
             self._told.update(dict.fromkeys(due, now))
         for key, count, why, seconds in told:
             self._log.warning("%d more %s on `%s` were dropped in %.0f s: %s", count, self._what, key, seconds, why)
