@@ -25,6 +25,7 @@ from lumen.interpreters.statechart import (
 )
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.json_cursor import plain
+from lumen.interpreters.statechart.stepping import in_full
 from lumen.interpreters.statechart.values import Timer
 from lumen.language import machines
 from lumen.language.events import Event
@@ -240,10 +241,10 @@ class Interpreter(Generic[C]):
         sent = _new(Event, (name, data, at, sendid, cause))
         try:
             taken = self._quick(now, sent)
-        except Exception:  # nothing has happened yet: `step` fails on the same, and says why
+        except Exception:  # nothing has happened yet: `in_full` fails on the same, and says why
             taken = None
         if taken is None:
-            taken = step(self.machine, now, sent)
+            taken = in_full(self.machine, now, sent)
         now = self._snapshot = taken.snapshot
         if self._observe is not _unobserved:
             self._observe(taken)

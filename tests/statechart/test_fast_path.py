@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, Step
+from lumen.interpreters.statechart import Snapshot, Step, fast_path
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.invocations import open_context
 from lumen.interpreters.statechart.step_writer import StepWriter
 from lumen.language.commands import Start
-from lumen.statechart import Event, Machine, due, initial
+from lumen.statechart import Event, Interpreter, Machine, due, initial
 
 GUARDS = [
     "true",
@@ -264,6 +264,18 @@ def test_what_happens_once_is_not_written() -> None:
     snapshot, event, paths = initial(machine).snapshot, Event("go"), compiled(machine).fast_paths
     assert paths.step(snapshot, event) is None
     assert paths.step(snapshot, event) == in_full(machine, snapshot, event)
+
+
+def test_a_first_visit_writes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[Any] = []
+    monkeypatch.setattr(fast_path, "StepWriter", lambda *given: written.append(given))
+    interpreter = Interpreter(Machine.from_dict({"context": {"n": 0}, "states": RING}))
+    interpreter.start()
+    for _ in range(3):
+        interpreter.send("go")
+    assert not written
+    interpreter.send("go")
+    assert written
 
 
 def test_a_step_can_be_read() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from lumen.errors import LumenError, SnapshotError
 from lumen.interpreters.arguments import need, need_map, need_number, need_text
 from lumen.interpreters.statechart.command_ids import outer_id
-from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.invocations import open_context
 from lumen.interpreters.statechart.macrostep import enter_machine
@@ -67,11 +67,17 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
     where the machine never comes to rest, SnapshotError where the snapshot has states that the machine has not.
     """
     try:
-        program = machine.__dict__.get("_compiled") or compiled(machine)
-        taken: Step | None = program.fast_paths.step(snapshot, event)
-        if taken is not None:
-            return taken
-        context = open_context(program, snapshot, event, max(snapshot.at, event.at))
+        program: CompiledMachine = machine.__dict__.get("_compiled") or compiled(machine)
+        taken = program.fast_paths.step(snapshot, event)
+    except (KeyError, AttributeError, TypeError, ValueError):
+        taken = None  # `in_full` fails on the same, and says why
+    return taken or in_full(machine, snapshot, event)
+
+
+def in_full(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
+    """The same by the whole algorithm, for whoever has tried the fast path already."""
+    try:
+        context = open_context(compiled(machine), snapshot, event, max(snapshot.at, event.at))
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
     except (AttributeError, TypeError, ValueError):
