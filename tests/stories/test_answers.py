@@ -5,7 +5,14 @@ from pathlib import Path
 
 import pytest
 
+import lumen
+from lumen.app.replaying.journals import chosen
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import with_machines
+from lumen.app.storytelling.story_text import story_text
+from lumen.app.storytelling.visit_story import visit_story
 from lumen.cli.main import main
+from lumen.interpreters.replay.visits import visits
 
 SETTINGS = """
 lumen: 1
@@ -82,3 +89,19 @@ def test_a_question_that_nobody_waits_for_any_more_is_none(play: Play, capsys: p
     steps = "  - says: do you sleep\n  - expect: {said: I do not know}\n  - answers: I only rest.\n"
     assert play(steps) == 1
     assert "none was asked" in capsys.readouterr().out
+
+
+def test_a_recorded_visit_is_written_with_what_was_answered(play: Play, tmp_path: Path) -> None:
+    says = "  - says: do you sleep\n"
+    text, raised = "answers: I only rest.", "answers: {raise: wish.dance, data: {song: manuk}}"
+    assert (
+        play(f"{says}  - {text}\n  - expect: {{state: hall}}\n{says}  - {raised}\n  - expect: {{state: dance}}\n") == 0
+    )
+    with lumen.open(tmp_path, story="one") as exhibition:
+        exhibition.run()
+    project = lumen.load(tmp_path)
+    found = [*visits(with_machines(chosen(tmp_path, None).entries(), KeptBundles(tmp_path)))]
+    made = [visit_story(project, project, visit, name="found", title="Found") for visit in found]
+    assert [one.same for one in made] == [True, True]
+    for one, wanted in zip(made, (text, raised), strict=True):
+        assert wanted in story_text(one.story, [])

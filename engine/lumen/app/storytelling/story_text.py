@@ -65,7 +65,7 @@ def _step(action: VisitorAction) -> tuple[str, Any]:
         case TouchSensor(sensor, pressed):
             return "touch" if pressed else "release", sensor
         case Happen(name, data):
-            return "event", {"name": name, "data": data} if data else name
+            return "event", name if data is None else {"name": name, "data": data}
         case Press(label):
             return "operator", {"press": label}
         case Approve(go):

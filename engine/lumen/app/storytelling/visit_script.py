@@ -10,7 +10,17 @@ from lumen.interpreters.replay.visits import RecordedVisit
 from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, Visitor, VisitorAction
+from lumen.language.stories import (
+    AnswerQuestion,
+    Arrive,
+    Happen,
+    Leave,
+    SendMessage,
+    Speak,
+    TouchSensor,
+    Visitor,
+    VisitorAction,
+)
 from lumen.language.verbs import VERBS
 from lumen.runtime.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
 
@@ -35,6 +45,7 @@ class TimedAction(NamedTuple):
 def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[TimedAction]:
     """What was done, in its order; with `faces` those that changed something, else who comes and goes."""
     found = [row for entry in visit.inputs if entry.how == "heard" for row in _done(entry, project, faces=faces)]
+    found += _answers(visit)
     if not faces:
         found += _walks([entry.event.at for entry in visit.inputs if _is_face(entry.event, project)], visit)
     return list(_anchored(sorted(found, key=lambda row: row.at), visit))
@@ -93,6 +104,25 @@ def _action(event: Event, project: Project) -> VisitorAction:
     if row and event.cause and event.cause.key:
         return SendMessage(row.name, data)
     return Happen(event.name, data)
+
+
+def _answers(visit: RecordedVisit) -> Iterator[TimedAction]:
+    """What the module `answers` said to each question, when it began to; what the robot knows itself it knows again."""
+    began = dict[str, float]()
+    said = dict[str, list[str]]()
+    for entry in visit.inputs:
+        event = entry.event
+        kind, _, id = event.name.partition(".command.")
+        if kind != "answer" or not (event.cause and event.cause.key) or not isinstance(event.data, Mapping):
+            continue
+        match event.data:
+            case {"raise": {"event": str(name), "data": dict(data)}}:
+                yield TimedAction(event.at, AnswerQuestion(event=name, data=data))
+            case {"text": str(text)} if text:
+                began.setdefault(id, event.at)
+                said.setdefault(id, []).append(text)
+    for id, texts in said.items():
+        yield TimedAction(began[id], AnswerQuestion(" ".join(texts)))
 
 
 def _is_face(event: Event, project: Project) -> bool:
