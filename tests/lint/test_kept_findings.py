@@ -12,7 +12,7 @@ import pytest
 
 from lumen.app.lint import kept_findings
 from lumen.cli.main import main
-from lumen.loading import looks
+from lumen.loading import engine_files, looks
 from lumen.rules.checks import CHECKS
 from tests.guarded import PIPE, run_guarded
 
@@ -119,7 +119,7 @@ def a_day(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def the_engine(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_findings, "engine", lambda: "another")
+    monkeypatch.setattr(engine_files, "engine", lambda: "another")
 
 
 def a_body(_: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -20,6 +21,12 @@ def engine() -> str:
         for path, what, changed in sorted(listed(folder)):
             digest.update(os.fsencode(f"{folder} {path} {what} {changed}\n"))
     return digest.hexdigest()
+
+
+def surroundings(root: Path) -> str:
+    """What all that is worked out of a project depends on beside its files: where it lies, the engine and Python."""
+    about = (str(root), os.path.abspath(root), engine(), sys.version, sys.path, os.environ.get("PYTHONTZPATH"))
+    return repr(about)
 
 
 def listed(folder: Path) -> Iterator[tuple[str, str, int]]:

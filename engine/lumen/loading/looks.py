@@ -1,6 +1,7 @@
 """What was looked at beside the files of a project: what is kept of them holds as long as all of it is as it was."""
 
 import os
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -32,6 +33,15 @@ class Looks:
         if path:
             self.at(path)
         return path
+
+    def around(self) -> None:
+        """Look at which time zones there are, and at the libraries that were imported."""
+        from zoneinfo import TZPATH
+
+        libraries = {name.partition(".")[0] for name in sys.modules} - sys.stdlib_module_names
+        files = (getattr(sys.modules.get(name), "__file__", None) for name in sorted(libraries))
+        for path in (*TZPATH, *filter(None, files)):
+            self.at(Path(path))
 
     def settled(self) -> bool:
         """Whether the next change of each certainly shows in its times."""

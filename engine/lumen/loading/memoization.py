@@ -1,8 +1,10 @@
 """What was worked out of the same content before: of a project's files one is saved at a time.
 
-Only the last result of each kind is kept. Whoever asks again shares it with all others, so nobody may change it.
+Only the last result of each kind is kept. Whoever asks again shares it with all others, so nobody may change it. All of
+it can be packed for a process that comes later.
 """
 
+import pickle
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
@@ -11,6 +13,8 @@ T = TypeVar("T")
 MAX_MEMOIZED = 10_000
 
 _last: dict[Hashable, tuple[Any, Any]] = {}
+_unpacked: set[Hashable] = set()
+"""The slots that still hold what was unpacked."""
 
 
 class Same:
@@ -44,5 +48,24 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     made = make()
     if len(_last) >= MAX_MEMOIZED:
         _last.clear()
+        _unpacked.clear()
     _last[slot] = given, made
+    _unpacked.discard(slot)
     return made
+
+
+def packed() -> bytes:
+    """Everything that is remembered."""
+    return pickle.dumps(_last, pickle.HIGHEST_PROTOCOL)
+
+
+def unpack(packed: bytes) -> None:
+    """Remember what was packed by the same engine; raises any exception where it is something else."""
+    remembered = pickle.loads(packed)
+    _last.update(remembered)
+    _unpacked.update(remembered)
+
+
+def newly_made() -> float:
+    """The part of what is remembered that was not unpacked (0..1)."""
+    return 1.0 - len(_unpacked) / len(_last) if _last else 0.0

@@ -8,15 +8,13 @@ moment before it was looked at, nothing is kept.
 
 import hashlib
 import json
-import os
-import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
-from lumen.loading.engine_files import engine
+from lumen.loading.engine_files import surroundings
 from lumen.loading.looks import Looks, unchanged
 from lumen.upkeep.cache_folder import CacheFolder
 
@@ -30,11 +28,14 @@ def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic
     known = _read(folder.read(name))
     if known is not None:
         return known
+    from lumen.app.lint.kept_memory import keep_memory, recall_memory
     from lumen.rules import check_files
 
+    recall_memory(root)
     looks = Looks()
     found = check_files(root, files, looks=looks)[1]
-    _environment(looks)
+    looks.around()
+    keep_memory(root)
     if looks.settled() and name == _name(root, files):
         kept = {"looks": looks.to_json(), "findings": [_plain(d) for d in found]}
         folder.write(name, json.dumps(kept).encode())
@@ -43,21 +44,11 @@ def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
     """A name for all that is known before lint begins."""
-    about = (str(root), os.path.abspath(root), time.strftime("%Y-%m-%d"), engine(), sys.version, sys.path)
-    digest = hashlib.sha256(repr((about, os.environ.get("PYTHONTZPATH"))).encode("utf-8", "surrogatepass"))
+    about = f"{time.strftime('%Y-%m-%d')} {surroundings(root)}"
+    digest = hashlib.sha256(about.encode("utf-8", "surrogatepass"))
     for path, content in sorted(files.items()):
         digest.update(repr((path, type(content).__name__, len(content))).encode("utf-8", "surrogatepass") + content)
     return digest.hexdigest()
-
-
-def _environment(looks: Looks) -> None:
-    """Which time zones there are, and which libraries found what was found."""
-    from zoneinfo import TZPATH
-
-    libraries = {name.partition(".")[0] for name in sys.modules} - sys.stdlib_module_names
-    files = (getattr(sys.modules.get(name), "__file__", None) for name in sorted(libraries))
-    for path in (*TZPATH, *filter(None, files)):
-        looks.at(Path(path))
 
 
 def _plain(found: Diagnostic) -> list[Any]:

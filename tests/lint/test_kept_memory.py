@@ -1,0 +1,76 @@
+"""What lint worked out of each file is kept, and comes to the same as what it works out anew."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from lumen.app.lint.kept_memory import MUCH, keep_memory, recall_memory
+from lumen.loading import looks, memoization
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+
+BASE = Path(__file__).parent / "base"
+TOUR = "behaviors/tour.yaml"
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """One that nothing is remembered of, which has been left alone for long."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(looks, "SETTLED_NS", -(10**18))
+    forget(monkeypatch)
+    return Path(shutil.copytree(BASE, tmp_path / "project"))
+
+
+def forget(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memoization, "_last", {})
+    monkeypatch.setattr(memoization, "_unpacked", set())
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        (TOUR, "onError: idle", "onError: idel"),
+        (TOUR, "id: tour", "id: tour # of the hall"),
+        ("lumen.yaml", "story: hello", "story: helo"),
+        ("motions/wave.yaml", "{", "{{"),
+    ],
+)
+def test_what_is_remembered_says_the_same(
+    file: str, old: str, new: str, project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check_files(project, read_files(project))
+    keep_memory(project)
+    path = project / file
+    path.write_text(path.read_text().replace(old, new, 1))
+    forget(monkeypatch)
+    anew = check_files(project, read_files(project))
+    forget(monkeypatch)
+    recall_memory(project)
+    again = check_files(project, read_files(project))
+    assert again == anew
+    assert 0.0 <= memoization.newly_made() < 1.0
+
+
+def test_of_the_same_files_nothing_is_made_anew(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    check_files(project, read_files(project))
+    keep_memory(project)
+    forget(monkeypatch)
+    recall_memory(project)
+    check_files(project, read_files(project))
+    assert memoization.newly_made() < MUCH
+
+
+@pytest.mark.parametrize("content", [b"", b"\n", b'{"paths": {}, "packages": {}}\nnonsense', b"[]\n"])
+def test_what_is_kept_badly_is_as_good_as_nothing(
+    content: bytes, project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check_files(project, read_files(project))
+    keep_memory(project)
+    (kept,) = (tmp_path / "cache/lumen/memory").iterdir()
+    kept.write_bytes(content)
+    forget(monkeypatch)
+    recall_memory(project)
+    assert memoization.newly_made() == 0.0
+    assert not memoization._last
