@@ -26,6 +26,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def forget(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memoization, "_last", {})
     monkeypatch.setattr(memoization, "_unpacked", set())
+    monkeypatch.setattr(memoization, "_asked", set())
 
 
 @pytest.mark.parametrize(
@@ -60,6 +61,15 @@ def test_of_the_same_files_nothing_is_made_anew(project: Path, monkeypatch: pyte
     recall_memory(project)
     check_files(project, read_files(project))
     assert memoization.newly_made() < MUCH
+
+
+def test_only_what_was_asked_for_is_kept(project: Path, tmp_path: Path) -> None:
+    memoization.memoize("another project", 1, lambda: "x" * 100_000)
+    recall_memory(project)
+    check_files(project, read_files(project))
+    keep_memory(project)
+    (kept,) = (tmp_path / "cache/lumen/memory").iterdir()
+    assert b"another project" not in kept.read_bytes()
 
 
 @pytest.mark.parametrize("content", [b"", b"\n", b'{"paths": {}, "packages": {}}\nnonsense', b"[]\n"])

@@ -15,6 +15,8 @@ MAX_MEMOIZED = 10_000
 _last: dict[Hashable, tuple[Any, Any]] = {}
 _unpacked: set[Hashable] = set()
 """The slots that still hold what was unpacked."""
+_asked: set[Hashable] = set()
+"""The slots that somebody asked for since `begin`."""
 
 
 class Same:
@@ -42,6 +44,7 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
 
     `given` is all that the result depends on.
     """
+    _asked.add(slot)
     known = _last.get(slot)
     if known is not None and known[0] == given:
         return known[1]  # type: ignore[no-any-return]
@@ -49,14 +52,21 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     if len(_last) >= MAX_MEMOIZED:
         _last.clear()
         _unpacked.clear()
+        _asked.clear()
+        _asked.add(slot)
     _last[slot] = given, made
     _unpacked.discard(slot)
     return made
 
 
+def begin() -> None:
+    """From now on note what is asked for."""
+    _asked.clear()
+
+
 def packed() -> bytes:
-    """Everything that is remembered."""
-    return pickle.dumps(_last, pickle.HIGHEST_PROTOCOL)
+    """What is remembered in the slots that were asked for since `begin`."""
+    return pickle.dumps({slot: _last[slot] for slot in _asked if slot in _last}, pickle.HIGHEST_PROTOCOL)
 
 
 def unpack(packed: bytes) -> None:
@@ -67,5 +77,5 @@ def unpack(packed: bytes) -> None:
 
 
 def newly_made() -> float:
-    """The part of what is remembered that was not unpacked (0..1)."""
-    return 1.0 - len(_unpacked) / len(_last) if _last else 0.0
+    """The part of the slots that were asked for since `begin` whose content was not unpacked (0..1)."""
+    return len(_asked - _unpacked) / len(_asked) if _asked else 0.0

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from lumen.loading.engine_files import surroundings
 from lumen.loading.looks import Looks, unchanged
-from lumen.loading.memoization import newly_made, packed, unpack
+from lumen.loading.memoization import begin, newly_made, packed, unpack
 from lumen.upkeep.cache_folder import CacheFolder
 
 MAX_KEPT = 8
@@ -25,6 +25,7 @@ def recall_memory(root: Path) -> None:
     """Remember what was kept of that project, where it holds."""
     content = CacheFolder("memory", MAX_KEPT).read(_name(root)) or b""
     looks, _, memory = content.partition(b"\n")
+    begin()
     try:
         if unchanged(json.loads(looks)):
             unpack(memory)
