@@ -209,6 +209,14 @@ RAISING: dict[str, Any] = {
 }
 BACK = {"in": {"states": {"a": {}, "h": {"type": "history", "target": "a"}}, "on": {"go": "out"}}, "out": {}}
 CHOOSING = {"a": {"on": {"go": [{"guard": f"context.n == {i}", "target": "b"} for i in range(3)]}}, "b": {}}
+SETTLING = {
+    "a": {"on": {"go": "b"}},
+    "b": {
+        "entry": ADD,
+        "always": [{"guard": "context.n > 5", "target": "a"}, {"guard": "context.n > 0", "target": "c"}],
+    },
+    "c": {},
+}
 PLAIN: dict[str, dict[str, Any]] = {
     "a ring": {"states": RING},
     "counting on the way": {"states": COUNTING},
@@ -218,6 +226,7 @@ PLAIN: dict[str, dict[str, Any]] = {
     "raising": {"states": RAISING},
     "leaving a history": {"states": BACK},
     "one of many ways": {"states": CHOOSING},
+    "going on at once": {"states": SETTLING},
 }
 
 
@@ -264,6 +273,20 @@ def test_what_happens_once_is_not_written() -> None:
     snapshot, event, paths = initial(machine).snapshot, Event("go"), compiled(machine).fast_paths
     assert paths.step(snapshot, event) is None
     assert paths.step(snapshot, event) == in_full(machine, snapshot, event)
+
+
+def test_what_never_comes_to_rest_is_not_written() -> None:
+    machine = Machine.from_dict(
+        {
+            "states": {
+                "s": {"on": {"go": "a"}},
+                "a": {"always": "b"},
+                "b": {"always": {"guard": "In('b')", "target": "a"}},
+            }
+        }
+    )
+    snapshot = initial(machine).snapshot
+    assert quick(machine, snapshot, Event("go")) is None
 
 
 def test_a_first_visit_writes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

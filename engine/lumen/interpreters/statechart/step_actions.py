@@ -43,7 +43,7 @@ class Certain:
 
     `event` is the variable of the event that is handled, `queue` those of internal events, with their names, and
     `raised` of all of them. `started`, `awaited` and `timed` count the ids given out; `commanded` where there may be
-    commands.
+    commands. It is `settled` while no eventless transition can be enabled.
     """
 
     configuration: Configuration
@@ -59,6 +59,7 @@ class Certain:
     awaited: int = 0
     timed: int = 0
     commanded: bool = False
+    settled: bool = False
     ended: bool = False
 
     def first(self, *ops: Op) -> None:

@@ -15,6 +15,8 @@ from lumen.language.machines import MachineDefinition
 
 MAX_LINES = 200
 """Of one function; what would be longer is not written."""
+MAX_DEPTH = 40
+"""Levels of one function: Python reads no more than a hundred."""
 
 _HEAD = """\
 def play(constants, snapshot, event):
@@ -84,7 +86,9 @@ class StepText:
 
     @contextmanager
     def branch(self, condition: str) -> Iterator[None]:
-        """Lines for where the condition holds."""
+        """Lines for where the condition holds; raises NotPlainError where they stand too deep."""
+        if self.depth > MAX_DEPTH:
+            raise NotPlainError
         self.line(f"if {condition}:")
         self.depth, scope = self.depth + 1, self.scope
         yield

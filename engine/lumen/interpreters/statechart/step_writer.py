@@ -18,7 +18,7 @@ from lumen.interpreters.statechart.plans import Candidates, Configuration, Micro
 from lumen.interpreters.statechart.state_changes import StateChange
 from lumen.interpreters.statechart.step_actions import ActionText, Certain, Op
 from lumen.interpreters.statechart.step_code import WrittenStep
-from lumen.interpreters.statechart.step_text import NotPlainError, Sight
+from lumen.interpreters.statechart.step_text import MAX_LINES, NotPlainError, Sight
 from lumen.interpreters.statechart.values import Fork, Position, Within
 from lumen.language.actions import AskQuestion, If, Parallel, PlacedAction
 from lumen.language.machines import State, StateKind
@@ -94,15 +94,18 @@ class StepWriter(ActionText):
             op, *rest = known.agenda
             known.agenda = tuple(rest)
             op(known)
-        elif known.configuration.eventless or known.configuration.finished:
+        elif known.configuration.finished:
             raise NotPlainError
+        elif known.configuration.eventless and not known.settled:
+            known.settled = True
+            known.first(partial(self.decide, known.configuration.eventless, (), {}))
         elif known.queue:
             (known.event, name), *others = known.queue
-            known.queue = tuple(others)
+            known.queue, known.settled = tuple(others), False
             known.first(partial(self.decide, known.configuration.candidates(name), (), {}))
         elif known.beginnings:
             begun = sorted(known.beginnings, key=lambda node: node.index)
-            known.beginnings = ()
+            known.beginnings, known.settled = (), False
             known.first(*(partial(self.do, node, (("do", _state(node).do, 0),)) for node in begun))
         else:
             self.plain = True
@@ -139,6 +142,9 @@ class StepWriter(ActionText):
             self.line(f"return {self.constant(self.apart(enabled))}(snapshot, event)")
             self.plain = known.ended = True
             return
+        if len(known.transitions) > MAX_LINES:  # of a machine that never comes to rest
+            raise NotPlainError
+        known.settled = False
         plan = self.planner.plan(known.configuration, enabled, {})
         if self.recalls(plan):
             raise NotPlainError
