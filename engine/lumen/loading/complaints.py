@@ -56,7 +56,7 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
         yield _missing(error, path, error.schema if path else root)
     elif keyword == "dependentRequired":
         yield from _dependents(error, path)
-    elif error.schema == {"minProperties": 1, "maxProperties": 1} or keyword == "maxProperties":
+    elif error.schema == {"minProperties": 1, "maxProperties": 1} or (keyword, error.validator_value) == ("maxProperties", 1):
         yield _verbs(error, path)
     else:
         yield _wrong(error, path)
@@ -168,8 +168,10 @@ def _verbs(error: Error, path: NodePath) -> Complaint:
     """An action, or a step of a story, that does nothing or two things."""
     keys = list(error.instance)
     if len(keys) > 1:
-        message = f"`{keys[0]}` and `{keys[1]}` stand in one item, which says one thing only"
-        hint = f"begin a new item: `- {keys[1]}: …`"
+        within, hint = "one item", f"begin a new item: `- {keys[1]}: …`"
+        if "minProperties" not in error.schema:  # a key that wants none beside it
+            within, hint = node(path), "keep one of the two"
+        message = f"`{keys[0]}` and `{keys[1]}` stand in {within}, which says one thing only"
         return Complaint(ONE_VERB, (*path, keys[1]), message, hint, path, _spared(path), True)
     message = f"{node(path)} says nothing: it needs one key, the verb"
     return Complaint(ONE_VERB, path, message, "write the verb, as in `say: Hello`", path, _spared(path))

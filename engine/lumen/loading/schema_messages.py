@@ -88,6 +88,8 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
             return f"{name} is empty", hint or "write something, or delete it"
         case "minItems":
             return f"{name} has {_count(len(value))}, it should have at least {bound}", hint
+        case "maxProperties":
+            return f"{name} has {len(value)} keys, it should have at most {bound}", hint
         case "items" | "maxItems":
             return f"{name} has too many items", hint
         case "uniqueItems":
