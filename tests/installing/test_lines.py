@@ -44,7 +44,7 @@ def words(line: str, wheel: Path) -> list[str]:
     """What pip is to be given for a line: the wheel stands for the checkout, for its file and for the repository."""
     replaced = []
     for word in shlex.split(line):
-        extras = re.search(r"\[[\w,]*\]", word)
+        extras = re.search(r"\[[\w,-]*\]", word)
         ours = word.startswith((".", "dist/lumen_robot-", "lumen-robot")) and not word.startswith("lumen-robot[")
         assert " @ " not in word or re.sub(r"\[.*?\]", "", word) == REPOSITORY, word
         replaced.append(f"{wheel}{extras[0] if extras else ''}" if ours else word)
@@ -58,7 +58,7 @@ def test_there_are_such_lines_and_all_name_what_can_be_installed() -> None:
     assert len(LINES) > 8
     for page, line in lines():
         ours = [word for word in shlex.split(line) if not word.startswith("--")]
-        known = re.compile(r"(\.|dist/lumen_robot-0\.1\.0-py3-none-any\.whl|lumen-robot)(\[[\w,]+\])?( @ git\+.*)?$")
+        known = re.compile(r"(\.|dist/lumen_robot-0\.1\.0-py3-none-any\.whl|lumen-robot)(\[[\w,-]+\])?( @ git\+.*)?$")
         assert all(known.match(word) or word in FOREIGN for word in ours), f"{page}: pip install {line}"
         if page.startswith(("README", "docs")) and "[" not in line:
             assert ours != ["lumen-robot"], f"{page}: Lumen is in no index, which `pip install {line}` asks"

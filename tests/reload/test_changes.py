@@ -68,7 +68,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "a text",
         [(TOUR, "en: Never mind.", "en: No problem.")],
-        ["state `ask_name` says “No problem.” on `heard` now (en)"],
+        [f"state `{name}` says “No problem.” on `heard` now (en)" for name in ("ask_name", "check_name")],
         Risk.COSMETIC,
     ),
     (
@@ -148,6 +148,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
             "state `asking` added",
             "state `greet` goes to `asking` when it is done now, not `ask_name`",
             "state `greet` goes to `asking` when it fails now, not `ask_name`",
+            "state `check_name` goes to `asking` on `heard` if `context.name_tries < 2` now, not `ask_name`",
         ],
         Risk.BEHAVIOR,
     ),
@@ -168,7 +169,7 @@ def test_all_changes_in_one_line() -> None:
         (TOUR, "en: Thank you!", "en: Thanks!"),
         ("lumen.yaml", "ttl: 2s, keep: 10", "ttl: 3s, keep: 10"),
     )
-    expected = "state `dance` now plays `photo`; route `command` ttl 2 s → 3 s; 2 texts changed"
+    expected = "state `dance` now plays `photo`; route `command` ttl 2 s → 3 s; 3 texts changed"
     assert summary(changes(PLAIN, other)) == expected
     assert summary(()) == "nothing that matters changed"
     many = [Change("story", "", "", Risk.COSMETIC), Change("behavior", "", "", Risk.BEHAVIOR)]

@@ -56,7 +56,7 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
         yield _missing(error, path, error.schema if path else root)
     elif keyword == "dependentRequired":
         yield from _dependents(error, path)
-    elif error.schema == {"minProperties": 1, "maxProperties": 1} or (keyword, error.validator_value) == ("maxProperties", 1):
+    elif error.schema == {"minProperties": 1, "maxProperties": 1} or (keyword == "maxProperties" and _is_one(error)):
         yield _verbs(error, path)
     else:
         yield _wrong(error, path)
@@ -162,6 +162,10 @@ def _bad_key(error: Error, path: NodePath) -> Complaint:
     if code := _LANGUAGES.get(error.instance.lower(), ""):
         hint = f"a language is written by its letters: `{code}`"
     return Complaint(WRONG_KEY, here, f"`{error.instance}` can't be a key of {node(path)}", hint, path, here, True)
+
+
+def _is_one(error: Error) -> bool:
+    return bool(error.validator_value == 1)
 
 
 def _verbs(error: Error, path: NodePath) -> Complaint:
