@@ -8,6 +8,7 @@ from pathlib import Path
 from lumen.bus import connect
 from lumen.interpreters.projection import centring
 from lumen.language.commands import Look, Track
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.server import RobotServer
@@ -32,14 +33,17 @@ def run(
     tick: float = 0.1,
     duration: float = 4.0,
     within: Callable[[float, float], Pose] = lambda yaw, pitch: (yaw, pitch),
+    imperfections: Imperfections | None = None,
 ) -> Run:
     """Let the shipped controller follow a visitor; the head begins so far [deg] beside the pose that centres the face.
 
     The poses of the result are beside that pose too [rad], wherever face and torso are by then: they end at 0. Images
     are taken every `tick` [s] and told of `latency` [s] later. `within` bends the first pose.
+    The robot falls short in the ways that `imperfections` say, else in all.
     """
     few = replace(project, routes={name: project.routes[name] for name in ("face", "joint")})
-    robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
+    models = Path(project.root) / "models"
+    robot = SimulatedRobot(project.body, models, project.hall, stage=project.stage, imperfections=imperfections)
     bus = connect("memory://")
     server = RobotServer(few, robot, bus)
     robot.place(visitor(0.0))
