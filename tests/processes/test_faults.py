@@ -140,6 +140,7 @@ def test_a_robot_that_hangs_is_lost_and_does_nothing_late_when_it_goes_on(
     troupe.until(lambda: "idle" in brain.states)
     dead = Dead(troupe.url)
     os.kill(robot.pid, signal.SIGSTOP)
+    os.waitid(os.P_PID, robot.pid, os.WSTOPPED | os.WNOWAIT)  # all its threads: one may read on until then
     troupe.ear.publish("avatar.NAO.command", {"id": "late", "type": "motion", "method": "goodbye"}, ttl=2.0)
     troupe.until(lambda: "robot_lost" in brain.states)
     main(["doctor", str(troupe.folder), "--bus", troupe.url])
