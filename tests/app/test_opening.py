@@ -123,6 +123,7 @@ def test_what_is_wrong_is_said() -> None:
             exhibition.send("heard", {"result": 7})
 
 
+@pytest.mark.slow
 def test_the_example_runs() -> None:
     told = run_guarded(
         [sys.executable, "examples/embed/clock_tower.py"], cwd=ROOT, capture_output=True, text=True, check=True
