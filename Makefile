@@ -44,6 +44,7 @@ test: setup
 
 tested:
 	@$(BIN)/lumen lint --strict
+	@$(BIN)/python -m pytest --collect-only -qq tests >/dev/null || true # compiled once, not by each worker
 	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder -rs -m "not soak"
 
 soak: setup check

@@ -25,7 +25,7 @@ PAGES = (
     "engine/**/*.py",
 )
 WORD = r"""(?:'[^'\n]*'|"[^"\n]*"|[^\s`'"),;:]+)"""
-COMMAND = re.compile(rf"(?:python -m )?pip install ((?:--no-deps )?(?!-){WORD})")
+COMMAND = re.compile(rf"pip install ((?:--no-deps )?(?!-){WORD})")
 FOREIGN = {"dm-control>=1.0.50,<2"}
 REPOSITORY = "lumen-robot @ git+https://github.com/OWNER/lumen@COMMIT"
 """What stands for the address of a copy of Lumen, and a commit in it."""
