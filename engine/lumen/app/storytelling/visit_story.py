@@ -116,8 +116,7 @@ def _blank(project: Project, stands: Snapshot, visit: RecordedVisit, name: str, 
 
 
 def _clock(stands: Snapshot, visit: RecordedVisit) -> Schedule:
-    where = zone(stands.timezone) if stands.timezone else None
-    moment = datetime.fromtimestamp(visit.began, where)
+    moment = datetime.fromtimestamp(visit.began, zone(stands.timezone))
     text = f"{WEEKDAYS[moment.weekday()]} {moment:%H:%M}"
     return Schedule((moment.hour * 60 + moment.minute,), weekdays=(moment.weekday(),), text=text)
 

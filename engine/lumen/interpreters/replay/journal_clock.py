@@ -1,7 +1,7 @@
 """What time it was, by the clock on the wall, when an entry of a journal was made."""
 
 from collections.abc import Mapping
-from datetime import datetime, time, timedelta, tzinfo
+from datetime import datetime, time, timedelta
 
 from lumen.interpreters.replay.entries import LATEST, JournalJump, RecordedEntry
 from lumen.interpreters.wall_clock import zone
@@ -26,8 +26,7 @@ class JournalClock:
 
     def local(self, moment: float) -> datetime:
         """That moment where the exhibition was."""
-        where: tzinfo | None = zone(self._timezone) if self._timezone else None
-        return datetime.fromtimestamp(moment, where)
+        return datetime.fromtimestamp(moment, zone(self._timezone))
 
     def next(self, moment: float, wanted: time) -> float:
         """The first time after a moment at which the clock there shows what is wanted [s since 1970, in UTC]."""
