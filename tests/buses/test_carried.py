@@ -10,6 +10,7 @@ import pytest
 
 from lumen.bus import Bus, BusError, Message, Refused, connect
 from lumen.buses.consumer import BIND_TIMEOUT, PREFETCH
+from lumen.buses.polled import PolledConnection
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
@@ -290,6 +291,28 @@ def test_who_leaves_takes_nothing_from_who_stays(opened: Open, carried: Carried)
     first.close()
     sender.publish(way.key, "to who stays")
     assert seen.wait(1) == ["to who stays"]
+
+
+@pytest.mark.parametrize("carried", [Carried.COMMAND, Carried.JOURNAL])
+def test_who_leaves_while_another_comes_takes_nothing_from_them(
+    opened: Open, carried: Carried, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    way = route(f"avatar.P.{carried}", carried)
+    first, second, sender, seen = opened(way), opened(way), opened(way), Collector()
+    undo = first.subscribe(way.key, Collector())
+    consume = PolledConnection.consume
+
+    def between(connection: PolledConnection, *told: Any) -> str:
+        """The queue is declared, and nobody reads it yet but who leaves."""
+        monkeypatch.undo()
+        undo()
+        first.close()
+        return consume(connection, *told)
+
+    monkeypatch.setattr(PolledConnection, "consume", between)
+    second.subscribe(way.key, seen)
+    sender.publish(way.key, "to who comes")
+    assert seen.wait(1) == ["to who comes"]
 
 
 def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(broker: RabbitMQ, opened: Open) -> None:

@@ -25,7 +25,7 @@ from lumen.runtime.home import Home
 from tests.nodes import Printed, whole
 from tests.waiting import Collector
 
-DEADLINE = 30.0
+DEADLINE = 120.0
 QUIET = 0.06
 
 

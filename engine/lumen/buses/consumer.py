@@ -1,7 +1,6 @@
 """The connection that receives: a queue of its own for every subscription, and nothing but enqueueing in callbacks."""
 
 import logging
-import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any
@@ -28,8 +27,6 @@ BIND_TIMEOUT = 5.0
 """How long a subscription waits for the broker to confirm it [s]."""
 TURN_TIME = 1.0
 """How long the connection is left to itself at a time [s]."""
-STALL_TIME = 0.5
-"""By how much a turn may take longer [s] before this process counts as having stood still."""
 FLOOD_PAUSE = 0.02
 """How long nothing is read after more came than is taken [s]: a tick, at which all that was read is used."""
 UNBOUND_READ_TIME = 2.0
@@ -60,11 +57,9 @@ class Consumer(BrokerConnection):
         self._hurried = False
         self._epoch = 0
         self._acknowledged = 0
-        self._turned = self._since = time.monotonic()
         self.unreadable = DropLog(_log, "properties of messages")
 
     def begin(self) -> None:
-        self._turned = self._since = time.monotonic()  # what comes now came after the outage
         self._epoch += 1
         self._acknowledged = 0
         self.intake.forget()
@@ -74,9 +69,6 @@ class Consumer(BrokerConnection):
             self._bind(subscription)
 
     def serve(self) -> bool:
-        now = time.monotonic()
-        self._since = self._turned if now - self._turned > TURN_TIME + STALL_TIME else now
-        self._turned = now
         self.process(TURN_TIME)
         self.unreadable.tell()
         self.intake.drops.tell()
@@ -170,19 +162,18 @@ class Consumer(BrokerConnection):
         return True
 
     def _bind(self, subscription: Subscription) -> None:
+        """Where the connection is lost meanwhile, it is bound as soon as there is another."""
         if not subscription.active or self.channel is None or subscription.epoch == self._epoch:
             return
-        try:
-            queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
-            subscription.queue, refusal = self._declarer.declare(self.connection, queue)
-            if refusal:
-                self._refused(subscription, refusal)
-                return
+        queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
+        subscription.queue, refusal = self._declarer.declare(self.connection, queue)
+        if refusal:
+            self._refused(subscription, refusal)
+        else:
             subscription.epoch = self._epoch
             if subscription.handler is not None:
                 self._consume(subscription)
-        finally:
-            subscription.bound.set()
+        subscription.bound.set()
 
     def _refused(self, subscription: Subscription, reason: str) -> None:
         self._subscriptions.refuse(subscription, reason)
@@ -192,6 +183,8 @@ class Consumer(BrokerConnection):
     def _consume(self, subscription: Subscription) -> None:
         if self.channel is not None and subscription.active and subscription.epoch == self._epoch:
             subscription.tag = self.connection.consume(subscription.queue, self._reader(subscription))
+            if subscription.must_arrive:
+                self._declarer.bind_again(self.connection, subscription)
 
     def _move(self, subscription: Subscription, old: Route | None) -> None:
         if self.channel is None or not subscription.active:
@@ -225,9 +218,8 @@ class Consumer(BrokerConnection):
             kept = body if len(body) <= MAX_BODY_BYTES else body[: MAX_BODY_BYTES + 1]
             name = self._readable(key, properties)
             subscription.received += 1
-            self.intake.take(
-                Delivery(subscription, name, kept, properties, number, self._epoch, again, self._arrival())
-            )
+            at = self.connection.clock.arrival()
+            self.intake.take(Delivery(subscription, name, kept, properties, number, self._epoch, again, at))
 
         return arrived
 
@@ -240,14 +232,6 @@ class Consumer(BrokerConnection):
         if properties.unreadable:
             self.unreadable.add(text, f"{', '.join(properties.unreadable)} can't be read; the message is taken without")
         return text
-
-    def _arrival(self) -> float:
-        """When what is received now came at the earliest [s, monotonic], where this process stood still meanwhile.
-
-        Who wakes up in the middle of a turn may see only in the next one what came in this one.
-        """
-        now = time.monotonic()
-        return self._since if now - self._since > TURN_TIME + STALL_TIME else now
 
 
 def _short(key: str) -> str:

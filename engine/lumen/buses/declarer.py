@@ -32,6 +32,11 @@ class QueueDeclarer:
                     break
         return "", refusal
 
+    def bind_again(self, connection: PolledConnection, subscription: Subscription) -> None:
+        """Who left while we came may have unbound a queue that nobody read yet; now the broker knows that we do."""
+        with suppress(ChannelClosedByBroker), connection.asking() as channel:
+            channel.queue_bind(subscription.queue, EXCHANGE, subscription.pattern)
+
     def unbind(self, connection: PolledConnection, subscription: Subscription) -> None:
         """Nothing comes to its queue under its key any more; what is in there can still be read."""
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
@@ -48,9 +53,12 @@ class QueueDeclarer:
     def _remove(self, channel: AskedChannel, subscription: Subscription) -> None:
         name, must = subscription.queue, subscription.must_arrive
         if must:
-            if channel.queue_declare(name, passive=True).method.consumer_count:
+            if _is_read(channel, name):
                 return
             channel.queue_unbind(name, EXCHANGE, subscription.pattern)
+            if _is_read(channel, name):  # by somebody who came between
+                channel.queue_bind(name, EXCHANGE, subscription.pattern)
+                return
         if not queue_of("", subscription.route).quorum and (must or not subscription.tag):
             channel.queue_delete(name, if_unused=True, if_empty=must)
 
@@ -82,6 +90,10 @@ def _exists(channel: AskedChannel, name: str) -> bool:
     except ChannelClosedByBroker:
         return False
     return True
+
+
+def _is_read(channel: AskedChannel, name: str) -> bool:
+    return bool(channel.queue_declare(name, passive=True).method.consumer_count)
 
 
 def _declare(channel: AskedChannel, queue: Queue) -> str:

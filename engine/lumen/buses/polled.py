@@ -15,6 +15,7 @@ from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, Ch
 from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BROKER_TIMEOUT
 from lumen.buses.poll_loop import PollLoop
+from lumen.buses.turn_clock import TurnClock
 from lumen.buses.wire import MessageReader, WireConnection
 
 
@@ -25,6 +26,7 @@ class PolledConnection:
     """
 
     def __init__(self, parameters: Any) -> None:
+        self.clock = TurnClock()
         self._loop = PollLoop()
         self._used = threading.Lock()
         self._used.acquire()
@@ -82,9 +84,11 @@ class PolledConnection:
         self.ask(self.channel.confirm_delivery, refused)
 
     def consume(self, queue: str, reader: MessageReader, arguments: Mapping[str, Any] | None = None) -> str:
-        """Have messages of a queue read; the tag by which to `cancel` that."""
-        tag: str = self.channel.basic_consume(queue, lambda *_: None, arguments=arguments)
+        """Have messages of a queue read, of which the broker knows then; the tag by which to `cancel` that."""
+        known: list[Any] = []
+        tag: str = self.channel.basic_consume(queue, lambda *_: None, arguments=arguments, callback=known.append)
         self._connection.readers[tag.encode()] = reader
+        self.until(lambda: known)
         return tag
 
     def cancel(self, tag: str) -> None:
@@ -105,6 +109,7 @@ class PolledConnection:
 
         Before that only `wake` is waited for, as long as `pause` [s]: what happens meanwhile is used at once.
         """
+        self.clock.begin(pause + seconds)
         self._connection.flush()
         self._used.release()
         try:
