@@ -39,15 +39,18 @@ def tour() -> Work:
 
     def work(count: int) -> int:
         taken, done, waiting = initial(machine, language="en"), 0, deque[Event]()
-        world = happenings()
+        world, asked, timer = happenings(), None, None
         while done < count:
-            waiting.extend(_answers(taken))
+            now = taken.snapshot
+            if taken.commands:
+                waiting.extend(_answers(taken))
             event = waiting.popleft() if waiting else next(world)
-            timer = due(taken.snapshot)
+            if asked is None or now.timers is not asked.timers or now.invoked is not asked.invoked:
+                asked, timer = now, due(now)
             if timer and timer.at <= event.at:
                 waiting.appendleft(event)
                 event = timer
-            taken = step(machine, taken.snapshot, event)
+            taken = step(machine, now, event)
             done += 1
         return done
 

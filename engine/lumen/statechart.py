@@ -91,7 +91,9 @@ class Machine(machines.MachineDefinition):
         for name, other in machine.invoked.items():
             if name not in known:
                 known[name] = cls._derived(other, known)
-        return derived(cls, replace(machine, invoked={name: known[name] for name in machine.invoked}))
+        made = derived(cls, replace(machine, invoked={name: known[name] for name in machine.invoked}))
+        compiled(made)  # who makes a machine expects to wait, who starts one does not
+        return made
 
 
 class Interpreter(Generic[C]):
