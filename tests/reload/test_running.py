@@ -9,8 +9,9 @@ from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan
-from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
@@ -18,6 +19,7 @@ from lumen.language.stories import Visitor
 from lumen.project import load
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
+from lumen.runtime.approvals import Approvals
 from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
 from lumen.statechart import Machine
 from tests import exhibits
@@ -159,6 +161,43 @@ def test_no_message_is_lost_while_routes_come_and_go() -> None:
     publisher.join()
     exhibition.tick()
     assert seen.events.count("face") == turns * each
+
+
+@pytest.mark.parametrize("part", ["approvals", "recorder"])
+def test_where_going_on_with_other_files_fails_all_is_as_before(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fault of ours in the last of what is done."""
+    project = exhibits.project(behaviors={"tour": DANCING})
+    exhibition, _ = running(project)
+    runtime, other = exhibition.runtime, replace(project, languages=("nl", "en"))
+    stood, plan = runtime.snapshot, exhibition.plan(other)
+    assert isinstance(plan, MigrationPlan)
+    with monkeypatch.context() as patched:
+        patched.setattr(runtime, part, Faulty(runtime.approvals))
+        with pytest.raises(ZeroDivisionError):
+            exhibition.apply(other, plan)
+    assert runtime.project is project
+    assert runtime.snapshot is stood
+    exhibition.apply(other, plan)
+    assert runtime.project is other
+
+
+class Faulty:
+    """Approvals, or a recorder, that fail once."""
+
+    def __init__(self, approvals: Approvals) -> None:
+        self._approvals, self._fails = approvals, True
+
+    def use(self, machine: MachineDefinition, snapshot: Snapshot) -> None:
+        self._fail()
+        self._approvals.use(machine, snapshot)
+
+    def jumped(self, *_: object, **__: object) -> None:
+        self._fail()
+
+    def _fail(self) -> None:
+        if self._fails:
+            self._fails = False
+            raise ZeroDivisionError
 
 
 def test_a_language_that_is_gone_is_no_longer_spoken() -> None:

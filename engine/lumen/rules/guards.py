@@ -148,8 +148,11 @@ def _taken(first: HeardCall, second: HeardCall, machine: MachineDefinition) -> f
     if first.text != second.text or first.name not in machine.phrases or second.name not in machine.phrases:
         return frozenset()
     one, other = machine.phrases[first.name], machine.phrases[second.name]
-    heard = (phrase for texts in other.values() for phrase in texts if is_heard(phrase, one))
-    return memoize(("taken", machine.id, first.name, second.name), (one, other), lambda: frozenset(heard))
+
+    def heard() -> frozenset[str]:
+        return frozenset(phrase for texts in other.values() for phrase in texts if is_heard(phrase, one))
+
+    return memoize(("taken", machine.id, first.name, second.name), (one, other), heard)
 
 
 def _alike(one: Transition, other: Transition) -> bool:

@@ -194,8 +194,8 @@ class BehaviorLoop:
             self._listen(project)
             self.tracking.reload(project)
             self.regulation.reload(project)
-            self.runtime.apply(project, plan.snapshot, kind, plan.commands)
             self.performer.navigator.renew()
+            self.runtime.apply(project, plan.snapshot, kind, plan.commands)
         except Exception:
             self._listen(old)
             self.tracking.reload(old)

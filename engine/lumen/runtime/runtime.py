@@ -117,10 +117,19 @@ class Runtime:
     def apply(
         self, project: Project, planned: Snapshot, kind: JumpKind = "reload", commands: Sequence[Command] = ()
     ) -> None:
-        """Go on with another bundle as planned, between two macrosteps; `commands` are those that it asks for."""
+        """Go on with another bundle as planned, between two macrosteps; `commands` are those that it asks for.
+
+        Where that raises, for a fault of ours, it goes on as before.
+        """
+        old, stood = self.project, self._snapshot
         self.project, self._snapshot = project, planned
-        self.approvals.use(project.machine, planned)
-        self._record(kind, commands)
+        try:
+            self.approvals.use(project.machine, planned)
+            self._record(kind, commands)
+        except Exception:
+            self.project, self._snapshot = old, stood
+            self.approvals.use(old.machine, stood)
+            raise
 
     def note(self, **said: Any) -> None:
         """Have words kept beside what happened, at this moment: the behaviour hears nothing of them."""
