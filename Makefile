@@ -36,7 +36,7 @@ setup: .venv/test packages
 
 quick: .venv/test
 	@$(BIN)/python scripts/nearest.py $(TESTS) | xargs $(BIN)/python -m pytest -n 2 --dist loadfile \
-		-p tests.time_budget --begin-within 38 --no-loadscope-reorder --hypothesis-profile quick --cpu-limit 1 -m "not ($(LEFT_OUT))"
+		-p tests.time_budget --begin-within 34 --no-loadscope-reorder --hypothesis-profile quick --cpu-limit 1 -m "not ($(LEFT_OUT))"
 
 # The checks and the tests side by side: the checks use one core.
 test: setup
