@@ -35,6 +35,15 @@ RESTS = re.compile(r"Rests")
 REFUSES = re.compile(r"NOT SENT|does not rest|no answer came|can't be sent")
 SETTLES = 60.0
 """How long a page may take until it says what became of Rest, on a crowded machine [s]."""
+LEAVES = """
+sessionStorage.removeItem("test.read");
+addEventListener("pagehide", () => {
+  const said = document.querySelector("rest-button[main] .rest-said");
+  if (!sessionStorage.getItem("lumen.pressed")) sessionStorage.setItem("test.read", said.innerText);
+});
+"""
+"""What a page said at last counts where it stood there for so long that the next one need not tell of it (`SEEN`)."""
+READ = "return sessionStorage.getItem('test.read') ?? ''"
 TOOK = "return document.querySelector('rest-button[main]')?.told?.[1]?.seconds ?? null"
 
 
@@ -67,7 +76,7 @@ class Desk:
                 Event().wait(draw.uniform(0, 0.4))
             self.press(trouble)
         happening.mend(draw.uniform(0, LONGEST) if trouble.presses > 1 else 0.0)
-        said = {window: self.hear(window) for window in pressed}
+        said = {window: self.hear(trouble, window) for window in pressed}
         until(lambda: house.stopped_by() is not None, SETTLES)
         rests = bool(house.stopped_by())
         for window in pressed:
@@ -80,16 +89,21 @@ class Desk:
             self.chromium.open(house.address + draw.choice(PAGES))
         self.chromium.rest(keys=draw.random() < 0.5)
         if trouble is LEAVING:
+            self.chromium.run(LEAVES)
             self.chromium.open(house.address + draw.choice(PAGES))
 
-    def hear(self, window: str) -> str:
+    def read(self, trouble: Trouble) -> str:
+        """What could be read on the page that was left."""
+        return str(self.chromium.run(READ)) if trouble is LEAVING else ""
+
+    def hear(self, trouble: Trouble, window: str) -> str:
         """What a page says at last, as far as it does."""
         self.chromium.look(window)
         said = ""
 
         def settled() -> bool:
             nonlocal said
-            said = self.chromium.said()
+            said = self.chromium.said() or self.read(trouble)
             return bool(RESTS.search(said) or REFUSES.search(said))
 
         with suppress(AssertionError):
