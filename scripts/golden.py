@@ -1,0 +1,33 @@
+"""Record goldens: `python scripts/golden.py [SUBJECT …]`, all of them if none is named.
+
+A recording changes only in a commit of its own, with a record in docs/decisions/ that says why.
+"""
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT))
+
+from tests.golden.golden import RECORDED, differences, names, record  # noqa: E402
+
+
+def main(wanted: list[str]) -> int:
+    """Record the subjects and print what changed; 2 for a name that is none."""
+    if unknown := sorted(set(wanted) - set(names())):
+        print(f"unknown {', '.join(unknown)}: choose from {', '.join(names())}", file=sys.stderr)
+        return 2
+    for name in wanted or names():
+        with tempfile.TemporaryDirectory() as folder:
+            record(name, Path(folder))
+            for line in differences(RECORDED / name, Path(folder)):
+                print(f"{name}/{line}")
+            shutil.rmtree(RECORDED / name, ignore_errors=True)
+            shutil.copytree(folder, RECORDED / name)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,1 @@
+"""A module for each subject; its `record(folder)` writes into the folder what is kept, the same bytes each time."""

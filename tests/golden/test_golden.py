@@ -1,0 +1,21 @@
+"""What the engine does is what it did when the goldens were recorded, to the byte."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.golden.golden import RECORDED, differences, names, record, subject
+
+DO = "Change the code, or record it anew in a commit of its own."
+
+
+def subjects() -> list[object]:
+    return [pytest.param(name, marks=[pytest.mark.rest] * (subject(name).SUITE == "rest")) for name in names()]
+
+
+@pytest.mark.parametrize("name", subjects())
+def test_is_as_recorded(name: str, tmp_path: Path) -> None:
+    record(name, tmp_path)
+    assert (RECORDED / name).is_dir(), f"nothing is recorded of {name}: python scripts/golden.py {name}"
+    found = differences(RECORDED / name, tmp_path)
+    assert not found, "\n".join((f"{name} is not what it was at d475a3ac.", *found, DO))
