@@ -1,7 +1,7 @@
 """What a job and who asks for it go by."""
 
-JOB_TIME = 60.0
-"""How long a job may take, with its wait for those before it [s]."""
+JOB_TIME = 240.0
+"""How long a job may take, with its wait for those before it [s]: minutes on a small and busy machine."""
 NOTHING = b"null"
 """The answer of a job that found nothing."""
 REFUSED, OUT_OF_MEMORY = 76, 77

@@ -4,7 +4,8 @@ import { blocks, parsed } from "./blocks.js";
 import { follow } from "./follow.js";
 import { redraw } from "./ui.js";
 
-const AGAIN = 500, ANSWER = 2500, BEFORE = 600, MOST = 300; // [ms], [ms], entries, entries
+const AGAIN = 500, ANSWER = 2500, QUESTION = 30000, BEFORE = 600, MOST = 300; // [ms], [ms], [ms], entries, entries
+export const JOB = 250000; // [ms] longer than the console gives a process that computes something
 
 export const live = {
   state: "connecting", since: Date.now(), role: null, fleet: false, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
@@ -18,7 +19,7 @@ export function listen(handler) { heard.add(handler); return () => heard.delete(
 const params = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value != null && value !== "")).toString();
 
 /** JSON of one of the console's paths; the error has what it says. */
-export async function get(path, values = {}, limit = 15000) {
+export async function get(path, values = {}, limit = QUESTION) {
   const query = params(values);
   const answer = await fetch(query ? `${path}?${query}` : path, { signal: AbortSignal.timeout(limit), cache: "no-store" });
   const data = await answer.json().catch(() => ({}));

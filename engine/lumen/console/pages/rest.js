@@ -25,9 +25,11 @@
   };
   const LIMIT = 1000, SILENT = 12000, TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
   const NEW = 5000; // [ms] after a press what a robot says of itself is newer than it
+  const MOVES = 30000; // [ms] after a press a robot that moves does so again, even if this page never saw it at rest
   const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
   const ALARMS = ["unsent", "failed", "unknown"], RESTS = ["finished", "after_all"];
-  const PRESSED = "lumen.pressed", FRESH = 10000; // a press that the next page is to tell of, for so long [ms]
+  const PRESSED = "lumen.pressed"; // a press whose answer nobody can have read yet
+  const FRESH = 10000, TOLD = 600000; // for so long the next page sends it again, and reports what became of it [ms]
   const SEEN = 2000; // for which its answer stands on a page until it counts as seen there [ms]
   const root = document.documentElement;
 
@@ -50,7 +52,7 @@
   function remembered() {
     try {
       const press = JSON.parse(sessionStorage.getItem(PRESSED));
-      return press && Date.now() - press.at < FRESH ? press : null;
+      return press && Date.now() - press.at < TOLD ? press : null;
     } catch { return null; }
   }
 
@@ -96,7 +98,9 @@
       this.replaceChildren(this.button, this.said);
       this.speak();
       const before = this.hasAttribute("main") && remembered();
-      if (before) this.press(before); // the page was left meanwhile: the same message, which is heeded once
+      if (!before) return;
+      if (Date.now() - before.at < FRESH) this.press(before); // the same message, which the console accepts once
+      else this.recall(before);
     }
 
     speak() { // in the page's language
@@ -111,23 +115,39 @@
     press(again = null) {
       const press = ++this.presses;
       const sent = again ?? { id: newId(), robot: this.getAttribute("robot") ?? robot, at: Date.now() };
-      this.sent = sent;
+      this.sent = sent, this.rested = false;
       remember(sent);
       post({ id: sent.id, robot: sent.robot, command: "rest" }, (state, answer) => {
+        sent.told = [state, answer];
         if (answer.status) sent.answered = true, setTimeout(() => this.forget(sent), SEEN);
+        if (remembered()?.id === sent.id) remember(sent);
         if (press === this.presses || (state === "finished" && !again)) this.show(state, answer);
       });
+    }
+
+    recall(sent) { // an older press, not sent again: what the page before reported, if that was more than its being sent
+      const [state, answer] = sent.told ?? [];
+      this.sent = sent, this.rested = false, sent.answered = true;
+      this.show([...ALARMS, ...RESTS].includes(state) ? state : "unknown", answer);
+      setTimeout(() => this.forget(sent), SEEN);
     }
 
     forget(sent) { // the next page need not tell of it
       if (sent?.answered && remembered()?.id === sent.id) remember(null);
     }
 
-    heed(robots) { // what they say of themselves: who was said not to rest may do so after all, and who rested may move again
-      if (!this.sent || this.said.hidden || Date.now() - this.sent.at < NEW) return;
-      const meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
-      if (ALARMS.includes(this.told[0])) { if (meant.length && meant.every((one) => one.stopped && one.connected)) this.show("after_all"); }
-      else if (RESTS.includes(this.told[0]) && meant.some((one) => !one.stopped && one.connected)) this.said.hidden = true;
+    /** Correct what is shown by what the robots report: one may rest after all, and one that rested may move again. */
+    heed(robots = this.robots) {
+      this.robots = robots;
+      if (!robots || !this.sent || this.said.hidden) return;
+      const passed = Date.now() - this.sent.at, meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
+      const rest = meant.length > 0 && meant.every((one) => one.stopped && one.connected);
+      if (ALARMS.includes(this.told[0])) { if (rest && passed >= NEW) this.show("after_all"); }
+      else if (RESTS.includes(this.told[0])) {
+        // A report from before the press may come late: a robot moves again only if it was at rest in a report before.
+        if (rest) this.rested = true;
+        else if (passed >= (this.rested ? NEW : MOVES) && meant.some((one) => !one.stopped && one.connected)) this.said.hidden = true;
+      }
     }
 
     hint() { // after one Escape, for as long as the second counts; it hides nothing that was told
@@ -143,6 +163,8 @@
       this.said.hidden = false, this.said.dataset.state = state, this.sign.textContent = SIGNS[state] ?? "";
       this.calm.textContent = alarming ? "" : text;
       this.alarm.textContent = alarming ? text + (state === "unsent" && answer.reason ? ` (${answer.reason})` : "") : "";
+      if (alarming) setTimeout(() => this.heed(), NEW); // the robots may report nothing new meanwhile
+      if (RESTS.includes(state)) this.heed();
     }
   }
   customElements.define("rest-button", RestButton);
@@ -150,8 +172,9 @@
   let escaped = -Infinity;
   addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || event.repeat || forVisitors) return;
-    const main = document.querySelector("rest-button[main]"), twice = performance.now() - escaped < TWICE;
-    escaped = twice ? -Infinity : performance.now();
+    const main = document.querySelector("rest-button[main]"), at = event.timeStamp; // a busy page hears keys late
+    const twice = at - escaped < TWICE;
+    escaped = twice ? -Infinity : at;
     if (twice && main) main.press();
     else if (twice) post({ robot, command: "rest" }, () => {});
     else main?.hint();

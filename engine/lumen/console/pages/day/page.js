@@ -1,6 +1,6 @@
 // The day: a time line to go along, visit by visit, with what happened, its why, its numbers, and what would have been.
 import { command } from "../commands.js";
-import { get, listen, live } from "../live.js";
+import { JOB, get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
 import { may } from "../session.js";
 import { Part, clock, html, lineOf, span, t, useEffect, useRedraw, useState } from "../ui.js";
@@ -55,7 +55,7 @@ export default function DayPage({ name }) {
   useEffect(() => {
     let gone = false;
     fail("");
-    get("/api/day", { robot: name, date }, 60000).then((found) => {
+    get("/api/day", { robot: name, date }, JOB).then((found) => {
       if (gone) return;
       set(found), mark(null);
       const last = found.visits.at(-1) ?? stretches(found).at(-1);
@@ -65,7 +65,7 @@ export default function DayPage({ name }) {
   }, [date]);
   useEffect(() => { // what happens counts at once, where the day that is shown is the one that goes on
     let timer = 0, looked = 0, gone = false;
-    const look = () => get("/api/day", { robot: name }, 60000).then((found) => {
+    const look = () => get("/api/day", { robot: name }, JOB).then((found) => {
       looked = Date.now();
       if (!gone) set((shown) => (shown?.date === found.date ? { ...shown, numbers: found.numbers, marks: found.marks } : shown));
     }, () => {}); // the console is away: what is shown stays

@@ -1,6 +1,6 @@
 // Files: what was saved, what is wrong in it, what it changes, and what it would have changed in the last visits.
 import { command } from "../commands.js";
-import { get, listen, robotOf } from "../live.js";
+import { JOB, get, listen, robotOf } from "../live.js";
 import { may } from "../session.js";
 import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
 
@@ -46,7 +46,7 @@ export default function FilesPage({ name }) {
   useRedraw();
   const [files, set] = useState(null), [failed, fail] = useState("");
   const known = JSON.stringify([robotOf(name)?.files, robotOf(name)?.last_reload]);
-  const look = () => get("/api/files", { robot: name }, 60000).then((found) => { set(found); fail(""); }, (error) => fail(error.message));
+  const look = () => get("/api/files", { robot: name }, JOB).then((found) => { set(found); fail(""); }, (error) => fail(error.message));
   useEffect(() => { look(); }, [known]);
   useEffect(() => listen((kind) => kind === "command" && look()), []);
   if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;

@@ -16,7 +16,7 @@ function Link({ link }) {
 export function Why({ robot, what, at, text, onClose }) {
   const [found, set] = useState(null), [failed, fail] = useState("");
   const then = new Date(Date.parse(at) + 1).toISOString(); // what happened within that millisecond is meant, too
-  useEffect(() => { get("/api/why", { robot, what, at: then }).then((one) => (one.chain ? set(one) : fail(one.reason ?? t("why.none"))), (error) => fail(error.message)); }, []);
+  useEffect(() => { get("/api/why", { robot, what, at: then }, JOB).then((one) => (one.chain ? set(one) : fail(one.reason ?? t("why.none"))), (error) => fail(error.message)); }, []);
   return html`<${Dialog} title=${t("why.of", { text })} onClose=${onClose}>
     ${failed && html`<p class="bad" role="alert">${failed}</p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
     ${found && html`<ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${found.chain.map((link, n) => html`<${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;

@@ -1,7 +1,7 @@
 // Where the links of a robot are, as they move: what the view of the hall draws, and nothing of how.
 import { parsed } from "../blocks.js";
 import { follow as read } from "../follow.js";
-import { get, live } from "../live.js";
+import { JOB, get, live } from "../live.js";
 
 const AGAIN = 1000; // [ms]
 
@@ -24,4 +24,4 @@ export function follow(robot, moved, failed) {
 }
 
 /** What the links look like: [{name, shapes: [...]}], and the stage. */
-export const shape = (robot) => get("/api/shape", { robot }, 60000);
+export const shape = (robot) => get("/api/shape", { robot }, JOB);
