@@ -1,10 +1,14 @@
 """Waiting for a condition, with a deadline: no test sleeps."""
 
+import inspect
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
+HANG = 300.0
+"""How long a test waits for something that takes seconds: only a hang reaches this, however slow the machine is [s]."""
 IDLE = 9.0
 """How many times as long as a look took nobody looks again,"""
 LONGEST_PAUSE = 0.25
@@ -27,7 +31,7 @@ class Collector:
     def bodies(self) -> list[Any]:
         return [message.body for message in self.messages]
 
-    def wait(self, count: int, timeout: float = 20.0) -> list[Any]:
+    def wait(self, count: int, timeout: float = HANG) -> list[Any]:
         """The bodies, once there are `count` of them; fails after `timeout` [s]."""
         with self._changed:
             arrived = self._changed.wait_for(lambda: len(self.messages) >= count, timeout)
@@ -35,7 +39,7 @@ class Collector:
         return self.bodies
 
 
-def until(condition: Callable[[], object], timeout: float = 20.0, *, every: float = 0.01) -> None:
+def until(condition: Callable[[], object], timeout: float = HANG, *, every: float = 0.01) -> None:
     """Return once the condition holds, which is looked at `every` so often [s]; fails after `timeout` [s].
 
     A look that takes long, as one through a browser does, is followed by a longer pause: who waits leaves the machine
@@ -48,5 +52,12 @@ def until(condition: Callable[[], object], timeout: float = 20.0, *, every: floa
         if condition():
             return
         now = time.monotonic()
-        assert now < deadline, f"it did not happen within {timeout:g} s"
+        assert now < deadline, f"it did not happen within {timeout:g} s: {_code(condition)}"
         pause.wait(max(every, min(IDLE * (now - began), LONGEST_PAUSE)))
+
+
+def _code(condition: Callable[[], object]) -> str:
+    """The lines of code that a condition is, or its name."""
+    with suppress(OSError, TypeError):
+        return " ".join(inspect.getsource(condition).split())
+    return getattr(condition, "__name__", str(condition))

@@ -11,12 +11,10 @@ from selenium.webdriver import ChromeOptions, Remote
 
 from tests.fetched import ROOT, not_provided
 from tests.guarded import DEVNULL, Guarded
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 UNPACKED = ROOT / ".cache/debian/root"
 """Where scripts/packages.sh unpacks for who is not root."""
-DRIVER_TIMEOUT = 60.0
-"""How long the driver may take to begin on a crowded machine [s]."""
 
 
 class DrivenBrowser:
@@ -30,7 +28,7 @@ class DrivenBrowser:
         program, driver = _program("usr/lib/chromium/chromium", "chromium"), _program("usr/bin/chromedriver")
         port = _free_port()
         self._process: Guarded[bytes] = Guarded([driver, f"--port={port}"], stdout=DEVNULL, stderr=DEVNULL)
-        until(lambda: _listens(port), DRIVER_TIMEOUT)
+        until(lambda: _listens(port), HANG)
         options.binary_location = str(program)
         options.add_argument("--remote-debugging-pipe")
         options.set_capability("goog:loggingPrefs", dict.fromkeys(logs, "ALL"))

@@ -17,15 +17,13 @@ from tests.console.pages import Browser, Served
 from tests.console.viewer import Viewer
 from tests.rabbitmq import RabbitMQ
 from tests.tour.conftest import copied, copy, project
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 __all__ = ["copy", "project"]
 
 
 EVIL = "evil.example"
 """A name that somebody has bound to this machine."""
-SCRIPT_TIMEOUT = 60.0
-"""How long a script in a page may take on a crowded machine [s]."""
 
 
 class Hosted:
@@ -144,7 +142,7 @@ def house(copy: Path) -> Iterator[House]:
 @pytest.fixture(scope="session")
 def begun_chromium() -> Iterator[Chromium]:
     one = Chromium(f"host-resolver-rules=MAP {EVIL} 127.0.0.1")
-    one.driver.set_script_timeout(SCRIPT_TIMEOUT)
+    one.driver.set_script_timeout(HANG)
     yield one
     one.close()
 

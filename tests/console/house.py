@@ -15,11 +15,9 @@ from tests.console.pages import Browser
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ, _free_ports
 from tests.relay import Relay
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 WHOLE, ROBOT, REST_OF_IT, CONSOLE = "whole", "robot", "remote", "console"
-PATIENCE = 120.0
-"""How long a process may take to be there, on a crowded machine [s]."""
 ANSWER = 3.0
 """How long an answer may take before it is asked for again [s]."""
 
@@ -84,11 +82,11 @@ class House:
 
     def await_page(self) -> None:
         """Return once the console says how the robot is."""
-        until(self._shown, PATIENCE)
+        until(self._shown, HANG)
 
     def await_robot(self) -> None:
         """Return once the robot answers, and the console says so."""
-        until(lambda: self.stopped_by() is not None, PATIENCE)
+        until(lambda: self.stopped_by() is not None, HANG)
         self.await_page()
 
     def stopped_by(self) -> str | None:
@@ -98,7 +96,7 @@ class House:
 
     def resume(self) -> None:
         """Let it move again, not over the console."""
-        until(lambda: self.ask_robot("resume") == "command finished" and self.stopped_by() == "", PATIENCE)
+        until(lambda: self.ask_robot("resume") == "command finished" and self.stopped_by() == "", HANG)
 
     def ask_robot(self, method: str, **parameter: Any) -> Any:
         """What the robot answers on its key `stop`; None for nothing."""

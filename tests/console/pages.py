@@ -10,9 +10,8 @@ from urllib.parse import urlsplit
 
 from lumen.app.reaching import Reached, reach_exhibition
 from lumen.console.serving import Console
+from tests.waiting import HANG
 
-TIMEOUT = 30.0
-"""How long an answer may take on a crowded machine [s]."""
 JSON = {"Content-Type": "application/json"}
 
 
@@ -37,7 +36,7 @@ class Browser:
         self._number = 0
 
     def ask(self, method: str, path: str, body: bytes | None = None, **headers: str) -> Answer:
-        connection = http.client.HTTPConnection(self.host, self.port, timeout=TIMEOUT)
+        connection = http.client.HTTPConnection(self.host, self.port, timeout=HANG)
         try:
             connection.request(method, path, body, headers={k.replace("_", "-"): v for k, v in headers.items()})
             answer = connection.getresponse()
@@ -73,7 +72,7 @@ class Stream:
     """Listens on a thread; `events` are those that have come so far."""
 
     def __init__(self, browser: Browser, path: str = "/api/events", **headers: str) -> None:
-        self._connection = http.client.HTTPConnection(browser.host, browser.port, timeout=TIMEOUT)
+        self._connection = http.client.HTTPConnection(browser.host, browser.port, timeout=HANG)
         self._connection.request("GET", path, headers={k.replace("_", "-"): v for k, v in headers.items()})
         self._answer = self._connection.getresponse()
         self.status = self._answer.status
@@ -94,7 +93,7 @@ class Stream:
         with suppress(OSError):
             if self._socket:
                 self._socket.shutdown(2)
-        self._thread.join(TIMEOUT)
+        self._thread.join(HANG)
         self._connection.close()
 
     def __enter__(self) -> "Stream":
@@ -139,5 +138,5 @@ class Served:
 
     def close(self) -> None:
         self.console.end()
-        self._thread.join(TIMEOUT)
+        self._thread.join(HANG)
         assert not self._thread.is_alive()

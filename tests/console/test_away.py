@@ -15,15 +15,13 @@ from tests.console.chromium import Chromium
 from tests.console.conftest import lived_in
 from tests.console.house import CONSOLE, House
 from tests.tour.conftest import copied
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 HEARD = "lumen.NAO.audio.gender.identification"
 EACH = 0.03
 """How often something happens [s]: while a page is away more of it than it would be given without asking."""
 SHORT, FULL = 4.0, 30.0
 """How long it is away [s]."""
-BACK = 60.0
-"""How long it may take until it is there again, on a crowded machine [s]; how long it took is printed."""
 COLLECT = """
 const done = arguments[arguments.length - 1];
 import("/pages/live.js").then(({ live, listen }) => {
@@ -58,10 +56,10 @@ class Window:
         self._chromium, self._handle = chromium, handle
         chromium.look(handle)
         chromium.open(address)
-        until(lambda: chromium.run("return document.readyState") == "complete", BACK)
-        chromium.driver.set_script_timeout(BACK)
+        until(lambda: chromium.run("return document.readyState") == "complete", HANG)
+        chromium.driver.set_script_timeout(HANG)
         chromium.driver.execute_async_script(COLLECT)
-        until(lambda: self.taken, BACK)
+        until(lambda: self.taken, HANG)
 
     def run(self, script: str) -> Any:
         self._chromium.look(self._handle)
@@ -111,15 +109,15 @@ def away(house: House, chromium: Chromium, what: str, seconds: float, leave: Cal
         addresses = (house.address, f"{house.address}robot/NAO")
         windows = [Window(chromium, *one) for one in zip(handles, addresses, strict=True)]
         leave()
-        until(lambda: all(window.state == "away" for window in windows), BACK)
+        until(lambda: all(window.state == "away" for window in windows), HANG)
         before = [len(window.taken) for window in windows]
         Event().wait(seconds)
         back()
         moment = time.time()
-        until(lambda: all(len(w.taken) > had for w, had in zip(windows, before, strict=True)), BACK)
+        until(lambda: all(len(w.taken) > had for w, had in zip(windows, before, strict=True)), HANG)
         late = max(w.time_of(had) for w, had in zip(windows, before, strict=True)) - moment
         seen = max(window.taken[-1] for window in windows)
-        until(lambda: all(window.taken[-1] > seen for window in windows), BACK)
+        until(lambda: all(window.taken[-1] > seen for window in windows), HANG)
     finally:
         speaker.close()
     for window in windows:
@@ -133,7 +131,7 @@ def away(house: House, chromium: Chromium, what: str, seconds: float, leave: Cal
 def killed(house: House) -> tuple[Callable[[], object], Callable[[], object]]:
     def back() -> None:
         house.begin(CONSOLE)
-        until(house.listens, BACK)
+        until(house.listens, HANG)
 
     return lambda: house.kill(CONSOLE), back
 
@@ -165,8 +163,8 @@ def test_a_server_that_was_started_again_before_its_broker_was_there(
 
     def back() -> None:
         house.begin(CONSOLE)
-        until(lambda: house.listens() and not house.browser.robots, BACK)
-        until(lambda: chromium.run("return live.state === 'live' && live.robots.size === 0"), BACK)
+        until(lambda: house.listens() and not house.browser.robots, HANG)
+        until(lambda: chromium.run("return live.state === 'live' && live.robots.size === 0"), HANG)
         wire.mend()
 
     away(house, chromium, "console killed, and its broker away,", SHORT, leave, back)

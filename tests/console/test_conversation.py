@@ -8,9 +8,9 @@ from selenium.webdriver.common.keys import Keys
 
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served
-from tests.console.viewer import WAIT, Viewer
+from tests.console.viewer import Viewer
 from tests.fetched import fetched
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("operating")]
 SETTINGS = """
@@ -67,7 +67,7 @@ def test_what_nobody_could_answer_becomes_a_passage(viewer: Viewer, asked: Hoste
     asked.send("heard", {"result": QUESTION, "language": "en"})
     viewer.shows(QUESTION, ".unanswered li")
     viewer.click(".unanswered button")
-    until(lambda: viewer.run("return document.activeElement.matches('.unanswered input')"), WAIT)
+    until(lambda: viewer.run("return document.activeElement.matches('.unanswered input')"), HANG)
     assert violations(viewer) == []
     viewer.type("A question.", Keys.ENTER)
     viewer.shows("saved as knowledge/what-is-b-love-b.yaml", ".unanswered")
@@ -82,9 +82,9 @@ def test_the_language_model_is_silenced(viewer: Viewer, asked: Hosted, console: 
     viewer.shows("Model bahasa", ".body")
     viewer.run("document.querySelector('input[name=model-NAO]:checked').focus()")
     viewer.type(Keys.ARROW_RIGHT)
-    until(lambda: asked.exhibition.node.loop.performer.questions.silenced, WAIT)
+    until(lambda: asked.exhibition.node.loop.performer.questions.silenced, HANG)
     viewer.shows("Model bahasa dibungkam: selesai", ".told")
-    until(lambda: viewer.all("input[name=model-NAO][value=false]:checked"), WAIT)
+    until(lambda: viewer.all("input[name=model-NAO][value=false]:checked"), HANG)
     assert violations(viewer) == []
 
 

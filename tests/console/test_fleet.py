@@ -11,11 +11,11 @@ from lumen.buses.memory import MemoryBus
 from lumen.console.people import Role
 from lumen.console.serving import Console
 from tests.console.pages import Browser
-from tests.console.viewer import WAIT, Viewer
+from tests.console.viewer import Viewer
 from tests.fetched import fetched
 from tests.fleet.houses import changed
 from tests.fleet.test_centre import PLAN, Hall
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 pytestmark = [pytest.mark.slow]
 
@@ -58,7 +58,7 @@ def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched:
     address, bearer = watched.console.address, {"Authorization": "Bearer 12345"}
     assert watched.browser.get("/api/fleet").status == 401
     assert watched.browser.post("/api/fleet", {"decision": "abort"}).status == 401
-    until(lambda: watched.browser.get("/api/fleet", **bearer).status == 200, WAIT)
+    until(lambda: watched.browser.get("/api/fleet", **bearer).status == 200, HANG)
     assert watched.browser.post("/api/fleet", {"decision": "rollout"}, **bearer).status == 400
     answer = watched.browser.post("/api/fleet", {"decision": "abort"}, **bearer)
     assert (answer.status, answer.data["reason"]) == (409, "no rollout is under way")
@@ -70,7 +70,7 @@ def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched:
     )
     hash = watched.hall.publish(changed(watched.hall.root))
     watched.hall.ask("rollout", bundle=hash, **{**PLAN, "pause": 3600.0})
-    until(lambda: watched.hall.have(hash) == 1, WAIT)
+    until(lambda: watched.hall.have(hash) == 1, HANG)
     viewer.driver.get(address)  # a centre without a robot of its own begins with its fleet
     viewer.shows("Many houses", "main h1")
     viewer.shows("demo-1 at most 1 robots under way", ".steps")
@@ -84,7 +84,7 @@ def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched:
     viewer.click("dialog button.strong")
     viewer.shows("aborted", ".rollout")
     viewer.shows("by Ani", ".rollout")
-    until(lambda: watched.hall.have(hash) == 0, WAIT)
+    until(lambda: watched.hall.have(hash) == 0, HANG)
     assert viewer.complaints() == []
 
 

@@ -27,14 +27,12 @@ from tests.console.troubles import (
     Trouble,
     drawn,
 )  # fmt: skip
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 SEED = int(os.environ.get("LUMEN_SEED", "18"))
 PAGES = ("", "robot/NAO", "robot/NAO/day")
 RESTS = re.compile(r"Rests")
 REFUSES = re.compile(r"NOT SENT|does not rest|no answer came|can't be sent")
-SETTLES = 60.0
-"""How long a page may take until it says what became of Rest, on a crowded machine [s]."""
 LEAVES = """
 sessionStorage.removeItem("test.read");
 addEventListener("pagehide", () => {
@@ -77,11 +75,16 @@ class Desk:
             self.press(trouble)
         happening.mend(draw.uniform(0, LONGEST) if trouble.presses > 1 else 0.0)
         said = {window: self.hear(trouble, window) for window in pressed}
-        until(lambda: house.stopped_by() is not None, SETTLES)
-        rests = bool(house.stopped_by())
+        rests = self.rests()
         for window in pressed:
             self.judge(trouble, window, said[window], rests=rests)
         house.resume()
+
+    def rests(self) -> bool:
+        """Whether somebody has stopped the robot, once it says so itself."""
+        said: list[str | None] = []
+        until(lambda: said.append(self.house.stopped_by()) or said[-1] is not None, HANG)
+        return bool(said[-1])
 
     def press(self, trouble: Trouble) -> None:
         house, draw = self.house, self.draw
@@ -107,7 +110,7 @@ class Desk:
             return bool(RESTS.search(said) or REFUSES.search(said))
 
         with suppress(AssertionError):
-            until(settled, SETTLES)
+            until(settled, HANG)
         return said
 
     def judge(self, trouble: Trouble, window: str, said: str, *, rests: bool) -> None:
@@ -133,7 +136,7 @@ class Desk:
     def corrected(self) -> str:
         """What a page says once it knows better."""
         with suppress(AssertionError):
-            until(lambda: RESTS.search(self.chromium.said()), SETTLES)
+            until(lambda: RESTS.search(self.chromium.said()), HANG)
         return self.chromium.said()
 
 
@@ -142,22 +145,27 @@ def draw() -> Random:
     return Random(SEED)
 
 
-def pressed(house: House, chromium: Chromium, draw: Random, troubles: tuple[Trouble, ...], presses: int) -> None:
-    """Live through so many moments, tell of them, and fail for each that was silent."""
+def pressed(house: House, chromium: Chromium, draw: Random, troubles: tuple[Trouble, ...], presses: int) -> Desk:
+    """Live through so many moments, print what came of them, and fail for each that was silent."""
     desk = Desk(house, chromium, draw)
     lived = Counter[str]()
     for trouble in drawn(troubles, draw, presses):
         desk.live(trouble)
         lived[trouble.name] += trouble.presses
-    p95 = quantiles(desk.times, n=20)[-1]
     lines = (
         f"Rest at {lived.total()} moments (seed {SEED}): silent failures {len(desk.silent)}",
         ", ".join(f"{name} {count}" for name, count in lived.most_common()),
         ", ".join(f"{what} {count}" for what, count in desk.outcomes.most_common()),
-        f"until the robot rests where nothing is broken: median {median(desk.times):.2f} s, p95 {p95:.2f} s",
     )
     sys.stdout.write("\n  ".join(lines) + "\n")
     assert not desk.silent, "\n".join(desk.silent)
+    return desk
+
+
+def print_times(desk: Desk) -> None:
+    """Print how long Rest took where nothing was broken."""
+    p95 = quantiles(desk.times, n=20)[-1]
+    sys.stdout.write(f"until the robot rests: median {median(desk.times):.2f} s, p95 {p95:.2f} s\n")
 
 
 @pytest.mark.slow
@@ -174,10 +182,10 @@ def test_rest_at_6_moments_on_a_broker(house_on_a_broker: House, chromium: Chrom
 @pytest.mark.soak
 @pytest.mark.xdist_group("rest")
 def test_rest_at_400_moments_on_the_local_bus(house: House, chromium: Chromium, draw: Random) -> None:
-    pressed(house, chromium, draw, WITHOUT_BROKER, 400)
+    print_times(pressed(house, chromium, draw, WITHOUT_BROKER, 400))
 
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("rest on a broker")
 def test_rest_at_600_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
-    pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 600)
+    print_times(pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 600))

@@ -13,13 +13,11 @@ from lumen.console.people import Role
 from tests.console.chromium import Chromium
 from tests.console.conftest import EVIL, Hosted
 from tests.console.pages import JSON, Browser, Served, Stream
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 PIN = "0500"
 NAME = "Zebulon"
 SCRIPT = "<script>alert(1)</script>"
-WAIT = 60.0
-"""How long a page may take on a crowded machine [s]."""
 PAGES = ("", "robot/NAO", "robot/NAO/day", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
 ATTACK = """
 const [console, done] = [arguments[0], arguments[arguments.length - 1]];
@@ -80,9 +78,9 @@ def locked(hosted: Hosted) -> Iterator[Browser]:
 def meet(hosted: Hosted, name: str) -> None:
     """A visitor comes and says who they are."""
     hosted.exhibition.send("face", {"x": 160, "y": 120})
-    until(lambda: "ask_name" in hosted.exhibition.configuration, WAIT)
+    until(lambda: "ask_name" in hosted.exhibition.configuration, HANG)
     hosted.exhibition.send("heard", {"result": f"my name is {name}", "language": "en"})
-    until(lambda: hosted.exhibition.context.get("visitor") == name, WAIT)
+    until(lambda: hosted.exhibition.context.get("visitor") == name, HANG)
 
 
 @pytest.mark.slow
@@ -91,7 +89,7 @@ def test_a_page_of_somebody_else_reads_nothing_and_does_nothing(
     served: Served, hosted: Hosted, chromium: Chromium, foreign: int, host: str
 ) -> None:
     chromium.open(f"http://{host}:{foreign}/")
-    until(lambda: chromium.run("return document.title") == "not ours", WAIT)
+    until(lambda: chromium.run("return document.title") == "not ours", HANG)
     got = chromium.driver.execute_async_script(ATTACK, served.console.address)
     assert got == [False] * 9
     assert hosted.exhibition.node.robot.server.hold.stopped is None
@@ -104,7 +102,7 @@ def test_a_page_of_somebody_else_reads_nothing_and_does_nothing(
 @pytest.mark.slow
 def test_a_name_that_somebody_has_bound_to_this_address_is_refused(served: Served, chromium: Chromium) -> None:
     chromium.open(f"http://{EVIL}:{served.browser.port}/")
-    until(lambda: chromium.shows("this console is not called that"), WAIT)
+    until(lambda: chromium.shows("this console is not called that"), HANG)
     assert chromium.all("rest-button") == []
 
 
@@ -122,7 +120,7 @@ def test_a_visitor_called_like_a_script_is_a_name_on_every_page(
             )
         )
         if page in PAGES[:3]:
-            until(lambda: SCRIPT in chromium.text(), WAIT)
+            until(lambda: SCRIPT in chromium.text(), HANG)
         assert not chromium.run("return [...document.scripts].some((one) => one.text.includes('alert'))")
     chromium.open(served.console.address)
     chromium.find(".entry button")
@@ -177,7 +175,7 @@ def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted) -> None:
 
 def tried(browser: Browser, number: int, source: str) -> int:
     """What a PIN gets, sent from an address of this machine."""
-    connection = http.client.HTTPConnection(browser.host, browser.port, timeout=WAIT, source_address=(source, 0))
+    connection = http.client.HTTPConnection(browser.host, browser.port, timeout=HANG, source_address=(source, 0))
     try:
         connection.request("POST", "/api/session", json.dumps({"pin": f"{number:04}"}), JSON)
         return connection.getresponse().status
@@ -192,7 +190,7 @@ def test_nobody_hears_a_name_or_sees_an_image(locked: Browser, hosted: Hosted) -
     until(lambda: locked.get("/api/now", **signed_in).data["robots"][0]["visitor"] == NAME)
     with Stream(locked) as stream:
         hosted.exhibition.say(f"Goodbye {NAME.upper()}, and {NAME}!", "en")
-        until(lambda: any("Goodbye …, and …!" in str(event.data["saying"]) for event in stream.of("now")), WAIT)
+        until(lambda: any("Goodbye …, and …!" in str(event.data["saying"]) for event in stream.of("now")), HANG)
         until(lambda: stream.comments > 2)
     assert stream.of("now")
     assert stream.of("entry") == stream.of("command") == []
@@ -208,9 +206,9 @@ def test_nobody_hears_a_name_or_sees_an_image(locked: Browser, hosted: Hosted) -
 def test_a_page_without_a_role_shows_rest_and_no_name(locked: Browser, hosted: Hosted, chromium: Chromium) -> None:
     meet(hosted, NAME)
     chromium.open(f"http://127.0.0.1:{locked.port}/robot/NAO")
-    until(lambda: chromium.shows("Sign in"), WAIT)
+    until(lambda: chromium.shows("Sign in"), HANG)
     assert NAME not in chromium.text()
     assert chromium.all("main img") == []
     chromium.rest()
-    until(lambda: "Rests" in chromium.said(), WAIT)
+    until(lambda: "Rests" in chromium.said(), HANG)
     assert hosted.exhibition.node.robot.server.hold.stopped

@@ -8,10 +8,10 @@ import pytest
 
 from tests.console.conftest import Hosted
 from tests.console.pages import Served
-from tests.console.viewer import WAIT, Viewer
+from tests.console.viewer import Viewer
 from tests.fetched import fetched
 from tests.rabbitmq import GivenBroker, RabbitMQ
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 pytestmark = [pytest.mark.slow]
 NAMES = ("NAO", "Ani", "Budi")
@@ -36,7 +36,7 @@ def robots(tmp_path: Path, broker: RabbitMQ | GivenBroker) -> Iterator[dict[str,
 @pytest.fixture
 def wall(robots: dict[str, Hosted], broker: RabbitMQ | GivenBroker) -> Iterator[str]:
     served = Served(robots["NAO"].root, bus=broker.url)
-    until(lambda: {one["robot"] for one in served.browser.robots if one["connected"]} == set(NAMES), WAIT)
+    until(lambda: {one["robot"] for one in served.browser.robots if one["connected"]} == set(NAMES), HANG)
     yield served.console.address
     served.close()
 
@@ -52,7 +52,7 @@ def test_each_tile_rests_its_robot_and_escape_twice_all(viewer: Viewer, wall: st
     viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))
     assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
     viewer.click("rest-button[robot=Budi] .rest")
-    viewer.shows("Rests, after", "rest-button[robot=Budi] .rest-said")
+    viewer.shows("Rests", "rest-button[robot=Budi] .rest-said")
     viewer.shows("rests, stopped by", ".tile[aria-label=Budi]")
     assert resting(robots) == ["Budi"]
     assert [viewer.text(f".tile[aria-label={name}] > .badge") for name in ("Ani", "NAO")] == ["runs", "runs"]
@@ -62,8 +62,8 @@ def test_each_tile_rests_its_robot_and_escape_twice_all(viewer: Viewer, wall: st
     viewer.shows("hall", ".leaf")
     assert not viewer.all(".stopped")
     viewer.click("nav li:first-child a")
-    until(lambda: len(viewer.all(".tile")) == len(NAMES), WAIT)
+    until(lambda: len(viewer.all(".tile")) == len(NAMES), HANG)
 
     viewer.escape_twice()
-    viewer.shows("Rests, after", "rest-button[main] .rest-said")
+    viewer.shows("Rests", "rest-button[main] .rest-said")
     assert resting(robots) == sorted(NAMES)

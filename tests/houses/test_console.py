@@ -14,8 +14,8 @@ from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
 from lumen.app.recovery.run_directory import RunDirectory
 from tests.console.pages import Served
-from tests.console.viewer import WAIT, Viewer
-from tests.waiting import until
+from tests.console.viewer import Viewer
+from tests.waiting import HANG, until
 
 NAMES = ("ana", "ben")
 PIXEL = base64.b64decode(
@@ -72,7 +72,7 @@ def served(hosted: HostedHouse, two: Path) -> Iterator[Served]:
     with ExitStack() as stack:
         one = Served(two)
         stack.callback(one.close)
-        until(lambda: {robot["robot"] for robot in one.browser.robots if robot["connected"]} == set(NAMES), WAIT)
+        until(lambda: {robot["robot"] for robot in one.browser.robots if robot["connected"]} == set(NAMES), HANG)
         yield one
 
 
