@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any
 
 HANG = 300.0
-"""How long a test waits for something that takes seconds: only a hang reaches this, however slow the machine is [s]."""
+"""The bound of every wait [s]: what is waited for takes seconds, and only a hang reaches this on any machine."""
 IDLE = 9.0
 """How many times as long as a look took nobody looks again,"""
 LONGEST_PAUSE = 0.25

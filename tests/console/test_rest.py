@@ -81,7 +81,7 @@ class Desk:
         house.resume()
 
     def rests(self) -> bool:
-        """Whether somebody has stopped the robot, once it says so itself."""
+        """Return whether the robot is stopped, by its own answer."""
         said: list[str | None] = []
         until(lambda: said.append(self.house.stopped_by()) or said[-1] is not None, HANG)
         return bool(said[-1])
@@ -163,7 +163,7 @@ def pressed(house: House, chromium: Chromium, draw: Random, troubles: tuple[Trou
 
 
 def print_times(desk: Desk) -> None:
-    """Print how long Rest took where nothing was broken."""
+    """Print the times of Rest while nothing was broken."""
     p95 = quantiles(desk.times, n=20)[-1]
     sys.stdout.write(f"until the robot rests: median {median(desk.times):.2f} s, p95 {p95:.2f} s\n")
 

@@ -28,7 +28,7 @@ Object.assign(button, { sent: { robot: "NAO", at: Date.now() - 6000 } }).show("f
 button.rested = false;
 return arguments[0].map((stopped) => { button.heed([{ ...robot, stopped }]); return !button.said.hidden; });
 """
-"""What a page shows of a press a while ago after each of these reports."""
+"""Returns after each of these reports whether the answer to a press of a while ago is still shown."""
 ALARMED = """
 const button = document.querySelector("rest-button[main]");
 button.heed([{ robot: "NAO", connected: true, stopped: true }]);
@@ -114,7 +114,7 @@ def test_what_came_of_rest_is_told_by_the_next_page_too_where_nobody_could_read_
 def test_a_next_page_that_comes_late_reports_rest_without_sending_it_again(
     served: Served, hosted: Hosted, chromium: Chromium, read: bool
 ) -> None:
-    """A page may take long to load; what nobody can have read is reported however late it is there."""
+    """A page may take long to load: it reports an unread answer however late it is there."""
     chromium.open(served.console.address)
     chromium.rest()
     until(lambda: "Rests" in chromium.said(), HANG)

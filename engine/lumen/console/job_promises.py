@@ -1,7 +1,7 @@
 """What a job and who asks for it go by."""
 
 JOB_TIME = 240.0
-"""How long a job may take, with its wait for those before it [s]: minutes on a small and busy machine."""
+"""The time limit of a job with its wait for those before it [s]; a small and busy machine needs minutes."""
 NOTHING = b"null"
 """The answer of a job that found nothing."""
 REFUSED, OUT_OF_MEMORY = 76, 77
