@@ -64,8 +64,11 @@ def shared(item: pytest.Item) -> str:
     return f"{min(brokers)} {item.path.parent.name}" if brokers else item.nodeid.partition("::")[0]
 
 
-def parameters(item: pytest.Function) -> Iterable[Any]:
-    return item.callspec.params.values() if hasattr(item, "callspec") else ()
+def parameters(item: pytest.Function) -> Iterator[Any]:
+    """The values of a parametrized case and of all rows of a table (`tests.tables.for_each`)."""
+    yield from item.callspec.params.values() if hasattr(item, "callspec") else ()
+    for row in getattr(item.function, "rows", ()):
+        yield from row.given.values()
 
 
 @cache
