@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from lumen.buses.bodies import MAX_BODY_BYTES, copied, decode, encode
 from lumen.errors import BusError
+from tests.tables import for_each
 
 INTEGERS = st.integers(-(2**63), 2**63)
 SCALARS = st.none() | st.booleans() | INTEGERS | st.floats(allow_nan=False, allow_infinity=False) | st.text()
@@ -43,7 +44,7 @@ def test_a_copy_shares_no_container() -> None:
     assert body == {"a": [{"b": []}]}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "plain"),
     [
         (Word.STAND, "Stand"),
@@ -62,8 +63,8 @@ NO_NUMBERS = [float("inf"), float("-inf"), float("nan"), 2**63 + 1, -(2**63) - 1
 INSIDE = [lambda n: n, lambda n: {"time": n}, lambda n: [n], lambda n: (0.5, n), lambda n: [1, n], lambda n: ["a", [n]]]
 
 
-@pytest.mark.parametrize("inside", INSIDE)
-@pytest.mark.parametrize("number", NO_NUMBERS)
+@for_each("inside", INSIDE)
+@for_each("number", NO_NUMBERS)
 def test_a_number_that_is_no_finite_float_is_never_sent(number: float, inside: Any) -> None:
     with pytest.raises(BusError, match=r"not a number that JSON has|between -2\*\*63 and 2\*\*63"):
         copied(inside(number))
@@ -80,13 +81,13 @@ def test_a_relative_of_a_number_has_the_same_bounds() -> None:
         copied({"x": np.float64("nan")})
 
 
-@pytest.mark.parametrize("number", [2**63, -(2**63), 1e308, -1e308, 5e-324])
+@for_each("number", [2**63, -(2**63), 1e308, -1e308, 5e-324])
 def test_the_greatest_numbers_are_sent(number: float) -> None:
     assert copied([number, {"x": number}, [number, number]]) == [number, {"x": number}, [number, number]]
     assert decode(encode([number, {"x": number}])) == [number, {"x": number}]
 
 
-@pytest.mark.parametrize("body", [np.float32(0.5), np.zeros(2), {None: 1}, {"x": float("-inf")}, "\ud800"])
+@for_each("body", [np.float32(0.5), np.zeros(2), {None: 1}, {"x": float("-inf")}, "\ud800"])
 def test_what_json_has_not_is_refused_with_a_reason(body: Any) -> None:
     with pytest.raises(BusError, match=r"JSON|keys|Unicode"):
         encode(body)
@@ -99,7 +100,7 @@ def test_too_many_bytes_are_refused_on_both_sides() -> None:
         decode(b" " * (MAX_BODY_BYTES + 1))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "reason"),
     [
         (b"\xff\xfe", "UTF-8"),

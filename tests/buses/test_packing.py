@@ -28,6 +28,7 @@ from lumen.robots.recording import RecordingRobot
 from lumen.robots.sense_codec import encode_reading, image_body
 from lumen.robots.server import RobotServer
 from tests.rabbitmq import RabbitMQ
+from tests.tables import for_each
 from tests.waiting import Collector, until
 
 IMAGES, SLOW, PACKED = "avatar.Pia.data.image", "avatar.Pia.data.image.slow", "avatar.Pia.data.joint.packed"
@@ -182,7 +183,7 @@ def test_an_image_comes_out_as_it_went_in() -> None:
     assert packed({**body, "odd": [1]}, JPEG_TYPE) is None, "what has no place in a header goes as JSON"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("data", "form", "headers"),
     [
         (b"GIF89a", JPEG_TYPE, {}),

@@ -1,10 +1,10 @@
 """Topic matching against the rules of AMQP 0-9-1, and against the plainest way to write them down."""
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.interpreters.routing import matches
+from tests.tables import for_each
 
 WORDS = st.lists(st.sampled_from(["a", "b", "", "*", "#"]), max_size=7).map(".".join)
 
@@ -18,7 +18,7 @@ def plainly(pattern: list[str], key: list[str]) -> bool:
     return bool(key) and pattern[0] in ("*", key[0]) and plainly(pattern[1:], key[1:])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("pattern", "key", "expected"),
     [
         ("avatar.NAO.data.image", "avatar.NAO.data.image", True),

@@ -16,6 +16,7 @@ from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Direction, Route
 from lumen.ports import Message
 from tests.exhibits import messages, project
+from tests.tables import for_each
 from tests.waiting import Collector
 
 FACE = "lumen.visual.face.detection"
@@ -168,7 +169,7 @@ BODIES_OF_2015: list[tuple[str, Any]] = [
 ]
 
 
-@pytest.mark.parametrize(("name", "body"), BODIES_OF_2015)
+@for_each(("name", "body"), BODIES_OF_2015)
 def test_the_bodies_of_2015_fit_and_may_hold_more(name: str, body: dict[str, Any]) -> None:
     check = SchemaCheck(SCHEMAS[name])
     assert check(body) == ""
@@ -176,7 +177,7 @@ def test_the_bodies_of_2015_fit_and_may_hold_more(name: str, body: dict[str, Any
     assert check([body]) != ""
 
 
-@pytest.mark.parametrize("schema", SCHEMAS.values(), ids=SCHEMAS)
+@for_each("schema", SCHEMAS.values(), ids=SCHEMAS)
 def test_message_schemas_are_schemas_and_say_what_they_are(schema: dict[str, Any]) -> None:
     Draft202012Validator.check_schema(schema)
     assert schema["title"]
@@ -195,7 +196,7 @@ def test_a_quick_yes_is_never_wrong(name: str, body: Any) -> None:
     assert not JsonSchema(SCHEMAS[name]).fits(body) or Draft202012Validator(SCHEMAS[name]).is_valid(body)
 
 
-@pytest.mark.parametrize(("name", "body"), BODIES_OF_2015)
+@for_each(("name", "body"), BODIES_OF_2015)
 def test_the_usual_bodies_get_a_quick_yes(name: str, body: dict[str, Any]) -> None:
     assert JsonSchema(SCHEMAS[name]).fits(body)
 

@@ -7,10 +7,11 @@ import pytest
 
 from lumen.cli import progress as module
 from lumen.cli.progress import ProgressState, progress, progress_line
+from tests.tables import for_each
 from tests.waiting import until
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("state", "now", "shown"),
     [
         (ProgressState(5, 20, "wave", at=10.0), 10.0, "[######                  ] 5 of 20 wave, about 0:30 more"),

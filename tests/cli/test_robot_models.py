@@ -17,6 +17,7 @@ from lumen.formats.conversion_findings import ConversionFindings, ForeignFileErr
 from lumen.formats.robot_models import begins_robot, read_robot
 from lumen.formats.robot_models.mjcf import mjcf_model
 from lumen.formats.xml_elements import parse_xml
+from tests.tables import for_each
 
 MODELS = Path(__file__).parents[2] / "models"
 DM_CONTROL = Path(str(find_spec("dm_control").submodule_search_locations[0]))  # type: ignore[union-attr, index]
@@ -104,7 +105,7 @@ def test_a_joint_of_urdf_keeps_limits_speed_and_torque() -> None:
     assert not told
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("joints", "line", "words"),
     [
         ([joint("x", inner="", kind="continuous")], 3, "`x` turns for ever"),
@@ -141,7 +142,7 @@ def test_legs_without_soles_are_told_what_walking_needs() -> None:
     assert any("lacks what walking needs" in said for said in told)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("content", "words"),
     [
         (b"", "no element found"),

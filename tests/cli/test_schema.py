@@ -14,6 +14,7 @@ from lumen.cli.jsonc import added, plain
 from lumen.cli.main import main
 from lumen.cli.schema import FILES, settings
 from lumen.loading.schema import FILE_KINDS, load_schema
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 SAMPLES = {"examples", "enum", "const", "default", "properties"}
@@ -44,7 +45,7 @@ def whole(schema: Any, root: Any) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("kind", FILE_KINDS)
+@for_each("kind", FILE_KINDS)
 def test_every_property_is_described_and_shown(kind: str) -> None:
     root = load_schema(kind)
     Draft202012Validator.check_schema(root)
@@ -57,7 +58,7 @@ def test_every_property_is_described_and_shown(kind: str) -> None:
         assert SAMPLES & known.keys() or known.get("type") == "boolean" or "$ref" in str(schema), name
 
 
-@pytest.mark.parametrize("kind", FILE_KINDS)
+@for_each("kind", FILE_KINDS)
 def test_examples_and_defaults_fit(kind: str) -> None:
     root = load_schema(kind)
     for name, schema in properties(root):

@@ -8,6 +8,7 @@ import pytest
 
 from lumen.cli.typed import MAX_LINE_CHARACTERS, MAX_WAITING_LINES, TypedVisitorPart
 from lumen.cli.typed_commands import TypedCommands
+from tests.tables import for_each
 from tests.waiting import until
 
 
@@ -68,7 +69,7 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
     assert visitor.felt[3:] == [("LeftBumper", False)]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("line", "says"),
     [
         ("/tuch head", "`/tuch` is nothing that can be done: did you mean `touch`?"),

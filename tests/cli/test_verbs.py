@@ -10,6 +10,7 @@ from scripts.command_pages import DOCS, written
 from lumen.cli.main import VERBS, command_line, main
 from lumen.cli.pages import page
 from lumen.cli.suggesting import parse
+from tests.tables import for_each
 
 NO_REPORT = {"completion": "prints a script", "lsp": "speaks the protocol of editors", "console": "shows pages"}
 """Verbs without `--format json`, and what they do instead of reporting."""
@@ -20,7 +21,7 @@ def test_the_pages_are_those_that_the_parser_makes() -> None:
     assert there == written(), "call `python scripts/command_pages.py`"
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@for_each("verb", VERBS)
 def test_examples_can_be_typed(verb: str) -> None:
     parser, examples = command_line([verb]), page(verb).examples
     assert examples, f"engine/lumen/cli/pages/{verb}.md begins with examples"
@@ -31,7 +32,7 @@ def test_examples_can_be_typed(verb: str) -> None:
     assert f"  {examples[0].command}\n" in parser.verbs[verb].format_help()
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@for_each("verb", VERBS)
 def test_what_is_reported_is_an_object_too_and_its_page_says_which(verb: str) -> None:
     formats = [a.choices for a in command_line([verb]).verbs[verb]._actions if "--format" in a.option_strings]
     assert (verb in NO_REPORT) != any("json" in (choices or ()) for choices in formats)

@@ -17,6 +17,7 @@ from lumen.cli.moments import moment
 from lumen.errors import UsageError
 from lumen.language.people import PersonName
 from lumen.runtime.inputs.journal_writer import JournalWriter
+from tests.tables import for_each
 
 LINK = {"kind", "text", "at", "file", "line", "id", "values"}
 NOWHERE = JournalWriter(None)
@@ -85,7 +86,7 @@ def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
     assert (waits["because"], set(waits["change"])) == ("no-event", {"wait"})
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("question", "what", "said"),
     [
         ("why", "dnace", "did you mean `dance`?"),

@@ -11,6 +11,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.runtime.runtime import Runtime
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 MACHINE = Machine.from_dict(
     {
@@ -71,7 +72,7 @@ def test_the_first_that_means_something(
     assert event.data == {**data, "result": taken}
 
 
-@pytest.mark.parametrize("others", [None, [], "can you dance", [3, {}, {"result": 4}], [{"result": ""}] * 1000])
+@for_each("others", [None, [], "can you dance", [3, {}, {"result": 4}], [{"result": ""}] * 1000])
 def test_alternatives_that_are_none_change_nothing(project: Project, others: Any) -> None:
     talk, steps = runtime(project)
     talk.tick(1.0, [Event("heard", {"result": "hello", "alternatives": others}, 1.0)])

@@ -9,6 +9,7 @@ from lumen.interpreters.migration.activity_compatibility import can_continue
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, serialize
 from lumen.language.commands import Ask, Cancel, Say, Start
 from lumen.statechart import Event, Machine, due, initial, step
+from tests.tables import for_each
 
 DATA: dict[str, Any] = {
     "id": "talk",
@@ -142,9 +143,7 @@ def test_who_leaves_hears_no_answer() -> None:
     assert Cancel("d1") in talk.commands
 
 
-@pytest.mark.parametrize(
-    "data", [None, "text", {}, {"text": 5}, {"text": ""}, {"text": "^{}"}, {"text": "x" * 501}, {"text": ["a"]}]
-)
+@for_each("data", [None, "text", {}, {"text": 5}, {"text": ""}, {"text": "^{}"}, {"text": "x" * 501}, {"text": ["a"]}])
 def test_what_is_no_answer_is_ignored(data: Any) -> None:
     talk = Talk()
     talk.hear("answer.command.d1", data)
@@ -240,7 +239,7 @@ def test_it_is_kept_while_it_waits_and_goes_on_under_other_texts() -> None:
     assert not can_continue(before, waits.states["asked"].do, talk.snapshot.doing["asked"])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("leads", "state"),
     [
         ({"wish": {"target": "over", "offer": True}}, "over"),

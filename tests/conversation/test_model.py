@@ -9,6 +9,7 @@ import pytest
 from lumen.modules.answers.sentence_check import refusal, sentences
 from tests.conversation.conftest import Desk
 from tests.conversation.fake_model import Handler, Reply, calls, fake_model, says
+from tests.tables import for_each
 
 Make = Callable[..., Desk]
 PASSAGES = ["This organ has two thousand pipes. It was built by Johann in 1894."]
@@ -205,7 +206,7 @@ def test_sentences_are_whole() -> None:
     assert sentences(" ... ", ended=True) == ([], "")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "language", "ok"),
     [
         ("Yes, it is here.", "en", True),

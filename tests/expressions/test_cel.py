@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from lumen.interpreters.expressions import ExpressionNode, Scope
 from tests.expressions.cel import Outcome, by_cel, by_lumen, compare, same
 from tests.expressions.typed import expressions, scopes
+from tests.tables import for_each
 
 BUSY = settings(deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 DOCS = Path(__file__).parents[2] / "docs" / "expressions.md"
@@ -77,7 +78,7 @@ DIFFERENT: dict[str, list[tuple[str, object, object]]] = {
 """For each row of the table what stands in its first column, and expressions with their outcomes here and in CEL."""
 
 
-@pytest.mark.parametrize("row", DIFFERENT)
+@for_each("row", DIFFERENT)
 def test_a_difference_is_as_the_table_says(row: str) -> None:
     for source, ours, theirs in DIFFERENT[row]:
         assert same(by_lumen(source, SCOPE), outcome(ours)), source

@@ -1,8 +1,7 @@
 """What lint tells of an expression before it runs."""
 
-import pytest
-
 from lumen.interpreters.expressions import check_expression, check_template, names, parse_expression, schema_of
+from tests.tables import for_each
 
 CONTEXT = {
     "n": {"type": "integer"},
@@ -36,7 +35,7 @@ def check(source: str, events: object = "heard", **more: object) -> list[tuple[s
     return [(f.code, source[f.offset : f.offset + f.length]) for f in findings]
 
 
-@pytest.mark.parametrize(
+@for_each(
     "source",
     [
         "context.n < 3 && context.on",
@@ -75,7 +74,7 @@ def test_nothing_wrong(source: str) -> None:
     assert check(source) == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("source", "code", "part"),
     [
         ("1 +", "expression-syntax", ""),
@@ -149,7 +148,7 @@ def test_hints() -> None:
     assert hint("context.größe").startswith("a field with such a letter is written in brackets")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("source", "code"),
     [
         ("event.data.x > 1", "unknown-field"),
@@ -176,9 +175,7 @@ def test_a_field_of_some_events_has_its_own_message() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "events", [None, {}, {"a": None}, {"a": {}, "b": None}, {"a": {"type": "object"}}, {"a": {"anyOf": []}}]
-)
+@for_each("events", [None, {}, {"a": None}, {"a": {}, "b": None}, {"a": {"type": "object"}}, {"a": {"anyOf": []}}])
 def test_unknown_events_may_hold_anything(events: object) -> None:
     assert check("event.data.x.y + 1 > 2 && event.name == 'a'", events) == []
 

@@ -4,6 +4,7 @@ import pytest
 
 from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, compile_guard
 from tests.expressions.scopes import SCOPE
+from tests.tables import for_each
 
 # source: offset, message, part of the hint
 UNREADABLE: dict[str, tuple[int, str, str]] = {
@@ -87,14 +88,14 @@ WORTHLESS: dict[str, tuple[int, str, str]] = {
 }
 
 
-@pytest.mark.parametrize("source", UNREADABLE)
+@for_each("source", UNREADABLE)
 def test_unreadable(source: str) -> None:
     with pytest.raises(ExpressionError) as raised:
         compile_expression(source)
     expect(raised.value, UNREADABLE[source])
 
 
-@pytest.mark.parametrize("source", WORTHLESS)
+@for_each("source", WORTHLESS)
 def test_worthless(source: str) -> None:
     evaluate = compile_expression(source)
     with pytest.raises(ExpressionError) as raised:

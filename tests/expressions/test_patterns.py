@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.patterns import compile_pattern
+from tests.tables import for_each
 
 PATIENT = settings(deadline=None)
 """A busy machine is no fault of an expression."""
@@ -36,7 +37,7 @@ def test_finds_what_re_finds(pattern: str, text: str) -> None:
         assert compile_pattern(pattern).search(text) == expected
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("pattern", "text"),
     [
         ("(?i)ADA|é", "ada"),
@@ -72,14 +73,12 @@ def test_matches(pattern: str, text: str) -> None:
     assert compile_pattern(pattern).search(text)
 
 
-@pytest.mark.parametrize(
-    ("pattern", "text"), [("a{3}", "aa"), ("a$", "a\n"), ("a.b", "a\nb"), ("[^a]", "a"), ("x{0}y", "x")]
-)
+@for_each(("pattern", "text"), [("a{3}", "aa"), ("a$", "a\n"), ("a.b", "a\nb"), ("[^a]", "a"), ("x{0}y", "x")])
 def test_does_not_match(pattern: str, text: str) -> None:
     assert not compile_pattern(pattern).search(text)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("pattern", "message", "offset"),
     [
         (r"(a)\1", "refers back to a group", 3),
@@ -116,7 +115,7 @@ def test_any_pattern_is_read_or_refused(pattern: str) -> None:
     assert 0 <= offset <= len(pattern)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "pattern",
     ["(a|aa)*b", "(?:a|a)*b", ".*.*.*.*.*x", "a?a?a?a?a?a?a?a?a?a?a?a?a?a?a?a?a?a?a?a?x", "(a+)+$b", "((a*)*)*b"],
 )

@@ -1,10 +1,9 @@
 """Phrases are heard as whole words, in every language, whatever the case and the punctuation."""
 
-import pytest
-
 from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.language.machines import Answer
 from tests.expressions.scopes import SCOPE
+from tests.tables import for_each
 
 
 def heard(text: str, *phrases: str) -> bool:
@@ -12,7 +11,7 @@ def heard(text: str, *phrases: str) -> bool:
     return bool(compile_expression("heard(context.text, 'p')")(scope))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "phrase"),
     [
         ("no", "no"),
@@ -43,7 +42,7 @@ def test_heard(text: str, phrase: str) -> None:
     assert heard(text, phrase)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "phrase"),
     [
         ("I know", "no"),
@@ -77,7 +76,7 @@ def test_texts_are_cut() -> None:
     assert compile_expression("contains(context.long, 'nope') || size(lower(context.long)) != 1000")(SCOPE) is False
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "language", "value"),
     [
         ("How tall are you?", "en", "I am 57 cm tall."),
@@ -104,7 +103,7 @@ def test_lookup_of_other_tables() -> None:
         assert compile_expression("heard(context.text, 'p') ? lookup(context.text, 't') : null")(scope) == n
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "phrase", "rest"),
     [
         ("my name is Ada", "my name is", "Ada"),
@@ -128,7 +127,7 @@ def test_after(text: str, phrase: str, rest: str) -> None:
     assert compile_expression("after(context.text, context.phrase)")(scope) == rest
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "words"),
     [
         ("", []),

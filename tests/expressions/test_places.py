@@ -1,6 +1,5 @@
 """A fault in an expression is found at its very word, however the text is written in YAML."""
 
-import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
@@ -8,6 +7,7 @@ from hypothesis import strategies as st
 from lumen.loading.document import Document
 from lumen.loading.expressions import place_within
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 WRITTEN = {
     "plain": "a: one HERE two\n",
@@ -36,7 +36,7 @@ def document_of(text: str) -> tuple[Document, tuple[str | int, ...], str]:
     return document, path, value
 
 
-@pytest.mark.parametrize("text", WRITTEN.values(), ids=WRITTEN)
+@for_each("text", WRITTEN.values(), ids=WRITTEN)
 def test_at_the_word(text: str) -> None:
     document, path, value = document_of(text)
     place = place_within(document, path, value, value.index("HERE"), 4)
@@ -50,7 +50,7 @@ def test_an_escape_is_one_character() -> None:
     assert (place.column, place.end_column) == (12, 14)
 
 
-@pytest.mark.parametrize("offset", [0, 3, 7, 8, 100])
+@for_each("offset", [0, 3, 7, 8, 100])
 def test_blanks_and_the_end_are_somewhere_in_it(offset: int) -> None:
     document, path, value = document_of("a: |\n  one\n\n  two\n")
     place = place_within(document, path, value, offset, 1)

@@ -14,9 +14,10 @@ from lumen.interpreters.expressions import (
     compile_template,
 )
 from tests.expressions.scopes import SCOPE
+from tests.tables import for_each
 
 
-@pytest.mark.parametrize(
+@for_each(
     "source",
     [
         "context.__class__",
@@ -58,7 +59,7 @@ def test_python_is_out_of_reach(source: str) -> None:
         compile_expression(source)(SCOPE)
 
 
-@pytest.mark.parametrize("source", ["'a' * 9", "9 * 'a'", "[1] * 9", "'%s' % 'a'", "-'a'", "context.name + 1"])
+@for_each("source", ["'a' * 9", "9 * 'a'", "[1] * 9", "'%s' % 'a'", "-'a'", "context.name + 1"])
 def test_no_python_operators(source: str) -> None:
     with pytest.raises(ExpressionError):
         compile_expression(source)(SCOPE)
@@ -72,7 +73,7 @@ def grown(source: str, value: Any, rounds: int = 70) -> Any:
     return value
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("source", "first"),
     [
         ("context.x + context.x", "ab"),
@@ -96,7 +97,7 @@ def test_nothing_grows_without_bound(source: str, first: Any) -> None:
         grown(source, first)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "source",
     [
         "(" * 101 + "1" + ")" * 101,
@@ -124,7 +125,7 @@ def test_large_and_deep_sources_are_refused(source: str) -> None:
     assert check_expression(source, context={})[0].code == "expression-syntax"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("source", "value"),
     [
         ("(" * 90 + "1" + ")" * 90, 1),

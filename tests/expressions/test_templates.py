@@ -4,9 +4,10 @@ import pytest
 
 from lumen.interpreters.expressions import ExpressionError, Scope, compile_template
 from tests.expressions.scopes import SCOPE
+from tests.tables import for_each
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "filled"),
     [
         ("", ""),
@@ -33,7 +34,7 @@ def test_filled(text: str, filled: str) -> None:
     assert compile_template(text)(SCOPE) == filled
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "offset", "message"),
     [
         ("Hi {{ context.name", 3, "this `{{` is not closed"),
@@ -59,7 +60,7 @@ def test_without_a_value() -> None:
     assert raised.value.hint.startswith("did you mean `name`?")
 
 
-@pytest.mark.parametrize("value", [10**5000, {"a": [0] * 20_000}, "x" * 10_001, object(), ["x" * 200_000]], ids=type)
+@for_each("value", [10**5000, {"a": [0] * 20_000}, "x" * 10_001, object(), ["x" * 200_000]], ids=type)
 def test_what_can_not_be_printed(value: object) -> None:
     with pytest.raises(ExpressionError):
         compile_template("{{ context.value }}")(Scope(context={"value": value}))

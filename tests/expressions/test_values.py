@@ -3,10 +3,9 @@
 from types import MappingProxyType
 from typing import Any
 
-import pytest
-
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard
 from tests.expressions.scopes import SCOPE
+from tests.tables import for_each
 
 VALUES: dict[str, Any] = {
     # literals
@@ -57,7 +56,7 @@ VALUES: dict[str, Any] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("source", VALUES)
+@for_each("source", VALUES)
 def test_value(source: str) -> None:
     value, expected = compile_expression(source)(SCOPE), VALUES[source]
     assert value == expected
@@ -89,6 +88,6 @@ def test_guard() -> None:
     assert compile_guard("event.data.ok")(SCOPE) is True
 
 
-@pytest.mark.parametrize(("at", "epoch", "hour"), [(0, 0, 0), (3599.9, 0, 0), (3600, 0, 1), (0, -1, 23), (1e9, 5.5, 1)])
+@for_each(("at", "epoch", "hour"), [(0, 0, 0), (3599.9, 0, 0), (3600, 0, 1), (0, -1, 23), (1e9, 5.5, 1)])
 def test_hour(at: float, epoch: float, hour: int) -> None:
     assert compile_expression("hour()")(Scope(at=at, epoch=epoch)) == hour

@@ -4,11 +4,10 @@ import copy
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
 from lumen.app.fleet.broker_rights import compare
 from lumen.app.fleet.brokers import ROBOTS, UP, house_settings
 from lumen.language.fleet import Fleet, FleetHouse
+from tests.tables import for_each
 
 FLEET = Fleet("amqps://centre.example/", houses={"itb": FleetHouse("amqps://itb.example/", ("nao1",))})
 WANTED: Any = house_settings(FLEET, "itb", {ROBOTS: ""}, "").definitions
@@ -41,7 +40,7 @@ def other_user(there: Any) -> None:
     there["users"][0]["name"] = "robot"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("spoil", "what", "says", "mend"),
     [
         (

@@ -3,6 +3,7 @@
 import pytest
 
 from lumen.interpreters.fleet.conditions import condition_faults, holds, meant
+from tests.tables import for_each
 
 MEASURES = {"falls": None, "errors": None}
 
@@ -21,7 +22,7 @@ def test_before_is_the_measure_that_it_is_compared_with(source: str, expected: s
     assert condition_faults(source, MEASURES) == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("source", "offset", "said"),
     [
         ("fals > 0", 0, "there is no measure `fals`"),

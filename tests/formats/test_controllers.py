@@ -17,6 +17,7 @@ from lumen.formats.fll.infix_formulas import Trouble, read_formula, write_formul
 from lumen.fuzzy import Controller
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.formulas import formula
+from tests.tables import for_each
 
 FIS = """[System]
 Name='tipper'
@@ -168,7 +169,7 @@ def test_what_rounding_left_is_zero() -> None:
     Controller.from_dict(data)
 
 
-@pytest.mark.parametrize("norm", ["algebraic", "bounded", "drastic", "einstein", "hamacher"])
+@for_each("norm", ["algebraic", "bounded", "drastic", "einstein", "hamacher"])
 def test_the_norms_of_octave(norm: str) -> None:
     """All that its fuzzy-logic-toolkit has, for `and` and `or`, implication and aggregation."""
     product = f"{norm}_{'difference' if norm == 'bounded' else 'product'}"

@@ -19,6 +19,7 @@ from lumen.formats.diagrams.transition_rows import guard_phrase
 from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 TOUR = lumen.load(ROOT).machine
@@ -98,7 +99,7 @@ def test_of_a_for_only_what_somebody_wrote_is_shown(museum: MachineDefinition) -
     assert quiz.within[0].rows[0] == "“…” in question.right → right"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("guard", "phrase"),
     [
         ("heard(event.data.result, 'dance')", "“dance”"),

@@ -10,6 +10,7 @@ import pytest
 
 from lumen.formats.fcl import read_fcl
 from lumen.fuzzy import Controller
+from tests.tables import for_each
 
 
 def said(text: str) -> tuple[dict[str, Any], list[str]]:
@@ -41,13 +42,13 @@ def test_what_jfuzzylogic_computes_from_its_inputs() -> None:
     assert summed == pytest.approx((0.75 * 0 + 0.5 * 7) / 1.25)
 
 
-@pytest.mark.parametrize("formula", ["2 ^ s ^ 2", "-2 ^ s", "s % 2 * 3", "x + 1", "thing", "(s"])
+@for_each("formula", ["2 ^ s ^ 2", "-2 ^ s", "s % 2 * 3", "x + 1", "thing", "(s"])
 def test_a_function_that_means_another_thing_here_is_left_out(formula: str) -> None:
     _, found = said(a_block(f"TERM a := FUNCTION {formula}; TERM b := 7; METHOD : COGS;"))
     assert any("the term `a` of `tip` is left out" in line for line in found)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("term", "ends", "height"),
     [  # (a term, how far jFuzzyLogic's `estimateUniverse` goes, its membership at 6)
         ("GAUSS 5 2", [-3, 13], 0.8824969025845955),
@@ -89,7 +90,7 @@ def test_a_gaussian_without_range_as_jfuzzylogic_has_it() -> None:
         assert controller.evaluate({"s": s})["tip"] == pytest.approx(theirs, abs=(high - low) / 1000)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("block", "operators"),
     [
         ("AND : PROD;", ("algebraic-product", "algebraic-sum")),

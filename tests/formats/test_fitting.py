@@ -12,6 +12,7 @@ from lumen.formats.gestures import read_gesture
 from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.loading.packaged import shipped_root
 from tests.formats.test_gestures import BODY, EXPORT, WAVE, XAR, built, read, said
+from tests.tables import for_each
 
 SOCCER = """#WEBOTS_MOTION,V1.1
 HeadYaw%HeadPitch
@@ -103,7 +104,7 @@ def test_whatever_somebody_wrote_is_within_limits_and_speeds(rows: list[tuple[fl
     assert overspeed(motion, BODY) == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("statement", "message"),
     [
         ("for i in range(2):\n    times[i][0] = times[i][0] * 2", "`times[i][0] = times[i][0] * 2` changes `times`"),

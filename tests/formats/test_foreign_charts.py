@@ -3,12 +3,11 @@
 import json
 from typing import Any
 
-import pytest
-
 from lumen.formats.xstate import read_xstate
 from lumen.language.diagnostics import has_errors
 from lumen.statechart import Interpreter, Machine
 from tests.formats.test_xstate_runs import by_xstate
+from tests.tables import for_each
 
 FINAL: dict[str, Any] = {"type": "final"}
 LOADING = {
@@ -173,7 +172,7 @@ def test_a_behaviour_invoked_by_that_id_is_what_is_waited_for() -> None:
     assert way(machine, ["FETCH", "xstate.done.actor.0.loader.busy", "END"])[-1] == ["idle"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("state", "message"),
     [
         ({"type": "final", "on": {"E": "b"}}, "`on` of a final state: nothing follows it here"),

@@ -21,6 +21,7 @@ from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 BODY = lumen.load(shipped_root()).body
 
@@ -214,7 +215,7 @@ def test_what_only_a_run_would_tell_is_listed() -> None:
     assert said(diagnostics)[-1] == "13:14 not-carried-over `compute()` is known only when the file runs"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "text", "message"),
     [
         ("a.motion", "", "does not begin with"),

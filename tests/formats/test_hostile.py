@@ -16,6 +16,7 @@ from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
 from lumen.language.diagnostics import has_errors
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 HEAD = b'<scxml xmlns="http://www.w3.org/2005/07/scxml" datamodel="ecmascript">'
 BOMB = b"".join(
@@ -28,7 +29,7 @@ BOMB = b"".join(
 FETCH = b'<!DOCTYPE x [<!ENTITY f SYSTEM "file:///etc/hostname">]>'
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("content", "line", "words"),
     [
         (b"", 1, "no element found"),
@@ -50,7 +51,7 @@ def test_hostile_xml(content: bytes, line: int, words: str) -> None:
     refused(read_scxml, content, line, words)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("content", "line", "words"),
     [
         (b"", 1, "not JSON"),

@@ -13,6 +13,7 @@ from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import has_errors
 from lumen.statechart import Interpreter, Machine
+from tests.tables import for_each
 
 QUIZ: dict[str, Any] = {
     "context": {"round": 0, "who": ""},
@@ -69,7 +70,7 @@ def test_xstate_names_the_actor(host: Machine) -> None:
     assert write_xstate(Machine.from_dict(once, behaviors={"quiz": QUIZ}), dotted("host"))[0] == text
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("invoke", "row"),
     [
         ('src="quiz.scxml"', {"behavior": "quiz"}),

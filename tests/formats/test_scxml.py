@@ -2,11 +2,10 @@
 
 from typing import Any
 
-import pytest
-
 from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 HEAD = '<scxml xmlns="http://www.w3.org/2005/07/scxml" datamodel="ecmascript" name="chart">\n'
 
@@ -29,7 +28,7 @@ def state(content: str, more: str = "") -> dict[str, Any]:
 B = '<state id="b"><state id="c"/></state>'
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("content", "expected"),
     [
         ('<transition event="e" target="b"/>', {"on": {"e": "b"}}),
@@ -104,7 +103,7 @@ def test_values_that_change_their_kind_are_of_any() -> None:
     assert data["entry"] == [{"assign": {"y": "context.x + 1"}}]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "said"),
     [
         ("<state>\n<invoke type='http'/></state>", ["3: `<invoke>`: the service `http` is not carried over"]),

@@ -11,6 +11,7 @@ from lumen.language.diagnostics import has_errors
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from tests.fuzzy.nao import HEAD
+from tests.tables import for_each
 
 PROJECT = "examples/erratum"
 
@@ -50,7 +51,7 @@ def test_with_the_numbers_put_right_only_the_sign_is_left(gain: int) -> None:
     assert [d.code for d in found] == ["wrong-sign"] * (1 if gain > 0 else 2)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("x", "y", "angle_x", "angle_y"),
     [(0, 0, 0, 0), (80, 60, 0, 0), (160, 120, 5.966, -2.068), (240, 180, -2.843, 1.234), (320, 240, -7.088, 2.438)],
 )

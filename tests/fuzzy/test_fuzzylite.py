@@ -33,6 +33,7 @@ from lumen.language.controllers import (
     TERM_PARAMETERS,
     Term,
 )
+from tests.tables import for_each
 
 EXAMPLES = sorted((Path(fl.__file__).parent / "examples").rglob("*.fll"))
 EDGES = {"binary": 1, "arc": 1}
@@ -86,7 +87,7 @@ def test_the_package_carries_its_examples() -> None:
     assert len(EXAMPLES) == 61
 
 
-@pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: "/".join(file.parts[-3:]))
+@for_each("file", EXAMPLES, ids=lambda file: "/".join(file.parts[-3:]))
 def test_an_example_of_the_package(file: Path) -> None:
     data, found, controller, engine, points = example(file)
     assert {d.message for d in found if d.severity == "error"} <= {"the range of `theta` holds nothing"}
@@ -228,12 +229,12 @@ def spread(count: int, low: float = 0.0, high: float = 10.0) -> list[dict[str, f
     return [{"a": draw.uniform(low, high), "b": draw.uniform(low, high)} for _ in range(count)]
 
 
-@pytest.mark.parametrize("activation", ACTIVATED)
+@for_each("activation", ACTIVATED)
 def test_an_activation(activation: str) -> None:
     assert agree(*both(activation=activation), spread(30)) == 30
 
 
-@pytest.mark.parametrize("method", DEFUZZIFIERS)
+@for_each("method", DEFUZZIFIERS)
 def test_a_defuzzifier(method: str) -> None:
     terms = SETS if method in INTEGRAL_DEFUZZIFIERS else VALUES
     resolution = " 200" if method in INTEGRAL_DEFUZZIFIERS else ""
@@ -246,12 +247,12 @@ def test_terms_read_backwards_in_a_controller(method: str) -> None:
     assert agree(*both(defuzzifier=method, terms=BACKWARDS, aggregation="Maximum"), spread(30, 2.1, 7.9)) == 30
 
 
-@pytest.mark.parametrize("name", T_NORMS)
+@for_each("name", T_NORMS)
 def test_a_t_norm_in_a_controller(name: str) -> None:
     assert agree(*both(conjunction=camel(name), implication=camel(name)), spread(10)) == 10
 
 
-@pytest.mark.parametrize("name", S_NORMS)
+@for_each("name", S_NORMS)
 def test_an_s_norm_in_a_controller(name: str) -> None:
     disjunction = "AlgebraicSum" if name == "unbounded-sum" else camel(name)
     assert agree(*both(disjunction=disjunction, aggregation=camel(name)), spread(10)) == 10

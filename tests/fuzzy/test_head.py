@@ -8,6 +8,7 @@ import pytest
 from lumen.errors import ProjectError, UsageError
 from lumen.fuzzy import Controller
 from tests.guarded import run_guarded
+from tests.tables import for_each
 
 YAW = {0: 7.088, 80: 2.843, 160: 0.0, 240: -2.843, 320: -7.088}
 PITCH = {0: 2.438, 60: 1.234, 120: 0.0, 180: -1.234, 240: -2.438}
@@ -18,12 +19,12 @@ def head() -> Controller:
     return Controller.load("fuzzy/head.yaml")
 
 
-@pytest.mark.parametrize("x", YAW)
+@for_each("x", YAW)
 def test_yaw(head: Controller, x: int) -> None:
     assert head.evaluate({"FaceXLoc": x, "FaceYLoc": 120})["AngleX"] == pytest.approx(YAW[x], abs=1e-3)
 
 
-@pytest.mark.parametrize("y", PITCH)
+@for_each("y", PITCH)
 def test_pitch(head: Controller, y: int) -> None:
     assert head.evaluate({"FaceXLoc": 160, "FaceYLoc": y})["AngleY"] == pytest.approx(PITCH[y], abs=1e-3)
 

@@ -16,6 +16,7 @@ from lumen.loading.controllers import build_controller
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema, load_schema
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 TABLE = """inputs:
   a: {range: [0, 10]}
@@ -54,7 +55,7 @@ def test_the_shipped_controller_fits_on_one_screen() -> None:
         assert len(file.readlines()) <= 50
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("old", "new", "expected"),
     [
         ("Low: {a: [0, 3]", "Low: {b: [0, 3]", ["unknown-variable b"]),

@@ -14,6 +14,7 @@ from lumen.loading.controllers import build_controller
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema, load_schema
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 HEAD = Path("tests/fuzzy/at_length.yaml").read_text()
 
@@ -80,7 +81,7 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "code", "word", "hint"), CASES, ids=[f"{c[2]}-{c[3]}" for c in CASES])
+@for_each(("old", "new", "code", "word", "hint"), CASES, ids=[f"{c[2]}-{c[3]}" for c in CASES])
 def test_a_fault_is_shown_at_its_word(old: str, new: str, code: str, word: str, hint: str) -> None:
     text = HEAD.replace(old, new, 1)
     assert text != HEAD

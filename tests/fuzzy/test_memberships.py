@@ -11,6 +11,7 @@ from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
 from lumen.interpreters.inference.memberships import MEMBERSHIP_FUNCTIONS, membership
 from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS, value
 from lumen.language.controllers import TERM_PARAMETERS, VALUE_TERMS, Term
+from tests.tables import for_each
 
 CASES = [
     ("triangle", (0, 4, 10), {-1: 0, 0: 0, 2: 0.5, 4: 1, 7: 0.5, 11: 0}),
@@ -47,7 +48,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "parameters", "points"), CASES)
+@for_each(("kind", "parameters", "points"), CASES)
 def test_a_shape_at_known_points(kind: str, parameters: tuple[float, ...], points: dict[float, float]) -> None:
     shape = membership(NUMBERS, Term("t", kind, parameters))
     assert [shape(float(x)) for x in points] == pytest.approx(list(points.values()), abs=1e-9)

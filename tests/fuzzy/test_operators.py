@@ -13,6 +13,7 @@ from lumen.interpreters.inference.hedges import HEDGE_FUNCTIONS, hedged
 from lumen.interpreters.inference.norms import NORM_FUNCTIONS, norm
 from lumen.language import controllers
 from lumen.language.controllers import ACTIVATIONS, COMPARISONS, S_NORMS, T_NORMS, Activation
+from tests.tables import for_each
 
 degree = st.one_of(st.floats(0, 1), st.sampled_from([0.0, 0.5, 1.0]))
 
@@ -36,7 +37,7 @@ def test_a_norm_commutes_and_has_its_neutral_element(name: str, a: float, b: flo
         assert -1e-12 <= combine(a, b) <= 1.0 + 1e-12
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "value"),
     [
         ("minimum", 0.5), ("algebraic-product", 0.3), ("bounded-difference", 0.1), ("drastic-product", 0.0),
@@ -50,7 +51,7 @@ def test_norms_of_one_half_and_three_fifths(name: str, value: float) -> None:
     assert norm(NUMBERS, name)(0.5, 0.6) == pytest.approx(value)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("hedge", "quarter", "three_quarters"),
     [
         ("any", 1.0, 1.0), ("not", 0.75, 0.25), ("extremely", 0.125, 0.875), ("seldom", 0.125**0.5, 1 - 0.125**0.5),
@@ -67,7 +68,7 @@ def test_the_hedge_next_to_the_term_acts_first() -> None:
     assert hedged(NUMBERS, ("not", "very"), 0.5) == 0.75
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("activation", "expected"),
     [
         (Activation(), [0.2, 0.8, 0.0, 0.5]),

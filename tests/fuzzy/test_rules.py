@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 
 from lumen.language.controllers import Conjunction, Disjunction, Negation, Proposition
 from lumen.loading.rule_parser import RuleSyntaxError, parse_rule
+from tests.tables import for_each
 
 A, B, C = Proposition("a", "x"), Proposition("b", "y"), Proposition("c", "z")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "antecedent"),
     [
         ("a is x", A),
@@ -39,7 +40,7 @@ def test_consequents_and_weight() -> None:
     assert [m.variable.text for m in rule.mentions if m.concluded] == ["b", "c", "a"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "offset", "message"),
     [
         ("", 0, "here `if` should stand, but the rule ends"),

@@ -13,6 +13,7 @@ from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.interpreters.tracking import Tracker
 from tests.fuzzy.closed_loop import off_by, run
 from tests.fuzzy.nao import COUPLED, HEAD, TOP
+from tests.tables import for_each
 
 HERE = {"HeadYaw": 0.0, "HeadPitch": 0.0}
 ADULT: Vector3 = (1.5, 0.2, 0.5)
@@ -88,9 +89,9 @@ def test_every_limit_holds(yaw: float, pitch: float, x: int, y: int) -> None:
 CONTROLLER = Controller.load("fuzzy/head.yaml")
 
 
-@pytest.mark.parametrize("latency", [0.0, 0.1, 0.2])
-@pytest.mark.parametrize("tick", [0.033, 0.1])
-@pytest.mark.parametrize(("yaw", "pitch"), [(15, 8), (-15, -8), (15, -8), (-15, 8)])
+@for_each("latency", [0.0, 0.1, 0.2])
+@for_each("tick", [0.033, 0.1])
+@for_each(("yaw", "pitch"), [(15, 8), (-15, -8), (15, -8), (-15, 8)])
 def test_the_loop_settles_without_overshoot(
     head: Controller, latency: float, tick: float, yaw: float, pitch: float
 ) -> None:
@@ -101,8 +102,8 @@ def test_the_loop_settles_without_overshoot(
         assert outcome.settled(axis, goal[axis]) <= 2.5
 
 
-@pytest.mark.parametrize("face", [(1.5, 0.0, 0.9), (1.5, 0.6, 0.3), (2.5, -1.0, 0.9), (0.8, 0.3, 0.2), (3.0, 0.0, 1.0)])
-@pytest.mark.parametrize("latency", [0.0, 0.2])
+@for_each("face", [(1.5, 0.0, 0.9), (1.5, 0.6, 0.3), (2.5, -1.0, 0.9), (0.8, 0.3, 0.2), (3.0, 0.0, 1.0)])
+@for_each("latency", [0.0, 0.2])
 def test_a_face_within_reach_ends_within_ten_pixels_of_the_centre(
     head: Controller, face: Vector3, latency: float
 ) -> None:
@@ -118,9 +119,9 @@ def test_without_magnification_the_head_rests_beside_the_face(head: Controller) 
     assert abs(u - 160) > 40
 
 
-@pytest.mark.parametrize("latency", [0.1, 0.2])
-@pytest.mark.parametrize("tick", [0.033, 0.1])
-@pytest.mark.parametrize("error", [-0.05, 0.05])
+@for_each("latency", [0.1, 0.2])
+@for_each("tick", [0.033, 0.1])
+@for_each("error", [-0.05, 0.05])
 def test_a_capture_time_that_is_50_ms_wrong_does_not_shake_the_head(
     head: Controller, latency: float, tick: float, error: float
 ) -> None:
@@ -148,9 +149,9 @@ def test_a_head_at_its_limit_rests(head: Controller) -> None:
     assert min(late) == max(late) == pytest.approx(radians(-38.5), abs=1e-5)
 
 
-@pytest.mark.parametrize("latency", [0.0, 0.1, 0.2])
-@pytest.mark.parametrize("tick", [0.033, 0.1])
-@pytest.mark.parametrize("sag", [-0.6, 0.6])
+@for_each("latency", [0.0, 0.1, 0.2])
+@for_each("tick", [0.033, 0.1])
+@for_each("sag", [-0.6, 0.6])
 def test_a_head_that_hangs_below_what_it_was_told_looks_at_the_face_all_the_same(
     head: Controller, latency: float, tick: float, sag: float
 ) -> None:

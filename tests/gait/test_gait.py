@@ -13,6 +13,7 @@ from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
 from tests.gait.nao_legs import NAO_LEGS
 from tests.motions.making import nao
+from tests.tables import for_each
 
 START: Feet = {"L": beside(Pose(), "L", GaitParameters()), "R": beside(Pose(), "R", GaitParameters())}
 JOINTS = nao().joints
@@ -44,7 +45,7 @@ class Walked:
 GOALS = [(0.2, 0, 0), (-0.2, 0, 0), (0, 0.2, 0), (0, -0.1, 0), (0.3, 0.2, pi / 4), (-0.4, -0.2, 3.1), (2, 1, -3.1)]
 
 
-@pytest.mark.parametrize("goal", GOALS)
+@for_each("goal", GOALS)
 def test_it_arrives(goal: tuple[float, float, float]) -> None:
     gait = walking(Pose(*goal))
     walked = Walked(gait)
@@ -62,7 +63,7 @@ def test_where_it_stands_already_it_only_stands() -> None:
     assert Walked(gait).lifted == {""}
 
 
-@pytest.mark.parametrize("moment", range(1, 320, 12))
+@for_each("moment", range(1, 320, 12))
 def test_stopped_at_any_moment_it_ends_with_its_feet_together_within_a_second(moment: int) -> None:
     gait = walking(Pose(1.0, 0.3, 0.5))
     walked = Walked(gait, stop=moment)

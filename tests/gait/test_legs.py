@@ -14,6 +14,7 @@ from lumen.interpreters.gait.stance import stand
 from lumen.language.robots import Body
 from tests.gait.nao_legs import CLASSIC_LEGS, NAO_LEGS
 from tests.motions.making import nao
+from tests.tables import for_each
 
 side = st.sampled_from(SIDES)
 turns = st.floats(-0.25, 0.25)
@@ -111,7 +112,7 @@ def test_what_is_known_of_the_legs_is_what_the_postures_say() -> None:
     assert {name for leg in SIDES for name in NAO_LEGS.names[leg]} == set(body.parts["legs"])
 
 
-@pytest.mark.parametrize(("angle", "same"), [(pi, pi), (-pi, pi), (3 * pi, pi), (2 * pi + 0.1, 0.1), (-0.1, -0.1)])
+@for_each(("angle", "same"), [(pi, pi), (-pi, pi), (3 * pi, pi), (2 * pi + 0.1, 0.1), (-0.1, -0.1)])
 def test_angles_are_wrapped(angle: float, same: float) -> None:
     assert wrap(angle) == pytest.approx(same)
 

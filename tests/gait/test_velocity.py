@@ -16,6 +16,7 @@ from lumen.interpreters.gait.velocity import MOST_CHANGE, strides
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import JOINTS, LIMIT, START
 from tests.simulation.bodies import shipped
+from tests.tables import for_each
 
 PACE = GaitParameters()
 STEP = PACE.double + PACE.single
@@ -52,7 +53,7 @@ class Legs:
 VELOCITIES = [(0.1, 0, 0), (-0.1, 0, 0), (0, 0.05, 0), (0, -0.05, 0), (0, 0, 0.4), (0, 0, -0.4), (0.05, 0.02, 0.1)]
 
 
-@pytest.mark.parametrize("velocity", VELOCITIES, ids=str)
+@for_each("velocity", VELOCITIES, ids=str)
 def test_it_goes_as_fast_as_it_is_told(velocity: tuple[float, float, float]) -> None:
     """Measured over ten steps from the second on: first the weight has to shift."""
     gait = Gait(NAO_LEGS, START, Velocity(*velocity), mass, PACE)
@@ -82,7 +83,7 @@ def test_from_standing_no_speed_moves_nothing() -> None:
     assert gait.steps == 0
 
 
-@pytest.mark.parametrize("moment", range(1, 320, 24))
+@for_each("moment", range(1, 320, 24))
 def test_stopped_at_any_moment_it_ends_within_a_second(moment: int) -> None:
     gait = Gait(NAO_LEGS, START, Velocity(0.1, 0.03, 0.2), mass, PACE)
     legs = Legs(gait)

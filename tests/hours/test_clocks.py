@@ -14,6 +14,7 @@ from lumen.language.events import Event
 from lumen.runtime.resuming import resume
 from lumen.runtime.wall_clock_watch import WallClockWatch
 from lumen.statechart import Interpreter, Machine
+from tests.tables import for_each
 
 HALL = {
     "context": {"rounds": 0},
@@ -190,7 +191,7 @@ def test_a_time_zone_that_does_not_exist() -> None:
         Interpreter(Machine.from_dict(HALL), timezone="Mars/Olympus").start()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("at", "comes"),
     [
         ({"18:00": "closed"}, ["01 18:00"]),

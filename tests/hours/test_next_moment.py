@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from lumen.interpreters.wall_clock import MICROSECONDS, local_time, next_moment
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.loading.schedules import MisreadTimeError, read_schedule
+from tests.tables import for_each
 
 ZONES = (
     "Europe/Berlin", "America/New_York", "Australia/Lord_Howe", "Pacific/Apia", "Asia/Jakarta", "Africa/Casablanca",
@@ -70,7 +71,7 @@ def test_a_schedule_comes_when_somebody_sees_it_come(
         assert found == int(seen.timestamp()) * MICROSECONDS
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "after", "comes"),
     [
         ("02:30", "2026-03-28T12:00", "2026-03-29 03:00:00+02:00"),
@@ -91,7 +92,7 @@ def test_the_night_that_skips_and_the_night_that_repeats(text: str, after: str, 
     assert (None if found is None else str(local_time(found, "Europe/Berlin"))) == comes
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "times", "weekdays", "dates"),
     [
         ("9:05", [545], [], []),
@@ -105,7 +106,7 @@ def test_what_can_be_written(text: str, times: list[int], weekdays: list[int], d
     assert read_schedule(text) == Schedule(tuple(times), tuple(weekdays), tuple(dates))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "message", "hint"),
     [
         ("25:00", "there is no `25:00`", "from `00:00` to `23:59`"),

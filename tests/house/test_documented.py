@@ -7,11 +7,11 @@ import shlex
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
 from scripts.documented import ROOT, all_pages, available, blocks, check, differing
 
 from lumen.cli.intermixed import Intermixed
 from lumen.cli.main import MODULES, VERBS
+from tests.tables import for_each
 
 BLOCK = re.compile(r"(?m)^```[\s\S]*?^```$")
 
@@ -44,12 +44,12 @@ def can_be_typed(command: str) -> bool:
     return True
 
 
-@pytest.mark.parametrize("page", all_pages(), ids=lambda page: page.name)
+@for_each("page", all_pages(), ids=lambda page: page.name)
 def test_every_command_of_a_page_is_one_that_lumen_takes(page: Path) -> None:
     assert [command for command in commands(page) if not can_be_typed(command)] == []
 
 
-@pytest.mark.parametrize("page", all_pages(), ids=lambda page: page.name)
+@for_each("page", all_pages(), ids=lambda page: page.name)
 def test_blocks_say_nothing_that_the_runner_does_not_know(page: Path) -> None:
     for block in blocks(page):
         keys = {word.partition("=")[0] for word in block.words}
@@ -62,7 +62,7 @@ def test_what_the_tutorial_shows_is_printed() -> None:
     assert (count > 0, wrong) == (True, [])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("shown", "printed", "is_same"),
     [
         ("3 errors in 1 file", "3 errors in 1 file", True),

@@ -14,6 +14,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.ports import Live, RobotCommand, Sense
 from lumen.robots.recording import RecordingRobot
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 TWO = """
@@ -43,7 +44,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> MachineDefinition:
     return Machine.load(file)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("active", "name"),
     [
         ({"guide", "guide.idle", "safety", "safety.well"}, "calm"),

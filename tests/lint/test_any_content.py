@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
+from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parent / "base")
 FILES = sorted(BASE)
@@ -71,7 +72,7 @@ def test_any_value_in_place_of_any_other(file: str, data: st.DataObject) -> None
     lint({**BASE, file: json.dumps(content).encode("utf-8", "surrogatepass")})
 
 
-@pytest.mark.parametrize("file", FILES)
+@for_each("file", FILES)
 def test_any_file_missing(file: str) -> None:
     lint({name: content for name, content in BASE.items() if name != file})
 

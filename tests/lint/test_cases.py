@@ -15,6 +15,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
+from tests.tables import for_each
 
 HERE = Path(__file__).parent
 BASE = read_files(HERE / "base")
@@ -59,7 +60,7 @@ def test_there_are_many_cases() -> None:
     assert len(cases()) >= 300
 
 
-@pytest.mark.parametrize("case", cases())
+@for_each("case", cases())
 def test_a_mistake_is_found_at_its_word(case: dict[str, Any]) -> None:
     project, diagnostics = check_files(HERE / "base", changed(case))
     found = [said(d) for d in diagnostics]

@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-import pytest
-
 import lumen
 from lumen.language.diagnostics import Severity
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import page
+from tests.tables import for_each
 
 ENGINE = Path(lumen.__file__).parent
 RAISING = ("loading", "rules", "interpreters/expressions", "app/reload")
@@ -65,7 +64,7 @@ def test_every_code_is_raised_somewhere() -> None:
     assert [code for _, constant, code in declarations() if constant not in names] == []
 
 
-@pytest.mark.parametrize("code", CODES.values())
+@for_each("code", CODES.values())
 def test_every_code_says_how_bad_it_is_and_what_it_means(code) -> None:
     assert isinstance(code.severity, Severity)
     assert code in FAMILIES[code.family]

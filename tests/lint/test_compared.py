@@ -3,11 +3,11 @@
 import re
 from pathlib import Path
 
-import pytest
 from benchmarks.compare_lint import Mistake, cell, mistakes
 
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/lint-compared.md").read_text("utf-8")
@@ -18,7 +18,7 @@ def without_places(text: str) -> str:
     return re.sub(r"(?<![\d`])\d+:\d+(?= )|(?<=in line )\d+", "N", text)
 
 
-@pytest.mark.parametrize("mistake", mistakes(), ids=lambda mistake: mistake.what)
+@for_each("mistake", mistakes(), ids=lambda mistake: mistake.what)
 def test_the_page_shows_what_lint_says(mistake: Mistake) -> None:
     files = read_files(ROOT)
     files[mistake.file] = files[mistake.file].decode().replace(mistake.old, mistake.new, 1).encode()

@@ -15,6 +15,7 @@ from lumen.rules import check_files
 from lumen.rules.fixes import edited, fixes
 from lumen.rules.fixes.misspellings import near
 from lumen.rules.repairs import repaired
+from tests.tables import for_each
 
 HERE = Path(__file__).parent
 BASE = read_files(HERE / "base")
@@ -29,7 +30,7 @@ def fixed(file: str, old: str, new: str) -> bytes:
     return repaired(files, lambda f: check_files(HERE, f)[1], lambda d: True)[0][file]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "right", "wrong"),
     [
         (TOUR, "onError: idle", "onError: idel"),
@@ -56,7 +57,7 @@ def test_a_slip_is_repaired(file: str, right: str, wrong: str) -> None:
     assert fixed(file, right, wrong) == BASE[file]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "old", "new"),
     [
         (WAVE, "LShoulderPitch: -60", "RShoulderPitch: -60"),
@@ -150,7 +151,7 @@ def test_every_proposal_is_within_the_file_and_makes_its_finding_go_or_is_not_ma
     assert not (has_errors(left) and not has_errors(found))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("word", "meant", "is_near"),
     [
         ("idel", "idle", True), ("gret", "greet", True), ("greeet", "greet", True), ("graet", "great", True),

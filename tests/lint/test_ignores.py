@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-import pytest
-
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.codes import FAMILIES
+from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parent / "pages/base")
 HEAD = "states:\n  idle:\n    on: {touched: awake}\n"
@@ -18,7 +17,7 @@ def lint(awake: str) -> list[str]:
     return [f"{d.place.line - 3}:{d.place.column} {d.code}" for d in check_files(Path("/nowhere"), files)[1]]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("awake", "found"),
     [
         ("  awake:\n    entry: {raise: hi}\n    after: {20s: idle}\n", ["2:20 unused-event"]),

@@ -3,12 +3,11 @@
 import re
 from typing import Any
 
-import pytest
-
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from tests.lint.test_cases import HERE, cases, changed
+from tests.tables import for_each
 
 QUOTED = re.compile(r"`([^`]+)`")
 
@@ -45,7 +44,7 @@ def keys(diagnostic: Diagnostic, files: dict[str, bytes]) -> set[str]:
     return names | {f"{one}.{other}" for one in names for other in names}
 
 
-@pytest.mark.parametrize("case", cases())
+@for_each("case", cases())
 def test_a_place_is_one_of_its_file_and_marks_what_is_spoken_of(case: dict[str, Any]) -> None:
     files = changed(case)
     for diagnostic in check_files(HERE / "base", files)[1]:

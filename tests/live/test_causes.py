@@ -14,6 +14,7 @@ from lumen.language.events import Event
 from lumen.language.machines import Transition
 from lumen.language.projects import Project
 from lumen.runtime.causes import caused
+from tests.tables import for_each
 from tests.waiting import Collector
 
 
@@ -96,7 +97,7 @@ def test_a_message_of_a_module_is_the_cause(bus: Bus) -> None:
     assert found["face"].sender == "the program"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("event", "cause"),
     [
         (Event("done.command.d3"), Cause("command", "d3")),

@@ -17,6 +17,7 @@ from lumen.loading.messages import build_message
 from lumen.loading.schema import FILE_KINDS, load_schema
 from lumen.loading.yaml_reader import parse
 from lumen.lsp.grammar import kind_of
+from tests.tables import for_each
 
 SHIPPED = read_files(Path(__file__).parents[2])
 
@@ -55,7 +56,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "document"), [pytest.param(*d, id=d[1].file) for d in DOCUMENTS])
+@for_each(("kind", "document"), [pytest.param(*d, id=d[1].file) for d in DOCUMENTS])
 def test_every_shipped_file_gets_a_quick_yes(kind: str, document: Document) -> None:
     assert QUICK[kind].fits(document.data)
 
@@ -72,7 +73,7 @@ def test_a_quick_yes_is_never_wrong(chosen: tuple[str, Document], random: Random
     assert not QUICK[kind].fits(data) or VALIDATORS[kind].is_valid(data)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("schema", "fits", "fails"),
     [
         ({"patternProperties": {"^x": {"type": "string"}}, "additionalProperties": False}, {"xa": "b"}, {"a": "b"}),

@@ -3,13 +3,12 @@
 from datetime import date
 from pathlib import Path
 
-import pytest
-
 from lumen.interpreters.changes import changes
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.loading.markdown import parse_markdown
 from lumen.rules import check_files
+from tests.tables import for_each
 
 BASE = Path(__file__).parents[1] / "lint" / "base"
 YAML = b"questions: {en: how tall, id: [tinggi]}\nanswer: {en: Small., id: Kecil.}\nuntil: 2999-01-02\nwho: TINY\n"
@@ -57,7 +56,7 @@ def test_a_change_is_told_with_its_file() -> None:
     ]
 
 
-@pytest.mark.parametrize("content", [b"", b"---\n---\n", b"---\n- a\n---\n# en\n", b"---\n\xff\n---\n", b"\xff"])
+@for_each("content", [b"", b"---\n---\n", b"---\n- a\n---\n# en\n", b"---\n\xff\n---\n", b"\xff"])
 def test_any_content_is_told_and_never_raises(content: bytes) -> None:
     document, found = parse_markdown("knowledge/a.md", content)
     assert found or (document and not isinstance(document.data, dict))

@@ -3,10 +3,9 @@
 from pathlib import Path
 from random import Random
 
-import pytest
-
 from lumen.loading.line_marks import marks_of
 from lumen.loading.mending import failure, mistake
+from tests.tables import for_each
 
 TOUR = (Path(__file__).parents[2] / "behaviors/tour.yaml").read_text()
 
@@ -33,7 +32,7 @@ def test_the_mended_text_is_yaml_and_has_the_same_lines() -> None:
     assert mended == TOUR
 
 
-@pytest.mark.parametrize("seed", range(60))
+@for_each("seed", range(60))
 def test_whatever_is_broken_nothing_but_its_lines_is_changed(seed: int) -> None:
     random = Random(seed)
     text = TOUR

@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import pytest
-
 from lumen.loading.packaged_models import in_package, mjcf_path, package_file
+from tests.tables import for_each
 
 MODELS = Path("models")
 
@@ -16,7 +15,7 @@ def test_a_file_of_a_package_is_found_without_importing_it() -> None:
     assert mjcf_path("dm_control:suite/humanoid.xml", MODELS) == found
 
 
-@pytest.mark.parametrize(
+@for_each(
     "name",
     [
         "dm_control:suite/gone.xml",

@@ -15,6 +15,7 @@ from lumen.loading.files import read_files
 from lumen.loading.rereading import reread
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
+from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parents[1] / "lint/base")
 TOUR = "behaviors/tour.yaml"
@@ -124,7 +125,7 @@ def test_findings_are_as_if_they_were_looked_for_the_first_time_in_all_cases(
     hold_for_projects(edits)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("old", "new", "block"),
     [
         ("one: 1", "one: 12", "inner:"),

@@ -12,6 +12,7 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 SHIPPED = Path(__file__).parents[2]
 GREETER = """\
@@ -110,7 +111,7 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("what", WRONG)
+@for_each("what", WRONG)
 def test_what_is_wrong_is_said_at_the_word(what: str) -> None:
     edits, expected = WRONG[what]
     _, found = read(changed(*edits))

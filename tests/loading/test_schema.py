@@ -4,13 +4,13 @@ import json
 from typing import Any
 
 import jsonschema
-import pytest
 
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
 from lumen.loading.schema import FILE_KINDS, check_schema, faults, load_schema
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 
 def check(text: str, kind: str = "behavior") -> tuple[Any, DocumentReport]:
@@ -21,7 +21,7 @@ def check(text: str, kind: str = "behavior") -> tuple[Any, DocumentReport]:
     return check_schema(document, kind, report), report
 
 
-@pytest.mark.parametrize("kind", FILE_KINDS)
+@for_each("kind", FILE_KINDS)
 def test_a_schema_is_strict_and_describes_its_keys(kind: str) -> None:
     schema = load_schema(kind)
     jsonschema.Draft202012Validator.check_schema(schema)

@@ -9,6 +9,7 @@ import yaml
 from lumen.loading.packaged import shipped_root
 from lumen.loading.yaml_composer import TooLargeError, compose
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 FILES = sorted(path for folder in ("behaviors", "fuzzy", "motions") for path in shipped_root().glob(f"{folder}/*.yaml"))
 
@@ -45,7 +46,7 @@ def shape(node: yaml.Node | None) -> object:
     return *own, [shape(n) if isinstance(n, yaml.Node) else tuple(map(shape, n)) for n in node.value]
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)
+@for_each("file", FILES, ids=lambda path: path.stem)
 def test_it_is_what_libyaml_composes(file: Path) -> None:
     assert shape(compose(file.read_text())) == shape(yaml.compose(file.read_text(), Composer))
 
@@ -55,7 +56,7 @@ def test_anchors_tags_and_keys_are_what_libyaml_composes(text: str) -> None:
     assert shape(compose(text)) == shape(yaml.compose(text, Composer))
 
 
-@pytest.mark.parametrize("text", ["*x", "a: &x 1\nb: &x 2", "a\n---\nb", "a: b: c", "[1", "\0"])
+@for_each("text", ["*x", "a: &x 1\nb: &x 2", "a\n---\nb", "a: b: c", "[1", "\0"])
 def test_what_is_no_yaml_is_told_as_libyaml_tells_it(text: str) -> None:
     with pytest.raises(yaml.YAMLError) as ours:
         compose(text)
@@ -72,7 +73,7 @@ def test_nothing_is_none_or_a_fault(text: str) -> None:
         assert text.startswith("%")
 
 
-@pytest.mark.parametrize("kind", DEEP)
+@for_each("kind", DEEP)
 def test_what_is_nested_too_deep_ends_the_reading_at_its_place(kind: str) -> None:
     began = time.process_time()
     document, [found] = parse("behaviors/notes.yaml", DEEP[kind].encode())

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from lumen.loading.files import read_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.folding import folds
@@ -12,6 +10,7 @@ from lumen.lsp.lenses import ACTIVE_NOW, PLAY_MOTION, RUN_STORY, active_places, 
 from lumen.lsp.links import links
 from lumen.lsp.signatures import signature
 from lumen.lsp.symbols import search
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = Analysis(ROOT, read_files(ROOT))
@@ -67,7 +66,7 @@ def test_hints_say_what_an_after_and_a_beat_mean() -> None:
     assert len(dance) > 10
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("written", "label", "active"),
     [
         ("guard: \"heard(event.data.result, '|", "heard(", 1),

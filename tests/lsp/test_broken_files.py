@@ -11,6 +11,7 @@ from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.lsp.renaming import renamable, rename
 from lumen.lsp.symbols import Symbol, symbols
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 FILES = read_files(ROOT)
@@ -47,7 +48,7 @@ def count(found: tuple[Symbol, ...]) -> int:
     return sum(1 + count(symbol.children) for symbol in found)
 
 
-@pytest.mark.parametrize("how", BREAKS)
+@for_each("how", BREAKS)
 def test_the_rest_of_the_file_is_known(how: str) -> None:
     """Nearly all symbols, hover above and below the fault, completion in the file and in a story of it."""
     analysis = broken(how, before=None)
@@ -60,7 +61,7 @@ def test_the_rest_of_the_file_is_known(how: str) -> None:
     assert "goodbye" in {item.text for item in complete(analysis, *at(analysis, VISITOR, "expect: {state: |greet"))}
 
 
-@pytest.mark.parametrize("how", BREAKS)
+@for_each("how", BREAKS)
 def test_it_is_one_finding_and_hides_no_other(how: str) -> None:
     """Of the fault itself one finding, nothing that follows from it, and what is wrong elsewhere besides."""
     analysis = broken(how)

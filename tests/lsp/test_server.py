@@ -9,6 +9,7 @@ import pytest
 
 from lumen.loading.files import PROJECT_FOLDERS
 from tests.lsp.client import Client
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 TOUR = "behaviors/tour.yaml"
@@ -183,9 +184,7 @@ def test_a_fix_is_offered(client: Client) -> None:
     client.change(TOUR, text, 8)
 
 
-@pytest.mark.parametrize(
-    "text", ["", "{{{", "a: b: c", "\t- x", "- 1\n- 2\n", "states: 5\n", "&a [*a]", "\x00", "🤖: {🤖"]
-)
+@for_each("text", ["", "{{{", "a: b: c", "\t- x", "- 1\n- 2\n", "states: 5\n", "&a [*a]", "\x00", "🤖: {🤖"])
 def test_wrong_files_are_answered(client: Client, text: str) -> None:
     file = "behaviors/wrong.yaml"
     client.open(file, text)

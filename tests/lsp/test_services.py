@@ -16,6 +16,7 @@ from lumen.lsp.names import NameKind
 from lumen.lsp.renaming import applied, refuse_harm, renamable, rename
 from lumen.lsp.symbols import symbols
 from tests.mutation.mutants import Nursery
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = Analysis(ROOT, read_files(ROOT))
@@ -39,7 +40,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
     return analysis, place(analysis, file, new, text.index(old))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "old", "new", "some", "none"),
     [
         (TOUR, "target: how_are_you", "target: |", ["greet", '"#goodbye"'], ["Stand", ".greet"]),
@@ -86,7 +87,7 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
     assert not set(none) & set(proposed), proposed
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "text", "where"),
     [
         (TOUR, "target: how_are|_you", f"{TOUR}: how_are_you:"),
@@ -113,7 +114,7 @@ def test_definition(file: str, text: str, where: str) -> None:
     assert SHIPPED.text(name).split("\n")[found[0].line - 1][found[0].column - 1 :].startswith(key)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "text", "said"),
     [
         (TOUR, "target: how_are|_you", "atomic state at `guide.talking.how_are_you`"),
@@ -172,7 +173,7 @@ def test_the_key_in_a_way_that_assign_goes() -> None:
     assert "{assign: {guest.name: 1}}" in applied(analysis, rename(analysis, word, "guest")).text(TOUR)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("file", "text", "name", "reason"),
     [
         (TOUR, "target: how_are|_you", "greet", "already"),

@@ -8,6 +8,7 @@ from lumen.rules import check_files
 from tests.mistakes.__main__ import told
 from tests.mistakes.rows import PROJECTS, Row, rows, shipped
 from tests.mistakes.scores import Judged, judge, score
+from tests.tables import for_each
 
 
 @cache
@@ -27,7 +28,7 @@ def test_mistakes_are_told_where_they_are_with_what_to_do_and_once() -> None:
     assert min(found.percent()) >= 98, wrong
 
 
-@pytest.mark.parametrize("row", list(rows("legal")), ids=lambda row: row.name)
+@for_each("row", list(rows("legal")), ids=lambda row: row.name)
 def test_nothing_is_said_of_what_is_right(row: Row) -> None:
     assert [str(d) for d in check_files(row.root, row.files)[1]] == []
 

@@ -14,6 +14,7 @@ from lumen.modules.ears import Ears
 from lumen.modules.ears.addressing import AFTER_FACE, AFTER_TOUCH, LEAD, NO_DISTANCE, Addressing
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_own_voice import SAY, Ear
+from tests.tables import for_each
 
 Make = Callable[..., Stand]
 FACE, TACTILE, LISTENING = "lumen.visual.face.detection", "avatar.NAO.data.tactile", "lumen.NAO.audio.listening"
@@ -113,7 +114,7 @@ def test_a_saved_setting_counts_at_once(ear: Ear) -> None:
     assert ear.record(102.5, 4) == ["can you dance"]
 
 
-@pytest.mark.parametrize("seed", range(20))
+@for_each("seed", range(20))
 def test_is_open_where_a_face_or_a_touch_is_near_in_time(seed: int) -> None:
     """Against every moment looked at by itself."""
     chance = random.Random(seed)

@@ -19,6 +19,7 @@ from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 from tests.modules.conftest import Stand
+from tests.tables import for_each
 
 Make = Callable[..., Stand]
 STREAM, RECORDING, HEARD = "lumen.audio.wav.stream", "avatar.NAO.data.recording", "lumen.audio.speech.recognition"
@@ -223,7 +224,7 @@ def test_what_follows_a_word_has_a_chance_of_one_in_all(sentences: list[list[str
         assert after == pytest.approx(1.0, abs=0.01), word
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("word", "sounds"),
     [("dewi", "D AH W IY"), ("nyanyi", "N Y AA N Y IY"), ("bunga", "B UW NG AA"), ("pantai", "P AA N T AY"), ("'", "")],
 )

@@ -12,6 +12,7 @@ from lumen.modules.ears.voice_activity import VoiceActivity
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 from tests.modules.conftest import Stand, with_options
+from tests.tables import for_each
 
 Make = Callable[..., Stand]
 RATE = 16_000
@@ -112,7 +113,7 @@ def test_an_end_that_nobody_tells_leaves_it_deaf_for_a_minute_at_most() -> None:
     assert voice.during(10.0 + LONGEST + ECHO, 100.0) == []
 
 
-@pytest.mark.parametrize("body", [None, 3, {}, {"command": {"verb": "say"}}, {"answer": 3}, {"answer": {"id": "x"}}])
+@for_each("body", [None, 3, {}, {"command": {"verb": "say"}}, {"answer": 3}, {"answer": {"id": "x"}}])
 def test_what_is_no_speech_is_none(body: Any) -> None:
     voice = OwnVoice()
     voice.state(body, 1.0)

@@ -2,14 +2,14 @@
 
 import unicodedata
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.language.people import PersonName, name_key
+from tests.tables import for_each
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("one", "other"),
     [
         ("ünal", "Ünal"),
@@ -30,7 +30,7 @@ def test_one_name_written_in_two_ways(one: str, other: str) -> None:
     assert PersonName(one).taken_from(f"Hello {other}, hello") == "Hello , hello"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "text", "named"),
     [
         ("Ana", "Anabel is here", False),

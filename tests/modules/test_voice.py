@@ -19,6 +19,7 @@ from lumen.modules.voice import Espeak, Voice, espeak
 from lumen.robots.none import NoRobot
 from lumen.robots.simulation import SimulatedRobot
 from tests.modules.conftest import Stand
+from tests.tables import for_each
 
 Make = Callable[..., Stand]
 STREAM, SPOKEN = "lumen.audio.text.stream", "lumen.audio.text.to.speech"
@@ -64,7 +65,7 @@ def test_each_language_sounds_different() -> None:
     assert espeak().speak(text, "id").duration == pytest.approx(indonesian.duration, abs=0.01)
 
 
-@pytest.mark.parametrize("text", ["", " ", "\x00\x1b[2J", "[[h@l'oU]] <speak>", "é" * 3_000, "\ud800", "'; rm -rf /"])
+@for_each("text", ["", " ", "\x00\x1b[2J", "[[h@l'oU]] <speak>", "é" * 3_000, "\ud800", "'; rm -rf /"])
 def test_takes_any_text(text: str) -> None:
     assert espeak().speak(text).duration < 180.0
 

@@ -13,11 +13,12 @@ from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 from lumen.motion import Motion
 from tests.motions.making import nao, read
+from tests.tables import for_each
 
 CASES = sorted((Path(__file__).parent / "broken").glob("*.yaml"))
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+@for_each("case", CASES, ids=lambda case: case.stem)
 def test_every_fault_is_found_at_its_place_and_nothing_else(case: Path) -> None:
     text = case.read_text()
     _, diagnostics = read(text, name=case.stem)
@@ -51,9 +52,7 @@ def test_a_million_keyframes_are_refused_at_once() -> None:
         Motion.from_dict({"keyframes": [{"at": "1s", "joints": {"HeadYaw": 0.1}}] * 1_000_000})
 
 
-@pytest.mark.parametrize(
-    "text", ["[]", "3", "{}", "keyframes: 3", "keyframes: []", "keyframes: [3]", "keyframes: {a: 1}"]
-)
+@for_each("text", ["[]", "3", "{}", "keyframes: 3", "keyframes: []", "keyframes: [3]", "keyframes: {a: 1}"])
 def test_what_is_no_motion_is_said_and_not_built(text: str) -> None:
     motion, diagnostics = read(text)
     assert motion is None

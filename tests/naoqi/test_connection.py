@@ -15,6 +15,7 @@ from lumen.robots.naoqi.session import address
 from tests.naoqi.conftest import Live
 from tests.naoqi.fake import FakeNao
 from tests.naoqi.lockstep import Lockstep
+from tests.tables import for_each
 from tests.waiting import until
 
 
@@ -41,7 +42,7 @@ def test_addresses(url: str, whole: str) -> None:
     assert address(url) == whole
 
 
-@pytest.mark.parametrize("url", ["", "tcp://", "http://nao.local:80", "tcp://nao.local:port", "tcp://:9559"])
+@for_each("url", ["", "tcp://", "http://nao.local:80", "tcp://nao.local:port", "tcp://:9559"])
 def test_what_is_no_address(url: str) -> None:
     with pytest.raises(RobotError, match=r"write tcp://nao\.local:9559"):
         address(url)

@@ -9,6 +9,7 @@ import pytest
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
 from lumen.rules.ways import _followers
 from lumen.statechart import Machine
+from tests.tables import for_each
 from tests.tour.names import ROOT
 
 HALL = (Path(ROOT) / "models" / "hall.xml").read_bytes()
@@ -53,7 +54,7 @@ def hall(geom: str, more: str = "") -> bytes:
     return f'<mujoco>{more}<worldbody><site name="stage"/>{geom}</worldbody></mujoco>'.encode()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("geom", "distance"),
     [
         ('<geom type="box" size=".5 .1 .5" pos="2 0 0"/>', 1.5),

@@ -22,6 +22,7 @@ from lumen.language.projects import Project
 from lumen.ports import Message
 from tests.journal.making import minimal
 from tests.recording.making import bodies, picture, said
+from tests.tables import for_each
 from tests.waiting import until
 
 
@@ -129,7 +130,7 @@ def test_whom_the_memory_forgets_no_recording_names(tmp_path: Path) -> None:
     assert ("lumen.heard", {"result": "hello"}) in bodies(path)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("key", "body", "why"),
     [
         ("lumen.operator.request", {"ask": "mark", "text": "he waved"}, "mark he waved"),

@@ -21,6 +21,7 @@ from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 from tests.guarded import run_guarded
+from tests.tables import for_each
 from tests.tour.names import ROOT
 
 FILES = read_files(ROOT)
@@ -155,7 +156,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
 ]
 
 
-@pytest.mark.parametrize(("edits", "told", "greatest"), [c[1:] for c in CASES], ids=[c[0] for c in CASES])
+@for_each(("edits", "told", "greatest"), [c[1:] for c in CASES], ids=[c[0] for c in CASES])
 def test_a_change_is_told(edits: list[tuple[str, str, str]], told: list[str], greatest: Risk) -> None:
     found = changes(PLAIN, edited(*edits))
     assert [change.sentence for change in found] == told

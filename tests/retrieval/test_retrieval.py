@@ -18,6 +18,7 @@ from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.trials import tried, weights_of
 from lumen.interpreters.retrieval.words import stems
 from lumen.language.knowledge import Passage, QuestionSet
+from tests.tables import for_each
 
 PASSAGES = (
     Passage("height", {"en": ("how tall are you",)}, {"en": "Small."}, who=("NAO",)),
@@ -35,8 +36,8 @@ def test_a_question_in_other_words_finds_its_passage(method: str) -> None:
     assert retriever.features("kereta")[:, 0].max() < 0.2
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("question", ["", "?!", "x" * 10_000, "\u0000", "quux"])
+@for_each("method", METHODS)
+@for_each("question", ["", "?!", "x" * 10_000, "\u0000", "quux"])
 def test_whatever_is_said_has_features(method: str, question: str) -> None:
     retriever = Retriever(PASSAGES, "en", method=METHODS[method])
     features = retriever.features(question)

@@ -27,6 +27,7 @@ from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import NaoqiSession
 from lumen.robots.simulation import SimulatedRobot
 from tests.naoqi.fake import FakeNao
+from tests.tables import for_each
 from tests.tour.conftest import project
 from tests.tour.names import ROOT
 
@@ -118,7 +119,7 @@ CAUSES: dict[str, tuple[type[RobotError], Callable[[Project], object]]] = {
 }
 
 
-@pytest.mark.parametrize("cause", CAUSES)
+@for_each("cause", CAUSES)
 def test_each_cause_has_its_class(project: Project, cause: str) -> None:
     expected, provoke = CAUSES[cause]
     with pytest.raises(RobotError) as caught:

@@ -12,6 +12,7 @@ from lumen.loading.schema import load_schema
 from lumen.robots.naoqi.hardware import NAO, PEPPER
 from lumen.robots.naoqi.lights import NAOQI_COLOURS, fades
 from lumen.robots.simulation.lights import RENDERED_COLOURS, rendered
+from tests.tables import for_each
 
 
 def test_the_colours_are_those_of_css() -> None:
@@ -25,7 +26,7 @@ def test_a_colour_is_a_name_or_six_digits(colour: str, value: int) -> None:
     assert rgb(colour) == value
 
 
-@pytest.mark.parametrize("colour", ["#12g", "#12a0fg", "12a0ff", "#12a0ff ", "Blue", "", 5, None, ["blue"]])
+@for_each("colour", ["#12g", "#12a0fg", "12a0ff", "#12a0ff ", "Blue", "", 5, None, ["blue"]])
 def test_anything_else_is_no_colour(colour: object) -> None:
     assert rgb(colour) is None
     assert light_fault("eyes", colour)

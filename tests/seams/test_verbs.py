@@ -61,6 +61,7 @@ from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.statechart import Machine
 from tests.exhibits import BODY, project
+from tests.tables import for_each
 from tests.tour.names import ROOT
 
 ACTION = load_schema("behavior")["$defs"]["action"]["properties"]
@@ -124,7 +125,7 @@ def test_every_action_has_one_row() -> None:
     assert {type(sample) for sample in SAMPLES} == {row.command for row in COMMANDS} == set(get_args(RobotCommand))
 
 
-@pytest.mark.parametrize("verb", VERBS, ids=lambda verb: verb.command.__name__)
+@for_each("verb", VERBS, ids=lambda verb: verb.command.__name__)
 def test_the_fields_of_a_row_are_those_of_the_command_and_of_the_schema(verb: Any) -> None:
     assert [field.name for field in verb.fields] == [
         field.name for field in fields(verb.command) if field.metadata.get("yaml", True)
@@ -154,7 +155,7 @@ def test_the_schemas_the_loader_and_the_docs_know_every_verb() -> None:
     assert [name for name in ACTION if not ACTION[name].get("description")] == ["if"]  # it says what an expression is
 
 
-@pytest.mark.parametrize(("name", "data"), examples())
+@for_each(("name", "data"), examples())
 def test_what_the_yaml_says_is_read_and_written_and_read_again(name: str, data: Any) -> None:
     action = loaded(name, data)
     written = plain_action(action)
@@ -184,7 +185,7 @@ def body_commands() -> list[BodyCommand]:
     return [Say("hello", "en"), *(action for action in written if isinstance(action, VerbCommand))]
 
 
-@pytest.mark.parametrize("command", body_commands(), ids=str)
+@for_each("command", body_commands(), ids=str)
 def test_who_watches_from_another_process_sees_every_command(command: BodyCommand) -> None:
     exhibit, bus, heard = project(), MemoryBus(), Heard()
     subscriber = TraceSubscriber(exhibit, bus, lambda _: None)
@@ -194,12 +195,12 @@ def test_who_watches_from_another_process_sees_every_command(command: BodyComman
     assert heard.commands == [Start("c1", command)]
 
 
-@pytest.mark.parametrize("command", SAMPLES, ids=lambda command: type(command).__name__)
+@for_each("command", SAMPLES, ids=lambda command: type(command).__name__)
 def test_every_command_crosses_the_bus(command: RobotCommand) -> None:
     assert decode_command(json.loads(json.dumps(encode_command(command))), project()) == command
 
 
-@pytest.mark.parametrize("command", SAMPLES, ids=lambda command: type(command).__name__)
+@for_each("command", SAMPLES, ids=lambda command: type(command).__name__)
 def test_the_recording_robot_performs_every_command(command: RobotCommand) -> None:
     row, robot = row_of(command), RecordingRobot(BODY)
     assert row.parts(command, BODY) <= set(PARTS)

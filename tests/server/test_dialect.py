@@ -12,6 +12,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.ports import Aim, Perform, Record
 from lumen.robots.command_codec import decode_command
 from tests.exhibits import project
+from tests.tables import for_each
 
 PROJECT = project()
 
@@ -20,7 +21,7 @@ def order(method: str, /, **parameter: Any) -> dict[str, Any]:
     return {"type": "motion", "method": method, "parameter": parameter}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "command"),
     [
         (order("wakeup"), Wake()),
@@ -55,7 +56,7 @@ def test_methods(body: dict[str, Any], command: object) -> None:
     assert decode_command(body, PROJECT, lambda: {"HeadYaw": 0.5}) == command
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("method", "motion"),
     [("goodbye", "goodbye"), ("dance", "dance"), ("Dancing", "dance"), ("sing", "sing"), ("singing", "sing"),
      ("photopose", "photo")],
@@ -84,7 +85,7 @@ def test_a_number_beyond_all_bounds_is_refused(number: float) -> None:
             decode_command(body, PROJECT)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "body",
     [
         order("a\nb"),
@@ -102,7 +103,7 @@ def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("body", "says"),
     [
         (order("danse"), "no method `danse`: did you mean `dance`?"),

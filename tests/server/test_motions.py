@@ -8,6 +8,7 @@ import lumen
 from lumen.errors import RobotError
 from lumen.language.projects import Project
 from lumen.robots.motion_codec import MAX_MOTION_DURATION, decode_motion, encode_motion
+from tests.tables import for_each
 from tests.tour.names import ROOT
 
 
@@ -35,7 +36,7 @@ def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
     assert [key.time for key in decode_motion(GOOD, project.body).tracks["HeadPitch"]] == [0.5, 1.0]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "words"),
     [
         ({"tracks": {"Tail": [[1.0, 0.0]]}}, "no joint `Tail`"),

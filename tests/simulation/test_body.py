@@ -13,6 +13,7 @@ from lumen.loading.bodies import build_body
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.yaml_reader import parse
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 NAOQI = [
@@ -52,7 +53,7 @@ def test_the_nao_has_naoqi_s_joints_in_naoqi_s_order() -> None:
     assert {"Stand", "StandInit", "StandZero", "Crouch"} <= body.postures.keys()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("path", "value", "code"),
     [
         (("joints", "HeadYaw", "range"), [1, -1], "empty-range"),

@@ -11,11 +11,12 @@ from lumen.language.robots import Body
 from lumen.loading.files import read_files
 from lumen.motion import Motion
 from tests.simulation.conftest import MODELS
+from tests.tables import for_each
 
 PASSAGES = sorted((MODELS / "passages").glob("*.yaml"))
 
 
-@pytest.mark.parametrize("path", PASSAGES, ids=lambda path: path.stem)
+@for_each("path", PASSAGES, ids=lambda path: path.stem)
 def test_its_numbers_written_again_are_the_file(body: Body, path: Path) -> None:
     text = Text(path.read_text("utf-8"), body)
     assert text.written(text.numbers) == path.read_text("utf-8")

@@ -9,6 +9,7 @@ from lumen.interpreters.statechart import initial, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.events import Event
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 TOUR: dict[str, Any] = {
     "type": "parallel",
@@ -39,7 +40,7 @@ def go(name: str, snapshot: Any = HELD) -> Any:
     return entered_directly(MACHINE, snapshot, name, Event("operator.goto", {"by": "ada"}, 3.0))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "exited", "entered"),
     [
         ("offer", ("guide.talking.greet",), ("offer",)),

@@ -15,6 +15,7 @@ from lumen.interpreters.statechart.invocations import open_context
 from lumen.interpreters.statechart.step_writer import StepWriter
 from lumen.language.commands import Start
 from lumen.statechart import Event, Interpreter, Machine, due, initial
+from tests.tables import for_each
 
 GUARDS = [
     "true",
@@ -230,7 +231,7 @@ PLAIN: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", PLAIN)
+@for_each("name", PLAIN)
 def test_plain_steps_are_taken_short(name: str) -> None:
     machine = Machine.from_dict({"context": {"n": 0}, **PLAIN[name]})
     snapshot = initial(machine, language="en").snapshot

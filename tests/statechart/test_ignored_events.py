@@ -2,13 +2,12 @@
 
 from typing import Any
 
-import pytest
-
 from lumen.app.ignoring import BURST, IgnoredEvents
 from lumen.interpreters.statechart import initial, step
 from lumen.interpreters.statechart.ignored_events import ignored
 from lumen.language.events import Event
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 GUIDE: dict[str, Any] = {
     "type": "parallel",
@@ -48,7 +47,7 @@ def told(*said: tuple[str, Any], at: float = 10.0) -> str:
 DANCE, SING = ("heard", {"result": "dance"}), ("heard", {"result": "sing"})
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("events", "line"),
     [
         ([DANCE], ""),

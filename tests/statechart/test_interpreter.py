@@ -10,6 +10,7 @@ from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
 from lumen.interpreters.statechart.stepping import elapse
 from lumen.interpreters.statechart.values import MAX_TIMERS
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
+from tests.tables import for_each
 
 COUNTING = {"assign": {"n": "context.n + 1"}}
 TOUR = {
@@ -134,7 +135,7 @@ def test_a_restored_interpreter_goes_on_with_its_do() -> None:
     assert again.configuration == frozenset({"rest"})
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "difference"),
     [
         ({"id": "other"}, "it is of `tour`"),
@@ -204,7 +205,7 @@ def test_a_context_key_keeps_to_its_whole_schema() -> None:
         initial(machine, input={"n": 7})
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("context", "types", "code"),
     [
         ({"n": "x"}, {"n": {"type": "integer"}}, "wrong-value"),

@@ -15,6 +15,7 @@ from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, SnapshotError, UsageError
 from lumen.interpreters.statechart import serialize
 from lumen.statechart import Event, Interpreter, Machine, initial, step
+from tests.tables import for_each
 
 QUIZ = {"states": {"ask": {"after": {"3s": "end"}}, "end": {"type": "final"}}}
 WAITING = {"states": {"a": {"after": {"4s": "b"}}, "b": {"after": {"4s": "c"}}, "c": None}}
@@ -41,10 +42,8 @@ def saved(data: dict[str, Any], after: float) -> dict[str, Any]:
     return written
 
 
-@pytest.mark.parametrize(("timers", "ends"), [("deadline", 100.0), ("remaining", 102.0), ("restart", 103.0)])
-@pytest.mark.parametrize(
-    "data", [INVOKING, DOING, SENDING, TELLING, DEEP], ids=["invoke", "wait", "send", "to", "two levels"]
-)
+@for_each(("timers", "ends"), [("deadline", 100.0), ("remaining", 102.0), ("restart", 103.0)])
+@for_each("data", [INVOKING, DOING, SENDING, TELLING, DEEP], ids=["invoke", "wait", "send", "to", "two levels"])
 def test_a_timer_that_was_under_way(data: dict[str, Any], timers: Any, ends: float) -> None:
     again = Interpreter.restore(machine(data), saved(data, 1.0), VirtualClock(100.0), timers)
     assert (again.configuration == frozenset({"b"})) is (ends == 100.0)
@@ -89,7 +88,7 @@ def test_the_time_of_day_goes_on_with_the_clock(timers: Any, hour: int) -> None:
     assert again.configuration == frozenset({"b"})
 
 
-@pytest.mark.parametrize("bad", [float("nan"), {"x": [float("inf")]}, {1, 2}, {3: 4}, object(), 10**400])
+@for_each("bad", [float("nan"), {"x": [float("inf")]}, {1, 2}, {3: 4}, object(), 10**400])
 def test_what_json_can_not_hold_is_refused_at_the_door(bad: Any) -> None:
     keeping = Machine.from_dict(
         {"context": {"x": None}, "states": {"a": {"on": {"*": {"actions": {"assign": {"x": "event.data"}}}}}}}
@@ -157,7 +156,7 @@ def change(data: Any, path: tuple[Any, ...], value: Any) -> dict[str, Any]:
     return dict(changed)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("path", "value", "told"),
     [
         (("version",), 2, "of version 2"),
@@ -227,7 +226,7 @@ def test_any_damage_is_refused_or_does_no_harm(damages: list[tuple[tuple[Any, ..
         json.dumps(it.snapshot(), allow_nan=False)
 
 
-@pytest.mark.parametrize("data", [None, [], "text", 7, {}, {"version": 1}, {"version": {}}, [[[[]]]]])
+@for_each("data", [None, [], "text", 7, {}, {"version": 1}, {"version": {}}, [[[[]]]]])
 def test_what_is_no_snapshot_at_all(data: Any) -> None:
     with pytest.raises(SnapshotError):
         Interpreter.restore(machine(RICH), data)

@@ -9,6 +9,7 @@ import pytest
 from lumen.cli.main import main
 from lumen.interpreters.exploration import Exploration, explore
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 SAID = {"type": "object", "properties": {"text": {"type": "string"}}, "required": ["text"]}
 GO: dict[str, Any] = {"go": None, "back": None, "heard": SAID}
@@ -132,7 +133,7 @@ def test_a_key_read_in_another_region_counts() -> None:
     assert "two.stuck" in {finding.state for finding in exploration.findings}
 
 
-@pytest.mark.parametrize(
+@for_each(
     "guard",
     [
         "heard(event.data.text, 'dance')",
@@ -160,7 +161,7 @@ def test_guards_are_tried_both_ways(guard: str) -> None:
     assert walked(states, **more).never_taken == ()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("schema", "guard"),
     [
         ({"type": "integer"}, "event.data.n > 20"),

@@ -10,6 +10,7 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
+from tests.tables import for_each
 from tests.tour.names import ROOT
 
 CHANGE = (ROOT / "docs" / "change-the-tour.md").read_text("utf-8")
@@ -54,7 +55,7 @@ def test_lint_says_what_the_tutorial_quotes(
     assert re.sub(r"\d+ files", "all files", capsys.readouterr().out) == re.sub(r"\d+ files", "all files", quoted)
 
 
-@pytest.mark.parametrize("kind", ["behavior", "story", "motion", "controller", "lumen"])
+@for_each("kind", ["behavior", "story", "motion", "controller", "lumen"])
 def test_the_vocabulary_names_every_key_of_the_schemas(kind: str) -> None:
     schema = json.loads((ROOT / "schemas" / f"{kind}.schema.json").read_text("utf-8"))
     text = re.sub(r"```.*?```", "", VOCABULARY, flags=re.S)

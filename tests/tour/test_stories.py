@@ -11,6 +11,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
 from lumen.loading.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
+from tests.tables import for_each
 from tests.tour.names import GUIDE, ROOT, SAFETY
 from tests.tour.playing import Run, play
 
@@ -34,7 +35,7 @@ def run(project: Project, coverage: Coverage):  # type: ignore[no-untyped-def]
     return played
 
 
-@pytest.mark.parametrize("name", STORIES)
+@for_each("name", STORIES)
 def test_the_story_ends_well(run, project: Project, name: str) -> None:  # type: ignore[no-untyped-def]
     story = run(name)
     assert story.failure == ""
@@ -91,7 +92,7 @@ def test_in_indonesian_only_indonesian_is_said(run) -> None:  # type: ignore[no-
     assert not {"the", "you", "your", "What"} & set(texts.split())
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("clock", "english", "indonesian"),
     [
         ("00:30", "Good morning!", "Selamat pagi!"),

@@ -18,6 +18,7 @@ from lumen.language.stories import (
     Visitor,
     VisitorAction,
 )
+from tests.tables import for_each
 from tests.tour.playing import Run, play
 
 
@@ -80,8 +81,8 @@ def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project,
     assert any("fallen" in line for line in run.logged)
 
 
-@pytest.mark.parametrize("verb", ["say", "play", "posture", "wake", "rest"])
-@pytest.mark.parametrize("how", ["fails", "hangs"])
+@for_each("verb", ["say", "play", "posture", "wake", "rest"])
+@for_each("how", ["fails", "hangs"])
 def test_whatever_of_the_robot_is_broken_it_is_idle_again(project: Project, verb: str, how: str) -> None:
     deeds: list[VisitorAction] = [
         Arrive(Visitor()),

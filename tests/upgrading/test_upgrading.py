@@ -16,6 +16,7 @@ from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.robot_keys import with_robot_keys
 from lumen.rules.upgrading import MIGRATIONS, Migration, Rewriting, renamed_key, upgraded
+from tests.tables import for_each
 
 BASE = Path(__file__).parents[1] / "lint/base"
 ROOT = Path(__file__).parents[2]
@@ -75,7 +76,7 @@ def test_steps_begin_at_the_number_that_the_files_say_and_once_is_enough() -> No
     assert upgraded(after, MADE_UP, 3) == (after, [])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("files", "said"),
     [
         ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, and this Lumen reads 3: install a newer one"),

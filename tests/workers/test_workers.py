@@ -16,6 +16,7 @@ from lumen.cli.main import main
 from lumen.errors import UsageError, WorkersError
 from tests.guarded import PIPE, Guarded
 from tests.house.test_guarded import left
+from tests.tables import for_each
 from tests.waiting import until
 from tests.workers.small_tasks import die, process, square, square_or_die
 
@@ -141,7 +142,7 @@ def test_workers_are_a_number_or_a_cluster() -> None:
     assert workers_of("dask://[::1]:8786").address == "tcp://[::1]:8786"
 
 
-@pytest.mark.parametrize("text", ["0", "-1", "1025", "9" * 5000, "two", "", "dask://", "dask://here", "dask://here:0"])
+@for_each("text", ["0", "-1", "1025", "9" * 5000, "two", "", "dask://", "dask://here", "dask://here:0"])
 def test_what_is_neither_is_refused(text: str) -> None:
     with pytest.raises(UsageError):
         workers_of(text)

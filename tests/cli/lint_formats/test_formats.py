@@ -13,6 +13,7 @@ from lumen.cli.render import FORMATS, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
 from lumen.loading.files import Unreadable
 from tests.fetched import fetched
+from tests.tables import for_each
 
 HERE = Path(__file__).parent
 
@@ -44,7 +45,7 @@ FOUND = Findings(
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@for_each("format", FORMATS)
 def test_findings_read_as_they_did(format: str) -> None:
     expected = next(HERE.glob(f"{format}.*")).read_bytes().decode()
     assert _without_pages(render(format, [FOUND])) + "\n" == expected
@@ -55,7 +56,7 @@ def _without_pages(shown: str) -> str:
     return re.sub(r'"rules": \[\n.*?\n          \]', '"rules": []', shown, flags=re.DOTALL)
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@for_each("format", FORMATS)
 def test_no_findings(format: str) -> None:
     shown = render(format, [Findings((), FILES)])
     assert "error" not in re.sub(r'errors="0"|sarif-v2.1.0/errata01', "", shown)
