@@ -6,6 +6,7 @@ new, …], `write` to its whole content, `nest` to a word in it and the [before,
 hint", and " @ file:line:column" where another place is shown first; it must say nothing else.
 """
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,20 +16,19 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
-from tests.tables import for_each
+from tests.lint.spans import assert_marks_what_is_spoken_of
+from tests.tables import check
 
 HERE = Path(__file__).parent
 BASE = read_files(HERE / "base")
+TABLES = sorted(HERE.glob("*.yaml"))
 
 
-def cases() -> list[Any]:
-    found = []
-    for path in sorted(HERE.glob("*.yaml")):
-        document, diagnostics = parse(path.name, path.read_bytes())
-        assert document
-        assert not diagnostics, diagnostics[0]
-        found += [pytest.param(case, id=f"{path.stem}: {name}") for name, case in document.data.items()]
-    return found
+def cases(table: Path) -> dict[str, Any]:
+    document, diagnostics = parse(table.name, table.read_bytes())
+    assert document
+    assert not diagnostics, diagnostics[0]
+    return document.data
 
 
 def changed(case: dict[str, Any]) -> dict[str, bytes]:
@@ -57,12 +57,18 @@ def test_the_project_the_cases_are_made_from_is_sound() -> None:
 
 
 def test_there_are_many_cases() -> None:
-    assert len(cases()) >= 300
+    assert sum(len(cases(table)) for table in TABLES) >= 671
 
 
-@for_each("case", cases())
-def test_a_mistake_is_found_at_its_word(case: dict[str, Any]) -> None:
-    project, diagnostics = check_files(HERE / "base", changed(case))
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.stem)
+def test_a_mistake_is_found_at_its_word_and_what_is_marked_is_spoken_of(table: Path) -> None:
+    """Each case is linted once; its findings and then its places are judged."""
+    check((name, partial(judge, case)) for name, case in cases(table).items())
+
+
+def judge(case: dict[str, Any]) -> None:
+    files = changed(case)
+    project, diagnostics = check_files(HERE / "base", files)
     found = [said(d) for d in diagnostics]
     for line, expected in zip(found, case["find"], strict=False):
         finding, _, related = expected.partition(" @ ")
@@ -72,3 +78,5 @@ def test_a_mistake_is_found_at_its_word(case: dict[str, Any]) -> None:
         assert related in line, f"found {found}"
     assert len(found) == len(case["find"]), f"found {found}"
     assert (project is None) == any(d.severity == "error" for d in diagnostics)
+    for diagnostic in diagnostics:
+        assert_marks_what_is_spoken_of(diagnostic, files)

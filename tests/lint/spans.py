@@ -1,13 +1,9 @@
 """What lint marks is what it speaks of: what the message quotes stands in the marked text, or is a key above it."""
 
 import re
-from typing import Any
 
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
-from tests.lint.test_cases import HERE, cases, changed
-from tests.tables import for_each
 
 QUOTED = re.compile(r"`([^`]+)`")
 
@@ -44,11 +40,8 @@ def keys(diagnostic: Diagnostic, files: dict[str, bytes]) -> set[str]:
     return names | {f"{one}.{other}" for one in names for other in names}
 
 
-@for_each("case", cases())
-def test_a_place_is_one_of_its_file_and_marks_what_is_spoken_of(case: dict[str, Any]) -> None:
-    files = changed(case)
-    for diagnostic in check_files(HERE / "base", files)[1]:
-        place, text = diagnostic.place, marked(diagnostic, files)
-        assert (place.end_line, place.end_column) >= (place.line, place.column)
-        if QUOTED.search(diagnostic.message) and diagnostic.code not in ELSEWHERE and text.strip():
-            assert spoken_of(diagnostic, text, files), f"{text!r}: {diagnostic}"
+def assert_marks_what_is_spoken_of(diagnostic: Diagnostic, files: dict[str, bytes]) -> None:
+    place, text = diagnostic.place, marked(diagnostic, files)
+    assert (place.end_line, place.end_column) >= (place.line, place.column)
+    if QUOTED.search(diagnostic.message) and diagnostic.code not in ELSEWHERE and text.strip():
+        assert spoken_of(diagnostic, text, files), f"{text!r}: {diagnostic}"
