@@ -10,10 +10,13 @@ from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import _HERE, page
+from tests.tables import for_each
 
-PLAYED = [pytest.mark.physics, pytest.mark.xdist_group("pages")]
-"""Examples that the simulated robot plays: once, in one worker, since what lint says of them is kept."""
-MARKS = {**dict.fromkeys(FAMILIES["physics"], PLAYED), "too-large": [pytest.mark.slow]}
+pytestmark = pytest.mark.xdist_group("pages")
+"""One worker for the whole file: what lint reports of an example is kept for the next test."""
+PLAYED = FAMILIES["physics"]
+"""Codes whose examples the simulated robot plays."""
+SLOW = "too-large"
 
 
 def test_the_project_below_the_examples_is_sound() -> None:
@@ -24,8 +27,8 @@ def test_every_code_has_a_page_and_every_page_a_code() -> None:
     assert {file.stem for file in _HERE.glob("*.md")} == CODES.keys()
 
 
-@pytest.mark.parametrize("code", [pytest.param(code, marks=MARKS.get(code, ())) for code in CODES])
-def test_a_wrong_example_has_its_finding_at_the_marked_word_and_the_right_one_none(code: str) -> None:
+def judge(code: str) -> None:
+    """Assert that lint finds in the wrong example its code at the marked word, and nothing in the right one."""
     wrong, right = page(code).wrong, page(code).right
     (marked,) = [sheet for sheet in wrong if sheet.mark]
     line, first, last = marked.mark or (0, 0, 0)
@@ -36,7 +39,23 @@ def test_a_wrong_example_has_its_finding_at_the_marked_word_and_the_right_one_no
     assert said(right) == []
 
 
-@pytest.mark.parametrize("code", CODES)
+@for_each("code", [code for code in CODES if code not in PLAYED and code != SLOW])
+def test_a_wrong_example_has_its_finding_at_the_marked_word_and_the_right_one_none(code: str) -> None:
+    judge(code)
+
+
+@pytest.mark.slow
+def test_so_has_the_example_that_is_too_large() -> None:
+    judge(SLOW)
+
+
+@pytest.mark.physics
+@for_each("code", PLAYED)
+def test_so_have_examples_that_the_simulated_robot_plays(code: str) -> None:
+    judge(code)
+
+
+@for_each("code", CODES)
 def test_a_page_says_what_and_why_in_few_words(code: str) -> None:
     found = page(code)
     assert found.what.endswith(".")
@@ -46,7 +65,6 @@ def test_a_page_says_what_and_why_in_few_words(code: str) -> None:
 
 
 @pytest.mark.physics
-@pytest.mark.xdist_group("pages")
 def test_the_docs_are_what_the_pages_say() -> None:
     there = {file.name: file.read_text(encoding="utf-8") for file in DOCS.glob("*.md")}
     assert there == written(), "run `python scripts/rule_pages.py`"
