@@ -8,6 +8,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -31,11 +32,8 @@ class Case:
     driver: Mapping[str, Any] | None
 
     def read(self) -> tuple[dict[str, Any] | None, list[Diagnostic]]:
-        """What the importer makes of the chart."""
-        try:
-            return read_scxml(self.chart.name, self.chart.read_bytes(), "chart")
-        except ForeignFileError as error:
-            return None, [error.diagnostic]
+        """What the importer makes of the chart; read once, so nobody may change it."""
+        return _read(self.chart)
 
     def complaints(self) -> list[str]:
         """What can't be carried over of the chart, and of those in other files that it invokes."""
@@ -52,6 +50,14 @@ class Case:
     def behaviors(self) -> dict[str, dict[str, Any]]:
         """What it invokes, as the importer makes it."""
         return {name: data for name, case in self.invoked().items() if (data := case.read()[0])}
+
+
+@cache
+def _read(chart: Path) -> tuple[dict[str, Any] | None, list[Diagnostic]]:
+    try:
+        return read_scxml(chart.name, chart.read_bytes(), "chart")
+    except ForeignFileError as error:
+        return None, [error.diagnostic]
 
 
 def machine_of(data: Mapping[str, Any]) -> Machine:
