@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Iterator
 from pathlib import Path
 
-from scripts.documented import ROOT, all_pages, available, blocks, check, differing
+from scripts.documented import ROOT, all_pages, available, check, differing
 
 from lumen.cli.intermixed import Intermixed
 from lumen.cli.main import MODULES, VERBS
@@ -47,14 +47,6 @@ def can_be_typed(command: str) -> bool:
 @for_each("page", all_pages(), ids=lambda page: page.name)
 def test_every_command_of_a_page_is_one_that_lumen_takes(page: Path) -> None:
     assert [command for command in commands(page) if not can_be_typed(command)] == []
-
-
-@for_each("page", all_pages(), ids=lambda page: page.name)
-def test_blocks_say_nothing_that_the_runner_does_not_know(page: Path) -> None:
-    for block in blocks(page):
-        keys = {word.partition("=")[0] for word in block.words}
-        assert keys <= {"in", "file", "append", "ends", "physics", "broker", "robot", "network"}, block.place
-        assert block.language != "console" or block.text.startswith("$ "), block.place
 
 
 def test_what_the_tutorial_shows_is_printed() -> None:

@@ -1,0 +1,195 @@
+"""Checks the repository's own order: `python scripts/check.py` lists whatever is out of order; `make check` runs it.
+
+Each check is a loop over files or rows. It yields the name of each and what is wrong with it, empty if nothing is. A
+loop that finds too few things to look at has failed: its pattern no longer matches.
+"""
+
+import re
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import yaml
+from documented import all_pages, blocks
+
+from lumen.loading.files import PROJECT_FOLDERS
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
+WORKFLOWS = ["action.yml", ".github/workflows/tests.yml", ".pre-commit-hooks.yaml"]
+REQUIREMENTS = [f"requirements{part}.txt" for part in ("-core", "", "-no-deps", "-test", "-docs")]
+SIMULATION = {"mujoco", "dm-control", "scipy", "pillow", "imageio-ffmpeg", "matplotlib", "labmaze"}
+"""Packages that the core must not require."""
+BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "network"}
+"""What the fence of a block in the documentation may say to the runner."""
+
+BLOCK = re.compile(r"(?m)^(?:```|````)[\s\S]*?^(?:```|````)$")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"(?m)^#+ (.+)$")
+
+Looked = tuple[str, str]
+"""The name of what was looked at, and what is wrong with it."""
+Check = Callable[[], Iterable[Looked]]
+
+
+def actions_are_named_by_their_commits() -> Iterator[Looked]:
+    for path in [*(ROOT / name for name in WORKFLOWS), ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]:
+        named = re.findall(r"uses: *\S+@(\S+)", path.read_text(encoding="utf-8"))
+        loose = [ref for ref in named if not re.fullmatch(r"[0-9a-f]{40}|COMMIT", ref)]
+        yield _name(path), _listed("pin by the 40 digits of a commit", loose)
+
+
+def packages_are_pinned_by_the_hashes_of_their_files() -> Iterator[Looked]:
+    for file in REQUIREMENTS:
+        yield file, "names an index" if "//" in (ROOT / file).read_text(encoding="utf-8") else ""
+        for package, version, hashes in requirements(file):
+            yield f"{file}: {package}", "" if version and hashes else "pin by a version and the hashes of its files"
+
+
+def packages_are_pinned_to_one_version() -> Iterator[Looked]:
+    versions: dict[str, set[str]] = {}
+    for file in REQUIREMENTS:
+        for package, version, _ in requirements(file):
+            versions.setdefault(package, set()).add(version)
+    for package, found in versions.items():
+        yield package, _listed("pin to one version", sorted(found)) if len(found) > 1 else ""
+
+
+def the_core_needs_no_simulation() -> Iterator[Looked]:
+    core, whole = ({package for package, _, _ in requirements(file)} for file in REQUIREMENTS[:2])
+    for package in sorted(core):
+        yield f"requirements-core.txt: {package}", "belongs to requirements.txt only" if package in SIMULATION else ""
+    for package in sorted(SIMULATION - {"scipy", "labmaze"}):
+        yield f"requirements.txt: {package}", "" if package in whole else "is missing"
+
+
+def set_up_checks_the_hashes() -> Iterator[Looked]:
+    rows = (ROOT / "Makefile").read_text(encoding="utf-8").replace("\\\n", " ").splitlines()
+    for row in rows:
+        if "pip install" in row:
+            checked = "--require-hashes" in row or "--no-deps --no-build-isolation" in row
+            yield row.strip(), "" if checked else "install with --require-hashes"
+
+
+def links_lead_to_files_and_headings() -> Iterator[Looked]:
+    for page in PAGES:
+        lost = []
+        for link in LINK.findall(BLOCK.sub("", page.read_text(encoding="utf-8"))):
+            if re.match(r"[a-z]+:", link):
+                continue
+            file, _, anchor = link.partition("#")
+            target = page.parent / file if file else page
+            if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
+                lost.append(link)
+        yield _name(page), _listed("lead nowhere", lost)
+
+
+def the_index_lists_every_page() -> Iterator[Looked]:
+    listed = set(re.findall(r"(?m)^- \[[^\]]+\]\(([\w./-]+)\)", (DOCS / "README.md").read_text(encoding="utf-8")))
+    there = {file.relative_to(DOCS).as_posix() for file in [*DOCS.glob("*.md"), *DOCS.glob("*/README.md")]}
+    for page in sorted(there - {"README.md"}):
+        yield f"docs/{page}", "" if page in listed else "add it to docs/README.md"
+
+
+def the_list_of_decisions_is_complete_and_calls_each_by_its_title() -> Iterator[Looked]:
+    text = (DOCS / "decisions/README.md").read_text(encoding="utf-8")
+    rows = [
+        (link, f"{number} {title}") for number, link, title in re.findall(r"(?m)^- \[(\d+)\]\(([^)]+)\) (.+)$", text)
+    ]
+    files = sorted((DOCS / "decisions").glob("[0-9]*.md"))
+    titles = [re.sub(r"^# (\d+):? ", r"\1 ", file.read_text(encoding="utf-8").partition("\n")[0]) for file in files]
+    expected = [(file.name, title) for file, title in zip(files, titles, strict=True)]
+    for number, row in enumerate(expected):
+        shown = rows[number] if number < len(rows) else "nothing"
+        yield f"docs/decisions/{row[0]}", "" if shown == row else f"the list has {shown} where {row} belongs"
+    for row in rows[len(expected) :]:
+        yield f"docs/decisions/{row[0]}", "is listed and is not there"
+
+
+def the_page_about_the_environment_names_every_variable() -> Iterator[Looked]:
+    page = (DOCS / "environment.md").read_text(encoding="utf-8")
+    code = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "engine/lumen").rglob("*.py"))
+    read = set(re.findall(r'"(LUMEN_[A-Z_]+)"', code)) | set(re.findall(r'environ(?:\.get\(|\[)"(\w+)"', code))
+    for name in sorted(read - {"GITHUB_WORKSPACE", "LOCALAPPDATA", "TERM"}):
+        yield name, "" if f"`{name}`" in page else "is read by the engine: add it to docs/environment.md"
+
+
+def blocks_of_pages_say_what_the_runner_knows() -> Iterator[Looked]:
+    for page in all_pages():
+        for block in blocks(page):
+            unknown = sorted({word.partition("=")[0] for word in block.words} - BLOCK_WORDS)
+            bare = block.language == "console" and not block.text.startswith("$ ")
+            wrong = [*unknown, *["a console block begins with `$ `"] * bare]
+            yield str(block.place), _listed("the runner does not know", wrong)
+
+
+def pyyaml_reads_the_shipped_files() -> Iterator[Looked]:
+    """PyYAML has YAML 1.1; tests/house/test_other_readers.py has the npm package, which knows 1.2 as well."""
+    for path in [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in sorted((ROOT / name).rglob("*.yaml")))]:
+        try:
+            wrong = "" if yaml.safe_load(path.read_text("utf-8")) else "is empty to PyYAML"
+        except yaml.YAMLError as error:
+            wrong = str(error)
+        yield _name(path), wrong
+
+
+CHECKS: dict[Check, int] = {
+    actions_are_named_by_their_commits: 150,
+    packages_are_pinned_by_the_hashes_of_their_files: 100,
+    packages_are_pinned_to_one_version: 100,
+    the_core_needs_no_simulation: 10,
+    set_up_checks_the_hashes: 5,
+    links_lead_to_files_and_headings: 150,
+    the_index_lists_every_page: 40,
+    the_list_of_decisions_is_complete_and_calls_each_by_its_title: 80,
+    the_page_about_the_environment_names_every_variable: 8,
+    blocks_of_pages_say_what_the_runner_knows: 120,
+    pyyaml_reads_the_shipped_files: 120,
+}
+"""Each check, and how many things it looks at, at least."""
+
+
+def wrong(check: Check, at_least: int) -> list[str]:
+    """What a check found to be out of order, a line for each."""
+    looked = list(check())
+    said = [f"{name}: {problem}" for name, problem in looked if problem]
+    few = f"looked at {len(looked)} things, not at least {at_least}: its pattern no longer matches"
+    return [*said, *[few] * (len(looked) < at_least)]
+
+
+def requirements(file: str) -> Iterator[tuple[str, str, int]]:
+    """Name, version and number of hashes of each requirement in a file; a row that is no pin has an empty version."""
+    text = re.sub(r"(?m)^(#|-r requirements-core.txt).*\n", "", (ROOT / file).read_text(encoding="utf-8"))
+    for row in text.replace("\\\n", " ").splitlines():
+        found = re.match(r"([A-Za-z0-9._-]+)==([^ ;]+)", row)
+        name, version = found.groups() if found else (row[:60], "")
+        yield name, version, len(re.findall(r"--hash=sha256:[0-9a-f]{64}\b", row))
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors of a page's headings, as GitHub and the site make them."""
+    text = BLOCK.sub("", page.read_text(encoding="utf-8"))
+    plain = (re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading) for heading in HEADING.findall(text))
+    return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in plain}
+
+
+def _listed(problem: str, found: list[str]) -> str:
+    return f"{problem}: {', '.join(found)}" if found else ""
+
+
+def _name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def main() -> int:
+    failed = {
+        check.__name__.replace("_", " "): found for check, least in CHECKS.items() if (found := wrong(check, least))
+    }
+    for name, found in failed.items():
+        print(f"{name}:", *found, sep="\n  ")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
