@@ -22,14 +22,14 @@ REQUIREMENTS = [f"requirements{part}.txt" for part in ("-core", "", "-no-deps", 
 SIMULATION = {"mujoco", "dm-control", "scipy", "pillow", "imageio-ffmpeg", "matplotlib", "labmaze"}
 """Packages that the core must not require."""
 BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "network"}
-"""What the fence of a block in the documentation may say to the runner."""
+"""The words to the runner that the fence of a block may carry."""
 
 BLOCK = re.compile(r"(?m)^(?:```|````)[\s\S]*?^(?:```|````)$")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"(?m)^#+ (.+)$")
 
 Looked = tuple[str, str]
-"""The name of what was looked at, and what is wrong with it."""
+"""The name of a thing and the problem with it, empty if there is none."""
 Check = Callable[[], Iterable[Looked]]
 
 
@@ -151,7 +151,7 @@ CHECKS: dict[Check, int] = {
 
 
 def wrong(check: Check, at_least: int) -> list[str]:
-    """What a check found to be out of order, a line for each."""
+    """Return a line for each problem that a check found."""
     looked = list(check())
     said = [f"{name}: {problem}" for name, problem in looked if problem]
     few = f"looked at {len(looked)} things, not at least {at_least}: its pattern no longer matches"

@@ -32,7 +32,7 @@ class Case:
     driver: Mapping[str, Any] | None
 
     def read(self) -> tuple[dict[str, Any] | None, list[Diagnostic]]:
-        """What the importer makes of the chart; read once, so nobody may change it."""
+        """Return the importer's result for the chart; it is shared, so do not change it."""
         return _read(self.chart)
 
     def complaints(self) -> list[str]:
