@@ -46,7 +46,7 @@ def test_a_function_reads_as_its_name_and_first_line() -> None:
 
     assert source_of(settled).endswith("settled(): Whether nothing moves.")
     assert source_of([].clear).startswith("<built-in method clear of list")
-    with pytest.raises(AssertionError, match="waited 0.01 s for: .*settled"):
+    with pytest.raises(AssertionError, match=r"waited 0\.01 s for: .*settled"):
         until(settled, SHORT)
     with pytest.raises(AssertionError, match="built-in method clear"):
         until([].clear, SHORT)  # type: ignore[func-returns-value]
