@@ -8,6 +8,8 @@ from collections import deque
 from contextlib import suppress
 from typing import Any
 
+from tests.waiting import HANG
+
 CHUNK = 1 << 16
 LOOK = 0.02
 
@@ -56,7 +58,7 @@ class Relay:
         self._listener.close()
         self.reset()
         for thread in (self._thread, *self._threads):
-            thread.join(5)
+            thread.join(HANG)
 
     def _admit(self) -> None:
         with suppress(OSError):

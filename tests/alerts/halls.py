@@ -1,7 +1,6 @@
 """A small exhibition that tells a server on loopback, whole or in parts on one bus, as fast as it can."""
 
 import shutil
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -26,6 +25,7 @@ from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from tests.alerts.servers import Web
 from tests.nodes import Printed
+from tests.waiting import until
 
 BASE = Path(__file__).parents[1] / "lint/pages/base"
 TOUR = """id: tour
@@ -38,7 +38,6 @@ states:
     onDone: idle
     onError: idle
 """
-DEADLINE = 30.0
 
 
 def files(folder: Path, web: Web) -> Path:
@@ -115,11 +114,7 @@ class Hall:
         self.robot._notice(Event(name, data, self.robot.time))
 
     def until(self, condition: Callable[[], object]) -> None:
-        deadline = time.monotonic() + DEADLINE
-        while not condition():
-            for node in self.nodes:
-                node.tick()
-            assert time.monotonic() < deadline, [body["text"] for body in self.web.bodies]
+        until(condition, meanwhile=lambda: self.live(1), shown=lambda: [body["text"] for body in self.web.bodies])
 
     def told(self, kind: str) -> str:
         """What was told first of that kind, once it was."""

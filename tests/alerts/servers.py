@@ -11,7 +11,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 
 class Web:
@@ -26,7 +26,7 @@ class Web:
 
         class Handler(BaseHTTPRequestHandler):
             def do_POST(self) -> None:
-                web.hold.wait(30.0)
+                web.hold.wait(HANG)
                 body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
                 status = web.statuses.pop(0) if web.statuses else 200
                 web.heads.append(dict(self.headers))

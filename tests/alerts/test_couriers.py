@@ -19,7 +19,7 @@ from lumen.app.alerts.ration import Ration
 from lumen.errors import UndeliveredError
 from lumen.language.alerts import Alerts, Program, QuietHours, Recipient, Webhook
 from tests.alerts.servers import Web
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 FELL, STOPPED = Alert("fallen", "it fell"), Alert("stopped", "somebody stopped it")
 NIGHT = QuietHours(TimeOfDay(22), TimeOfDay(7))
@@ -106,7 +106,7 @@ class Stand:
 
     def _deliver(self, alert: Alert) -> None:
         self.tries += 1
-        self.gate.wait(20.0)
+        self.gate.wait(HANG)
         if self.faults:
             raise self.faults.pop(0)
         self.arrived.append(alert)

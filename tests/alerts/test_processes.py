@@ -16,9 +16,6 @@ from tests.guarded import DEVNULL, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
-BEGUN = 60.0
-"""Within this time [s] a process is up and has told, also where the machine has much else to do."""
-
 
 @pytest.fixture
 def hall(tmp_path: Path, web: Callable[..., Web]) -> tuple[Path, Web]:
@@ -49,13 +46,13 @@ def test_an_exhibition_that_is_stopped_killed_and_begun_again(
 ) -> None:
     folder, web = hall
     first = start(folder)
-    until(lambda: (folder / ".lumen/snapshot.json").exists(), BEGUN)
+    until(lambda: (folder / ".lumen/snapshot.json").exists())
     first.send_signal(signal.SIGINT)
-    until(lambda: web.of("stopped"), BEGUN)
+    until(lambda: web.of("stopped"))
     first.kill()
     first.wait()
     second = start(folder)
-    until(lambda: web.of("crashed"), BEGUN)
+    until(lambda: web.of("crashed"))
     second.send_signal(signal.SIGTERM)
     second.wait()
     assert {body["text"].partition(": ")[2].partition(" after")[0] for body in web.bodies} == {
@@ -72,9 +69,9 @@ def test_a_brain_that_is_killed(hall: tuple[Path, Web], start: Callable[..., Gua
     bus.subscribe("lumen.presence", said)
     start(folder, "--only", "robot", url=broker.url)
     brain = start(folder, "--only", "brain", url=broker.url)
-    until(lambda: any(body.get("follows") for body in said.bodies), BEGUN)
+    until(lambda: any(body.get("follows") for body in said.bodies))
     bus.close()
     brain.kill()
-    until(lambda: web.of("lost"), BEGUN)
+    until(lambda: web.of("lost"))
     assert web.of("lost")[0]["text"].endswith("the brain is gone, and the robot rests")
     assert [body["parts"] for body in web.bodies] == [["robot"]]

@@ -17,7 +17,7 @@ from lumen.upkeep.threads import MAX_FAULTS, MessageGuard, ThreadWatch, WatchedT
 from tests.exhibits import project
 from tests.nodes import Printed, whole
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 LOG = logging.getLogger("test")
 
@@ -52,8 +52,8 @@ def test_what_fails_is_begun_again(error: BaseException, caplog: pytest.LogCaptu
     work = Failing(MAX_FAULTS - 1, error)
     thread = WatchedThread("a", work)
     thread.start()
-    assert work.done.wait(20)
-    assert thread.join(20)
+    assert work.done.wait(HANG)
+    assert thread.join(HANG)
     assert thread.lost == ""
     assert caplog.text.count("the thread `a` failed") == MAX_FAULTS - 1
 
@@ -74,7 +74,7 @@ def test_a_thread_that_died_without_a_word_is_begun_again() -> None:
 
     def work() -> None:
         begun.append(1)
-        go.wait(20)
+        go.wait(HANG)
 
     thread = WatchedThread("a", work)
     thread.start()
@@ -87,8 +87,8 @@ def test_a_thread_that_died_without_a_word_is_begun_again() -> None:
     until(lambda: len(begun) == 2)
     go.set()
     assert living
-    living.join(20)
-    assert thread.join(20)
+    living.join(HANG)
+    assert thread.join(HANG)
     ThreadWatch().tick()
     assert len(begun) == 2, "what has ended is not begun again"
 
@@ -98,7 +98,7 @@ def test_nobody_begins_a_thread_again_whose_owner_has_ended_it() -> None:
 
     def work() -> None:
         asked.append(1)
-        go.wait(20)
+        go.wait(HANG)
         raise ValueError
 
     thread = WatchedThread("a", work)
@@ -106,7 +106,7 @@ def test_nobody_begins_a_thread_again_whose_owner_has_ended_it() -> None:
     until(lambda: asked)
     assert not thread.join(0.0)
     go.set()
-    assert thread.join(20)
+    assert thread.join(HANG)
     assert len(asked) == 1
 
 
@@ -156,7 +156,7 @@ def test_a_connection_whose_thread_is_killed_comes_back(bus: Any, monkeypatch: p
 
     monkeypatch.setattr(consumer, "process", process)
     bus.publish("lumen.again", 1)
-    assert killed.wait(20)
+    assert killed.wait(HANG)
     until(lambda: consumer.connection and all(s.epoch == consumer._epoch == 2 for s in consumer.subscriptions()))
     bus.publish("lumen.again", 2)
     until(lambda: seen.bodies[-1:] == [2])

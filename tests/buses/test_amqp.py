@@ -14,7 +14,7 @@ from lumen.buses.amqp import CLOSE_TIMEOUT
 from lumen.buses.outbox import OutgoingMessage
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 
 @pytest.fixture
@@ -139,7 +139,7 @@ def test_a_slow_handler_costs_no_heartbeat(broker: RabbitMQ, caplog: pytest.LogC
 
     def slow(message: Message) -> None:
         seen(message)
-        assert release.wait(60)
+        assert release.wait(HANG)
 
     bus.subscribe("lumen.a", slow)
     bus.publish("lumen.a", 1)
@@ -193,7 +193,7 @@ def test_a_flood_arrives_whole(bus: Bus) -> None:
     bus.subscribe("lumen.flood", seen)
     for i in range(5_000):
         bus.publish("lumen.flood", i)
-    assert seen.wait(5_000, 60) == list(range(5_000))
+    assert seen.wait(5_000) == list(range(5_000))
 
 
 def test_a_key_that_may_not_be_read_is_refused_and_the_others_go_on(broker: RabbitMQ) -> None:

@@ -14,7 +14,7 @@ from lumen.buses.polled import PolledConnection
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 Open = Callable[..., Bus]
 
@@ -72,11 +72,11 @@ def test_of_telemetry_the_newest_wins_where_a_handler_is_slow(opened: Open) -> N
     def slow(message: Message) -> None:
         seen(message)
         busy.set()
-        assert go.wait(60)
+        assert go.wait(HANG)
 
     bus.subscribe("lumen.newest", slow)
     other.publish("lumen.newest", -1)
-    assert busy.wait(20)
+    assert busy.wait(HANG)
     for i in range(500):
         other.publish("lumen.newest", i)
     other.close()
@@ -92,7 +92,7 @@ def test_old_telemetry_is_not_handed_on(opened: Open) -> None:
 
     def slow(message: Message) -> None:
         seen(message)
-        assert go.wait(60)
+        assert go.wait(HANG)
 
     bus.subscribe("lumen.old", slow)
     for i in range(3):
@@ -175,12 +175,12 @@ def test_a_stop_waits_behind_nothing(opened: Open) -> None:
 
     def work(message: Message) -> None:
         busy.set()
-        assert go.wait(60)
+        assert go.wait(HANG)
 
     bus.subscribe(slow.key, work)
     bus.subscribe(stop.key, seen)
     sender.publish(slow.key, "dance")
-    assert busy.wait(20)
+    assert busy.wait(HANG)
     for _ in range(200):
         sender.publish(slow.key, "x" * 100_000)
     sender.publish(stop.key, "stop")

@@ -23,7 +23,7 @@ from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
 from lumen.language.routes import Carried, Direction, Route
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 
 class World(NamedTuple):
@@ -68,7 +68,7 @@ def use_after_close(world: World, url: str) -> None:
 def use_after_the_exhibition(world: World) -> None:
     client = LocalBusClient(world.served.address)
     world.served.close()
-    assert client.gone.wait(10.0)
+    assert client.gone.wait(HANG)
     try:
         client.publish("lumen.a", 1)
     finally:
@@ -142,7 +142,7 @@ def test_a_broker_that_is_killed_is_unreachable_for_who_comes_and_full_for_who_s
         with pytest.raises(BusFullError):
             flood(bus, key)
         broker.start()
-        until(lambda: taken(bus, key), 60)
+        until(lambda: taken(bus, key))
         bus.close()
     finally:
         broker.stop()

@@ -110,7 +110,7 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     until(lambda: sending.sent > sent + 50)
     broker.start()
     sent = sending.sent
-    until(lambda: len(effects) > 2 * sent, 60)
+    until(lambda: len(effects) > 2 * sent)
     arrive_once(effects, sending.end(), 60)
     until(lambda: all(link.connection for link in links) and not reader.away)
     sender.publish("lumen.fault.later", "bound since")
@@ -132,7 +132,7 @@ def test_a_broker_that_is_killed_while_a_journal_is_made_makes_it_anew() -> None
         until(lambda: consumer._declarer.settling)
         broker.kill()
         broker.start()
-        until(lambda: any(s.tag for s in consumer.subscriptions() if s.pattern == key), 60)
+        until(lambda: any(s.tag for s in consumer.subscriptions() if s.pattern == key))
         for n in range(3):
             sender.publish(key, n)
         assert seen.wait(3) == [0, 1, 2]
@@ -161,7 +161,7 @@ def cut_for(seconds: float, broker: RabbitMQ) -> None:
     until(lambda: time.monotonic() > passed, seconds + 5.0)
     relay.mend()
     came = len(effects)
-    until(lambda: len(effects) > came + 50, 60)
+    until(lambda: len(effects) > came + 50)
     arrive_once(effects, sending.end(), 60)
     sender.close()
     reader.close()

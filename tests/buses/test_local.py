@@ -15,7 +15,7 @@ from lumen.bus import BusError, connect
 from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
 from lumen.buses.local.frames import frame
 from lumen.buses.memory import MemoryBus
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 
 class Opened:
@@ -27,7 +27,7 @@ class Opened:
 
     def raw(self) -> socket.socket:
         wire = self.server.address.connect()
-        wire.settimeout(10.0)
+        wire.settimeout(HANG)
         return wire
 
 
@@ -139,7 +139,7 @@ def test_a_fault_of_ours_in_handling_a_frame_costs_one_connection(
     with Client(opened) as client, Client(opened) as other:
         monkeypatch.setattr(opened.bus, "publish", lambda *_, **__: 1 / 0)
         other.bus._put(frame("publish", "lumen.a", "", "", None, 1))
-        assert other.bus.gone.wait(10.0)
+        assert other.bus.gone.wait(HANG)
         monkeypatch.undo()
         client.still_hears()
 
@@ -169,7 +169,7 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
     with Client(opened) as client:
         slow = LocalBusClient(opened.server.address)
         held = threading.Event()
-        slow.subscribe("lumen.much", lambda _: held.wait(60.0))
+        slow.subscribe("lumen.much", lambda _: held.wait(HANG))
         slow._wire.shutdown(socket.SHUT_RD)
         began = time.monotonic()
         for _ in range(300):
@@ -194,7 +194,7 @@ def test_who_dies_is_forgotten(opened: Opened) -> None:
 def test_when_the_exhibition_ends_its_clients_are_told(opened: Opened) -> None:
     client = LocalBusClient(opened.server.address)
     opened.server.close()
-    assert client.gone.wait(10.0)
+    assert client.gone.wait(HANG)
     with pytest.raises(BusError, match="gone"):
         client.publish("lumen.a", 1)
     client.close()

@@ -6,7 +6,7 @@ import threading
 import pytest
 
 from lumen.bus import Bus, Message, connect
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 
 def test_everything_is_delivered_when_publish_returns() -> None:
@@ -38,12 +38,12 @@ def test_a_publisher_on_another_thread_does_not_wait_for_a_handler() -> None:
     def slow(message: Message) -> None:
         seen(message)
         inside.set()
-        assert release.wait(20)
+        assert release.wait(HANG)
 
     bus.subscribe("lumen.a", slow)
     thread = threading.Thread(target=bus.publish, args=("lumen.a", 1))
     thread.start()
-    assert inside.wait(20)
+    assert inside.wait(HANG)
     bus.publish("lumen.a", 2)
     assert seen.bodies == [1]
     release.set()
@@ -79,12 +79,12 @@ def flooded(bus: Bus, count: int) -> None:
 
     def slow(message: Message) -> None:
         inside.set()
-        assert release.wait(60)
+        assert release.wait(HANG)
 
     undo = bus.subscribe("lumen.slow", slow)
     thread = threading.Thread(target=bus.publish, args=("lumen.slow", None))
     thread.start()
-    assert inside.wait(20)
+    assert inside.wait(HANG)
     for i in range(count):
         bus.publish("lumen.a", i)
     release.set()
@@ -121,7 +121,7 @@ def test_closing_is_not_dropped_with_what_waits(monkeypatch: pytest.MonkeyPatch)
 
     other.subscribe("lumen.slow", slow)
     other.publish("lumen.slow", None)
-    ended.join(20)
+    ended.join(HANG)
     assert not ended.is_alive()
     assert inside.is_set()
     assert seen.bodies == list(range(41, 50))

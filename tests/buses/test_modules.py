@@ -14,7 +14,7 @@ from tests.exhibits import project
 from tests.fetched import fetched
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import Collector
+from tests.waiting import HANG, Collector
 
 ROOT = Path(__file__).parents[2]
 MODULES = ROOT / "examples/modules"
@@ -79,7 +79,7 @@ def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, t
 def test_a_wrong_password_is_one_line(broker: RabbitMQ, tmp_path: Path, name: str) -> None:
     wrong = f"amqp://guest:wrong@127.0.0.1:{broker.port}/"
     with running(*program(name, tmp_path), url=wrong) as process:
-        said, _ = process.communicate(timeout=60)
+        said, _ = process.communicate(timeout=HANG)
     assert process.returncode == 1
     assert said.startswith(f"{name.partition('.')[0]}: the broker")
     assert said.count("\n") == 1

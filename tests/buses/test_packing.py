@@ -29,7 +29,7 @@ from lumen.robots.sense_codec import encode_reading, image_body
 from lumen.robots.server import RobotServer
 from tests.rabbitmq import RabbitMQ
 from tests.tables import for_each
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 IMAGES, SLOW, PACKED = "avatar.Pia.data.image", "avatar.Pia.data.image.slow", "avatar.Pia.data.joint.packed"
 FRAMES = 30
@@ -71,7 +71,7 @@ class Plain:
 
     def close(self) -> None:
         self.connection.add_callback_threadsafe(self.channel.stop_consuming)
-        self._thread.join(20.0)
+        self._thread.join(HANG)
 
     def _run(self) -> None:
         self.connection = pika.BlockingConnection(pika.URLParameters(self._url))

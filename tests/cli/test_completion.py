@@ -4,16 +4,15 @@ import os
 import pty
 import select
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from lumen.cli.main import VERBS, main
 from tests.guarded import Guarded, run_guarded
+from tests.waiting import HANG, until
 
 ROOT = Path(__file__).parents[2]
-DEADLINE = 30.0
 
 
 def completed(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
@@ -90,23 +89,27 @@ def test_a_shell_completes_what_is_typed(shell: list[str], begin: str, path: str
     with Guarded(shell, stdin=slave, stdout=slave, stderr=slave, env=environment, cwd=ROOT) as process:
         os.close(slave)
         os.write(master, f"{begin}; echo rea''dy\n".encode())
-        assert "ready" in until(master, "ready\r\n")
+        assert "ready" in shown_until(master, "ready\r\n")
         os.write(master, b"lumen li\t")
-        assert "lint" in until(master, "lint")
+        assert "lint" in shown_until(master, "lint")
         os.write(master, b"--stri\t")
-        assert "--strict" in until(master, "--strict")
+        assert "--strict" in shown_until(master, "--strict")
         os.write(master, b"\x15lumen run --story visi\t")
-        assert "visitor" in until(master, "visitor")
+        assert "visitor" in shown_until(master, "visitor")
         process.kill()
     os.close(master)
 
 
-def until(terminal: int, wanted: str) -> str:
-    """What a terminal shows until that stands there, or the time is over."""
-    shown, end = "", time.monotonic() + DEADLINE
-    while wanted not in shown and time.monotonic() < end:
-        if select.select([terminal], [], [], end - time.monotonic())[0]:
+def shown_until(terminal: int, wanted: str) -> str:
+    """Return what a terminal shows until `wanted` is there."""
+    shown = ""
+
+    def read() -> None:
+        nonlocal shown
+        if select.select([terminal], [], [], 1.0)[0]:
             shown += os.read(terminal, 65536).decode(errors="replace")
+
+    until(lambda: wanted in shown, meanwhile=read)
     return shown
 
 
@@ -117,7 +120,7 @@ def test_fish_completes_with_what_it_means(path: str, tmp_path: Path) -> None:
     )
     environment = {"PATH": path, "HOME": str(tmp_path), "TERM": "dumb"}
     command = ["fish", "--no-config", "-c", asked]
-    done = run_guarded(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=DEADLINE)
+    done = run_guarded(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     lines = done.stdout.splitlines()
     assert lines[:2] == ["lint\tsay what is wrong in a project, and where", "--strict\tcount warnings as errors"]
     assert {line.partition("\t")[0] for line in lines[2:]} >= VERBS.keys()

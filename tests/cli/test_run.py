@@ -16,7 +16,7 @@ from lumen.robots.recording import RecordingRobot
 from tests.guarded import PIPE, Guarded, run_guarded
 from tests.nodes import whole
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 
 @pytest.mark.slow
@@ -141,7 +141,7 @@ def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
             process.stdin.flush()
         process.stdin.close()
         told += process.stdout.read()
-        assert process.wait(30) == 0
+        assert process.wait(HANG) == 0
     assert "visitor  “I am Rani”" in told
     assert "visitor  walks away" in told
 
@@ -161,7 +161,7 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
         until(lambda: "again to end" in log.read_text())
         until(lambda: "stopped, interrupted  (stop, then safety.alarm)" in log.read_text())
         process.send_signal(signal.SIGINT)
-        assert process.wait(30) == 0
+        assert process.wait(HANG) == 0
     assert "Ended before the story did" in log.read_text()
 
 

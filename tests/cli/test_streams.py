@@ -14,6 +14,7 @@ from lumen.cli.transcript import Transcript
 from lumen.errors import UsageError
 from tests.cli.conftest import Terminal
 from tests.guarded import DEVNULL, PIPE, Guarded
+from tests.waiting import HANG
 
 ROOT = Path(__file__).parents[2]
 
@@ -35,7 +36,7 @@ class Full(StringIO):
 def called(*words: str, stdout: int, stderr: int = PIPE) -> tuple[int, str]:
     command = [sys.executable, "-m", "lumen.cli.main", *words]
     with Guarded(command, cwd=ROOT, stdin=DEVNULL, stdout=stdout, stderr=stderr, text=True) as process:
-        said = process.communicate(timeout=60)[1]
+        said = process.communicate(timeout=HANG)[1]
     return process.returncode, said or ""
 
 

@@ -8,6 +8,8 @@ from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
+from tests.waiting import HANG
+
 Reply = Callable[["Handler", dict[str, Any]], None]
 
 
@@ -75,7 +77,7 @@ def fake_model(reply: Reply) -> Iterator[FakeModel]:
         server.over.set()
         server.shutdown()
         server.server_close()
-        thread.join(5)
+        thread.join(HANG)
 
 
 def says(*pieces: str) -> Reply:

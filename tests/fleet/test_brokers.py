@@ -59,7 +59,7 @@ def test_what_is_of_the_fleet_crosses_and_nothing_else(own_broker: FleetBrokers)
         buses[CENTRE].publish("fleet.bundle.museum", {})
         return keys("museum") >= {"fleet.bundle.museum"} and "fleet.desired.itb" in keys("itb")
 
-    until(lambda: said() and "fleet.presence.itb.nao1" in keys(CENTRE), 60.0, every=0.2)
+    until(lambda: said() and "fleet.presence.itb.nao1" in keys(CENTRE), every=0.2)
     for bus in buses.values():
         bus.close()
     assert keys(CENTRE) == {"fleet.presence.itb.nao1", "fleet.desired.itb", "fleet.bundle.museum"}
@@ -183,7 +183,7 @@ def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
     mended(own_broker, "itb", found)
     control = RabbitMQControl(own_broker.brokers["itb"].ctl)
     seen: list[dict[str, Any]] = []
-    until(lambda: seen.append(checked(own_broker, museums.root, "itb", capsys)) or not wrong(seen[-1]), 60.0, every=1.0)
+    until(lambda: seen.append(checked(own_broker, museums.root, "itb", capsys)) or not wrong(seen[-1]), every=1.0)
     found = seen[-1]
     assert found["the broker"]["note"] == "it answers, in clear"
     assert {"all users", "all permissions", "all bindings", "all parameters", "all policies"} <= found.keys()
@@ -263,8 +263,8 @@ def test_the_commands_publish_roll_out_tell_and_abort(
         assert any("greeting" in change or "text" in change for change in found["changes"])
         told("pin", "museum/nao3")
         told("rollout", hash, "--first", "40%", "--then", "all", "--pause", "1h", "--abort-if", "")
-        until(lambda: museums.have(hash) == 2, 60.0)
-        until(lambda: [row["state"] for row in told("status")["robots"]] == ["proved"] * 5, 60.0)
+        until(lambda: museums.have(hash) == 2)
+        until(lambda: [row["state"] for row in told("status")["robots"]] == ["proved"] * 5)
         status = told("status")
         assert {"houses", "robots", "rollout"} <= status.keys()
         assert status["rollout"]["state"] == "going"
@@ -274,7 +274,7 @@ def test_the_commands_publish_roll_out_tell_and_abort(
         assert main(["fleet", "rollout", hash, *where]) == 2
         assert "is going: abort it, or let it end" in capsys.readouterr().err
         told("abort")
-        until(lambda: museums.have(hash) == 0, 60.0)
+        until(lambda: museums.have(hash) == 0)
         behavior.write_text("states: {")
         assert main(["fleet", "publish", *key, *where]) == 2
         assert "has errors: behaviors/hello.yaml" in capsys.readouterr().err

@@ -15,6 +15,7 @@ from lumen.language.projects import Project
 from tests.exhibits import project
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 ROOT = Path(__file__).parents[2]
 
@@ -24,7 +25,7 @@ def parsed(*projects: Project) -> list[dict[str, Any]]:
     texts = json.dumps([write_asyncapi(project) for project in projects])
     script = ROOT / "tests/formats/asyncapi.cjs"
     done = run_guarded(
-        ["node", script, fetched("asyncapi")], input=texts, capture_output=True, text=True, timeout=120, check=True
+        ["node", script, fetched("asyncapi")], input=texts, capture_output=True, text=True, timeout=HANG, check=True
     )
     return list(json.loads(done.stdout))
 

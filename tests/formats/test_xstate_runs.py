@@ -9,6 +9,7 @@ from lumen.formats.xstate import write_xstate
 from lumen.statechart import Interpreter, Machine, VirtualClock
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 ROOT = Path(__file__).parents[2]
 
@@ -121,7 +122,7 @@ CHARTS: list[tuple[dict[str, Any], list[Any]]] = [
 def by_xstate(rows: list[dict[str, Any]]) -> Any:
     script = Path(__file__).with_name("xstate.mjs")
     command = ["node", str(script), (fetched("xstate") / "dist" / "xstate.esm.js").as_uri()]
-    run = run_guarded(command, input=json.dumps(rows), capture_output=True, text=True, timeout=60, check=False)
+    run = run_guarded(command, input=json.dumps(rows), capture_output=True, text=True, timeout=HANG, check=False)
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 

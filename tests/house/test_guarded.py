@@ -10,11 +10,9 @@ from typing import NamedTuple
 import pytest
 
 from tests.guarded import PIPE, CalledProcessError, Guarded, TimeoutExpired, run_guarded
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 ROOT = Path(__file__).parents[2]
-GONE_TIMEOUT = 60.0
-"""Within what time all is gone [s]; a worker of xdist takes 15 s to see that nobody listens to it any more."""
 
 FAMILY = """
 import sys
@@ -78,7 +76,7 @@ def environment(process: Path) -> str:
 
 
 def gone(folder: Path) -> None:
-    until(lambda: not left(folder), GONE_TIMEOUT)
+    until(lambda: not left(folder))
 
 
 @pytest.mark.parametrize("program", [FAMILY, pytest.param(BROKER, marks=pytest.mark.broker)], ids=["family", "broker"])
@@ -102,13 +100,13 @@ def test_sessions_that_are_killed_or_interrupted_leave_nothing(start: Start, tmp
     """Side by side, since each takes as long as xdist waits for its worker."""
     sessions = [begun(start, tmp_path / name, willing) for name, willing in (("a", False), ("b", True), ("c", False))]
     for session in sessions:
-        until((session.folder / "started").exists, GONE_TIMEOUT)
+        until((session.folder / "started").exists)
     assert len(left(tmp_path)) > 3 * 4
     killed, interrupted, stubborn = (session.process for session in sessions)
     killed.kill()
     os.killpg(interrupted.pid, signal.SIGINT)
     os.killpg(stubborn.pid, signal.SIGINT)
-    interrupted.wait(GONE_TIMEOUT)
+    interrupted.wait(HANG)
     stubborn.kill()
     for process in (killed, interrupted, stubborn):
         process.communicate()
@@ -130,7 +128,7 @@ def begun(start: Start, folder: Path, willing: bool) -> Session:
 
 def test_programs_end_in_time_and_say_how() -> None:
     """As those of the library do, which it stands for."""
-    done = run_guarded(["cat"], input="hello", capture_output=True, text=True, timeout=60)
+    done = run_guarded(["cat"], input="hello", capture_output=True, text=True, timeout=HANG)
     assert (done.returncode, done.stdout, done.stderr) == (0, "hello", "")
     with pytest.raises(TimeoutExpired):
         run_guarded(["sleep", "1000"], timeout=0.1)

@@ -10,6 +10,7 @@ import pytest
 
 from lumen.cli.main import main
 from tests.guarded import PIPE, STDOUT, Guarded, run_guarded
+from tests.waiting import HANG
 
 ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "examples/systemd/lumen.service"
@@ -31,7 +32,7 @@ def test_systemd_takes_it(tmp_path: Path) -> None:
     )
     unit = tmp_path / UNIT.name
     unit.write_text(text.replace("User=lumen", "User=root"), encoding="utf-8")
-    done = run_guarded([analyze, "verify", "--man=no", str(unit)], capture_output=True, text=True, timeout=30)
+    done = run_guarded([analyze, "verify", "--man=no", str(unit)], capture_output=True, text=True, timeout=HANG)
     assert (done.returncode, done.stderr + done.stdout) == (0, "")
 
 

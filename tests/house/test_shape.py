@@ -8,6 +8,7 @@ from scripts import shape
 from scripts.shape import Floor, Size, When
 
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 ORDER = """
 [tool.importlinter]
@@ -27,6 +28,7 @@ HOUSE = {
     "kitchen/words.py": "MOST, LEAST = 2, 1\n",
     "kitchen/oven.py": """
 from typing import TYPE_CHECKING, TypeVar
+from tests.waiting import HANG
 
 if TYPE_CHECKING:
     from lumen.kitchen import pan
@@ -181,6 +183,6 @@ def test_all_of_it_is_data_too(root, capsys):
 def test_a_commit_tells_the_files_that_it_touched(root, capsys):
     git = ["git", "-c", "user.name=a", "-c", "user.email=a@b.c", "-C", str(root)]
     for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "Builds"]):
-        run_guarded([*git, *command], check=True, timeout=60)
+        run_guarded([*git, *command], check=True, timeout=HANG)
     shape.main(["--root", str(root), "--commit", "HEAD"])
     assert capsys.readouterr().out.startswith("Python files of the package in HEAD: 12\n  __init__.py\n")

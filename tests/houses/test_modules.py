@@ -10,7 +10,7 @@ from lumen.modules.ears.recogniser import Hypothesis
 from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
-from tests.houses.test_over_rabbitmq import PATIENCE, Hall
+from tests.houses.test_over_rabbitmq import Hall
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
@@ -27,7 +27,7 @@ def test_one_process_of_voice_and_memory_serves_both(
     bus.subscribe("lumen.test.answer", asked)
     try:
         process, told = hall.begin("--only", "voice,memory", robot="")
-        until(lambda: {body["robot"] for body in there.bodies if body["state"] == "here"} == {*NAMES}, PATIENCE)
+        until(lambda: {body["robot"] for body in there.bodies if body["state"] == "here"} == {*NAMES})
         for name in NAMES:
             bus.publish(f"lumen.{name}.audio.text.stream", {"text": f"I am {name}", "language": "en", "name": name})
             fact = {"method": "remember", "name": f"Friend of {name}", "data": {}}

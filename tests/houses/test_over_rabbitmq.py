@@ -14,10 +14,7 @@ from lumen.cli.main import main
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
-from tests.waiting import until
-
-PATIENCE = 120.0
-"""How long a process may take to be there, on a crowded machine [s]."""
+from tests.waiting import HANG, until
 
 
 class Hall:
@@ -49,7 +46,7 @@ class Hall:
 
     def end(self, process: Guarded[bytes], how: signal.Signals = signal.SIGKILL) -> None:
         os.killpg(process.pid, how)
-        process.wait(PATIENCE)
+        process.wait(HANG)
 
     def call(self, verb: str, *flags: str) -> tuple[int, str]:
         """Its exit code, and all that it says."""
@@ -86,7 +83,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     """The second of a name is refused, the stop of one is its own, and outlives its process; who ended it is told."""
     monkeypatch.setattr(sys, "stdin", None)
     process, _ = hall.begin()
-    until(hall.both, PATIENCE)
+    until(hall.both)
     code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")
     assert (code, "is the robot of ana on this bus already: end it first" in said) == (2, True)
     assert hall.call("stop", "--robot-name", "ana")[0] == 0
@@ -100,7 +97,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     assert "ana       does not run: it ended without notice at " in said
     assert f"stopped   by {by}: so it is when it runs again, until `lumen resume`" in said
     process, told = hall.begin()
-    until(hall.both, PATIENCE)
+    until(hall.both)
     assert hall.status()["ana"]["stopped_by"] == by
     hall.end(process, signal.SIGTERM)
     assert told.read_text("utf-8").count("The last run ended without notice") == 2
@@ -114,9 +111,9 @@ def test_a_robot_whose_process_is_killed_is_told_and_the_other_goes_on(hall: Hal
     _, told = hall.begin("--only", "brain", "--robot-name", "ana,ben")
     lost, _ = hall.begin("--only", "robot", "--robot-name", "ana")
     hall.begin("--only", "robot", "--robot-name", "ben")
-    until(hall.both, PATIENCE)
+    until(hall.both)
     hall.end(lost)
-    until(lambda: "robot.lost" in told.read_text("utf-8"), PATIENCE)
+    until(lambda: "robot.lost" in told.read_text("utf-8"))
     lines = [line for line in told.read_text("utf-8").splitlines() if "robot.lost" in line]
     assert [line.split()[1] for line in lines] == ["ana"]
     assert hall.call("say", "I am here", "--robot-name", "ben") == (0, "said\n")
@@ -131,13 +128,13 @@ def test_what_they_have_in_common_outlives_the_loss_of_the_broker(
     try:
         hall.begin("--robot-name", "ana")
         ben, _ = hall.begin("--robot-name", "ben", url=broker.url.replace(f":{broker.port}", f":{wire.port}"))
-        until(hall.both, PATIENCE)
+        until(hall.both)
         assert hall.call("goto", "busy", "--yes", "--robot-name", "ana")[0] == 0
-        until(lambda: hall.stands_in("ben", "watching"), PATIENCE)
+        until(lambda: hall.stands_in("ben", "watching"))
         wire.refuse()
         assert hall.call("goto", "free", "--yes", "--robot-name", "ana")[0] == 0
         wire.mend()
-        until(lambda: hall.both() and hall.stands_in("ben", "waiting"), PATIENCE)
+        until(lambda: hall.both() and hall.stands_in("ben", "waiting"))
         hall.end(ben, signal.SIGTERM)
         capsys.readouterr()
         assert main(["replay", "--project", str(stage), "--robot-name", "ben"]) == 0

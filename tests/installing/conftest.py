@@ -9,6 +9,7 @@ import installed_size as installing
 import pytest
 
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 Lumen = Callable[..., "CompletedProcess[str]"]
 
@@ -33,7 +34,7 @@ def lumen(core: Path) -> Lumen:
 
     def call(folder: Path, *words: str) -> "CompletedProcess[str]":
         return run_guarded(
-            [core.parent / "lumen", *words], cwd=folder, env=clean, timeout=120, capture_output=True, text=True
+            [core.parent / "lumen", *words], cwd=folder, env=clean, timeout=HANG, capture_output=True, text=True
         )
 
     return call

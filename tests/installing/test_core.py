@@ -11,6 +11,7 @@ from lumen.extras import INSTALL_BARE, MissingExtraError, demand
 from tests.guarded import run_guarded
 from tests.installing.conftest import Lumen
 from tests.lsp.client import Client
+from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
@@ -105,5 +106,5 @@ print("sits")
 
 def test_the_robot_needs_nothing_of_dm_control_that_3_13_lacks(tmp_path: Path) -> None:
     """What the extra does not list for 3.13 is kept from being imported here."""
-    done = run_guarded([sys.executable, "-c", BARE], cwd=tmp_path, timeout=120, capture_output=True, text=True)
+    done = run_guarded([sys.executable, "-c", BARE], cwd=tmp_path, timeout=HANG, capture_output=True, text=True)
     assert done.stdout == "sits\n", done.stderr[-1500:]

@@ -12,6 +12,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
@@ -112,7 +113,7 @@ def planned(folder: Path, *command: str) -> set[str]:
     """The names of what pip would install."""
     report = folder / "report.json"
     more = ("--dry-run", "--report", str(report))
-    done = run_guarded([*installing.PIP, *command, *more], timeout=300, capture_output=True, text=True)
+    done = run_guarded([*installing.PIP, *command, *more], timeout=HANG, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-1500:]
     return {item["metadata"]["name"].lower().replace("_", "-") for item in json.loads(report.read_text())["install"]}
 
@@ -129,5 +130,5 @@ def test_each_line_installs_into_an_empty_environment_what_can_then_be_imported(
     module = "dm_control.mjcf" if "dm-control" in line else "lumen.cli.main"
     if "dm-control" in line:
         installing.install(python, f"{wheel}[simulation]")
-    done = run_guarded([python, "-c", f"import {module}"], cwd=tmp_path, timeout=120, capture_output=True, text=True)
+    done = run_guarded([python, "-c", f"import {module}"], cwd=tmp_path, timeout=HANG, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -8,6 +8,7 @@ import pytest
 
 from tests import rabbitmq
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 SCRIPT = Path(__file__).parents[2] / "scripts/packages.sh"
 STATUS = """Package: openssl
@@ -58,7 +59,7 @@ class Machine:
         environment = {"PATH": str(self.programs), **self.more}
         text = "\n".join(packages)
         done = run_guarded(
-            ["sh", SCRIPT, "/dev/stdin"], input=text, env=environment, capture_output=True, text=True, timeout=60
+            ["sh", SCRIPT, "/dev/stdin"], input=text, env=environment, capture_output=True, text=True, timeout=HANG
         )
         assert done.returncode == 0, done.stderr
         return str(done.stdout + done.stderr)
@@ -121,7 +122,7 @@ def test_rabbitmq_starts_from_where_it_was_unpacked(tmp_path: Path, monkeypatch:
     left = [block for block in blocks if not block.startswith(("Package: rabbitmq-server", "Package: erlang-"))]
     (tmp_path / "status").write_text("\n\n".join(left))
     more = {"STATUS": str(tmp_path / "status"), "UNPACKED": str(tmp_path / "debian"), "AS_USER": "1"}
-    run_guarded(["sh", SCRIPT, "/dev/stdin"], input=b"rabbitmq-server", env=os.environ | more, timeout=300, check=True)
+    run_guarded(["sh", SCRIPT, "/dev/stdin"], input=b"rabbitmq-server", env=os.environ | more, timeout=HANG, check=True)
     monkeypatch.setattr(rabbitmq, "ROOTS", (tmp_path / "debian/root",))
     broker = rabbitmq.RabbitMQ()
     broker.start()

@@ -23,6 +23,7 @@ from tests.guarded import PIPE, run_guarded
 from tests.journal.making import Recorded
 from tests.reload.editing import Happenings, built, edits
 from tests.statechart.oracle.generating import Data, happenings, machine_data
+from tests.waiting import HANG
 
 PATIENT = settings(
     deadline=None,
@@ -124,7 +125,7 @@ def test_another_process_with_another_seed_of_hashes_replays_the_same(tmp_path: 
     for seed, what in (("1", "record"), ("2", "replay"), ("33", "replay")):
         command = [sys.executable, "-c", SCRIPT, tmp_path, data, what]
         here = {**os.environ, "PYTHONHASHSEED": seed}
-        ended = run_guarded(command, env=here, cwd=root, stdout=PIPE, text=True, check=True, timeout=60)
+        ended = run_guarded(command, env=here, cwd=root, stdout=PIPE, text=True, check=True, timeout=HANG)
         said.append(ended.stdout.strip())
     assert said[1] == said[2]
     assert said[1].endswith(" 0 0")

@@ -17,7 +17,7 @@ from lumen.runtime.inputs.journal_folder import JournalFolder
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.statechart import Machine
 from tests.journal.making import Recorded, bundle
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 MACHINE = Machine.from_dict(
     {
@@ -50,7 +50,7 @@ class Slow:
         self.file, self.disk = file, disk
 
     def write(self, data: bytes) -> int:
-        assert self.disk.free.wait(20.0)
+        assert self.disk.free.wait(HANG)
         if self.disk.full:
             raise OSError(errno.ENOSPC, "No space left on device")
         return self.file.write(data[:100])  # as a system may

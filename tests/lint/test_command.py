@@ -12,6 +12,7 @@ import pytest
 from lumen.cli.main import main
 from lumen.rules.codes import CODES, FAMILIES
 from tests.guarded import CompletedProcess, run_guarded
+from tests.waiting import HANG
 
 BASE = Path(__file__).parent / "base"
 ENGINE = Path(__file__).parents[2] / "engine"
@@ -220,7 +221,7 @@ def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
     command = f"set -o pipefail; {sys.executable} -m lumen lint {project} | true"
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
     done = run_guarded(
-        ["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60, check=False
+        ["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=HANG, check=False
     )
     assert (done.returncode, done.stderr) == (1, "")
 
@@ -229,7 +230,7 @@ def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
 def test_where_nothing_can_be_printed_that_is_said(project: Path) -> None:
     command = f"{sys.executable} -m lumen lint {project} > /dev/full"
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
-    done = run_guarded(["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60)
+    done = run_guarded(["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=HANG)
     assert (done.returncode, done.stderr) == (2, "lumen lint: can't print: no space left on device\n")
 
 
@@ -279,5 +280,5 @@ def test_lint_imports_nothing_heavy(project: Path) -> None:
 def run(*arguments: str) -> CompletedProcess[str]:
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
     return run_guarded(
-        [sys.executable, *arguments], capture_output=True, text=True, env=environment, timeout=60, check=False
+        [sys.executable, *arguments], capture_output=True, text=True, env=environment, timeout=HANG, check=False
     )

@@ -13,6 +13,7 @@ import yaml
 
 from lumen.loading.files import read_files
 from tests.guarded import CompletedProcess, run_guarded
+from tests.waiting import HANG
 
 ROOT = Path(__file__).parents[2]
 BASE = Path(__file__).parent / "base"
@@ -57,7 +58,7 @@ def shell(command: str, folder: Path, **environment: str) -> CompletedProcess[st
     tools = next(parent / "bin" for parent in folder.parents if (parent / "bin" / "lumen").is_file())
     environment["PATH"] = f"{tools}:/usr/bin:/bin"
     words = ["bash", "-c", command]
-    return run_guarded(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    return run_guarded(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=HANG, check=False)
 
 
 def test_the_hook_has_what_pre_commit_asks_for() -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.guarded import PIPE, Guarded
+from tests.waiting import HANG
 
 HERE = Path(__file__).parent
 ENGINE = HERE.parents[1] / "engine"
@@ -64,5 +65,5 @@ def test_a_saved_file_is_answered(project: Path, watching: Guarded[str]) -> None
     while "nothing wrong; " not in (said := answer(watching)):
         assert "error" in said or "warning" in said
     watching.send_signal(signal.SIGINT)
-    out, error = watching.communicate(timeout=30)
+    out, error = watching.communicate(timeout=HANG)
     assert (out, error, watching.returncode) == ("", "", 0)

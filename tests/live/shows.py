@@ -1,6 +1,5 @@
 """A running show of a copy of the project, with files that are saved and an operator who asks."""
 
-import time
 from collections.abc import Callable, Mapping
 from io import StringIO
 from pathlib import Path
@@ -23,9 +22,8 @@ from lumen.robots.recording import RecordingRobot
 from lumen.rules import check_files
 from lumen.runtime.home import Home
 from tests.nodes import Printed, whole
-from tests.waiting import Collector
+from tests.waiting import Collector, until
 
-DEADLINE = 120.0
 QUIET = 0.06
 
 
@@ -98,10 +96,7 @@ class Live:
         self.show.begin()
 
     def until(self, condition: Callable[[], object]) -> None:
-        deadline = time.monotonic() + DEADLINE
-        while not condition():
-            self.show.tick()
-            assert time.monotonic() < deadline, self.told.getvalue()
+        until(condition, meanwhile=self.show.tick, shown=self.told.getvalue)
 
     def until_told(self, text: str) -> None:
         self.until(lambda: text in self.transcript)

@@ -80,7 +80,7 @@ def running(copy: Path) -> Iterator[tuple[Guarded[str], Bus]]:
             return bool(buses)
 
         try:
-            until(reached, 60.0)
+            until(reached)
             yield process, buses[0]
         finally:
             for bus in buses:

@@ -16,7 +16,7 @@ from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.runtime.inputs.journal_file import read_journal
 from tests.guarded import run_guarded
 from tests.live.test_resuming import running, silent
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 __all__ = ["silent"]
 
@@ -40,7 +40,7 @@ def replayed(folder: Path, **environment: str) -> dict[str, Any]:
     """What another process says of all days."""
     command = [sys.executable, "-m", "lumen", "replay", "--all", "--project", str(folder), "--format", "json"]
     env = {**os.environ, **environment}
-    done = run_guarded(command, env=env, capture_output=True, text=True, timeout=300)
+    done = run_guarded(command, env=env, capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stdout + done.stderr
     return dict(json.loads(done.stdout))
 

@@ -9,6 +9,7 @@ import pytest
 
 from lumen.loading.files import Unreadable, fingerprint, read_files
 from lumen.runtime.watcher import FileWatcher, SavedFiles
+from tests.waiting import HANG
 
 QUIET = 0.1
 TOUR, DANCE = "behaviors/tour.yaml", "motions/dance.yaml"
@@ -30,7 +31,7 @@ class Watched:
         self.watcher.start()
 
     def next(self) -> SavedFiles:
-        return self.watcher.results.get(timeout=20.0)
+        return self.watcher.results.get(timeout=HANG)
 
     def last(self, text: str = "the last word") -> list[SavedFiles]:
         """All verdicts up to that of a file written now."""
@@ -209,9 +210,9 @@ def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptu
     watcher: FileWatcher[bytes] = FileWatcher(root, read_files(root), judge, quiet=QUIET)
     watcher.start()
     (root / TOUR).write_text("bad", "utf-8")
-    assert failed.wait(20.0)
+    assert failed.wait(HANG)
     (root / TOUR).write_text("good", "utf-8")
-    assert watcher.results.get(timeout=20.0) == b"good"
+    assert watcher.results.get(timeout=HANG) == b"good"
     assert "a fault of ours" in caplog.text
     watcher.close()
 
@@ -226,7 +227,7 @@ def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path) -> None
     watcher = FileWatcher(root, read_files(root), judge, quiet=QUIET, noticed=lambda: order.append("noticed"))
     watcher.start()
     (root / TOUR).write_text("new", "utf-8")
-    watcher.results.get(timeout=20.0)
+    watcher.results.get(timeout=HANG)
     watcher.close()
     assert order == ["noticed", "judged"]
 

@@ -11,6 +11,7 @@ import lumen
 from lumen.loading.chosen_model import MODEL_VARIABLE
 from lumen.loading.files import belongs, fingerprint, read_files
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 MAIN = "behavior: hello\nlanguages: [en]\nrobot: {name: One, model: one}\nhall: hall.xml\n"
 HELLO = "id: hello\ninitial: here\nstates:\n  here: {entry: {play: nod}}\n"
@@ -74,7 +75,7 @@ def test_such_files_count() -> None:
 
 
 def lumen_says(*arguments: str) -> "CompletedProcess[str]":
-    return run_guarded([sys.executable, "-m", "lumen", *arguments], timeout=200, text=True, capture_output=True)
+    return run_guarded([sys.executable, "-m", "lumen", *arguments], timeout=HANG, text=True, capture_output=True)
 
 
 def test_the_command_line_takes_another_body(both: Path) -> None:

@@ -8,9 +8,9 @@ from queue import Queue
 from typing import Any, Self
 
 from tests.guarded import PIPE, Guarded
+from tests.waiting import HANG
 
 ENGINE = Path(__file__).parents[2] / "engine"
-DEADLINE = 60.0
 
 
 class Client:
@@ -47,7 +47,7 @@ class Client:
         if self.process.poll() is None:
             self.request("shutdown")
             self.notify("exit")
-        self.process.wait(DEADLINE)
+        self.process.wait(HANG)
 
     def uri(self, file: str) -> str:
         return (self.root / file).as_uri()
@@ -110,7 +110,7 @@ class Client:
             if wanted(message):
                 return self._kept.pop(i)
         while True:
-            message = self._messages.get(timeout=DEADLINE)
+            message = self._messages.get(timeout=HANG)
             assert message is not None, "the server has ended"
             if "method" in message and "id" in message:  # the server asks: everything is as it is by default
                 items = message["params"].get("items", []) if isinstance(message.get("params"), dict) else []

@@ -13,6 +13,7 @@ from lumen.app.exhibition import Exhibition
 from tests.cli.conftest import bus, copy, exhibition, project
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.waiting import HANG
 
 __all__ = ["bus", "copy", "exhibition", "project"]
 ROOT = Path(__file__).parents[2]
@@ -38,7 +39,7 @@ def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def hosted(extension: Path, root: Path, file: str, *more: str) -> dict[str, Any]:
     """What the extension did in an editor that has this file open."""
     words = ["node", ROOT / "tests/lsp/vscode_host.js", extension, root, json.dumps(COMMAND), root / file, *more]
-    done = run_guarded(words, capture_output=True, text=True, timeout=120)
+    done = run_guarded(words, capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
     return dict(json.loads(done.stdout))
 

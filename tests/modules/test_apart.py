@@ -17,8 +17,6 @@ from tests.waiting import Collector, until
 
 POSTER = Path(__file__).parents[2] / "examples/modules/poster.py"
 FACT = "lumen.NAO.persistence.fact"
-BEGUN = 120.0
-"""Within this time [s] a process is up, also where the machine has much else to do."""
 
 
 @pytest.fixture
@@ -65,7 +63,7 @@ def start(broker: RabbitMQ, tmp_path: Path) -> Iterator[Started]:
 
 def here(presence: Presence, part: str) -> Peer:
     """Wait until that part is there."""
-    until(lambda: (presence.tick(), presence.find(part))[1] is not None and presence.find(part).state == "here", BEGUN)  # type: ignore[union-attr]
+    until(lambda: (presence.tick(), presence.find(part))[1] is not None and presence.find(part).state == "here")  # type: ignore[union-attr]
     found = presence.find(part)
     assert found
     return found
@@ -84,7 +82,7 @@ def test_a_module_is_announced_does_its_work_is_one_and_is_missed(
     bus.publish(FACT, {"method": "list"}, reply_to="lumen.answers")
     until(lambda: _again(bus, answers))
     second = start("-m", "lumen", "run", str(copy), "--only", "memory")
-    until(lambda: (brain.tick(), second.poll())[1] is not None, BEGUN)
+    until(lambda: (brain.tick(), second.poll())[1] is not None)
     assert second.returncode == 2
     assert second.stdout
     assert f"process {first.pid} on " in (said := second.stdout.read())

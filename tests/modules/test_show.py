@@ -22,7 +22,7 @@ from lumen.language.show import AddressMapping, DmxLink, MqttLink, OscLink, Show
 from lumen.modules.show import ShowControl, health, mqtt, refusals
 from tests.modules.conftest import Stand
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 Make = Callable[..., Stand]
 LAMP, BUTTON = "museum.lamp.set", "museum.button"
@@ -70,7 +70,7 @@ class Device:
         for topic in topics:
             self.client.subscribe(topic, 1)
         self.client.loop_start()
-        until(lambda: self._ready == len(topics) and self.client.is_connected(), 60.0)
+        until(lambda: self._ready == len(topics) and self.client.is_connected())
 
     def _subscribed(self, *_: Any) -> None:
         self._ready += 1
@@ -79,11 +79,11 @@ class Device:
         self.came.append((message.topic, bytes(message.payload), message.retain))
 
     def wait(self, count: int) -> list[tuple[str, bytes, bool]]:
-        until(lambda: len(self.came) >= count, 60.0)
+        until(lambda: len(self.came) >= count)
         return self.came
 
     def send(self, topic: str, payload: bytes | str, *, retain: bool = False) -> None:
-        self.client.publish(topic, payload, 1, retain).wait_for_publish(60.0)
+        self.client.publish(topic, payload, 1, retain).wait_for_publish(HANG)
 
     def close(self) -> None:
         self.client.disconnect()
@@ -129,7 +129,7 @@ def test_rabbitmq_carries_a_route_to_mqtt_and_back_without_a_module(
     [(topic, payload, _)] = lamp.wait(1)
     assert (topic, json.loads(payload)) == ("museum/lamp/set", {"level": 0.5})
     lamp.send("museum/button", '{"number": 3}')
-    assert pressed.wait(1, 60.0) == [{"number": 3}]
+    assert pressed.wait(1) == [{"number": 3}]
     bus.close()
 
 
@@ -145,24 +145,24 @@ def test_a_lamp_and_a_button_by_mqtt(
     there.send("hall/button", '{"number": 1}', retain=True)
     here.bus.publish("museum.mood", {"name": "früh"})
     module, pressed = added(here), here.listen(BUTTON)
-    until(lambda: _reached(here, there), 60.0)
+    until(lambda: _reached(here, there))
     assert json.loads(there.came[-1][1]) == {"level": 1.0}
     here.bus.publish("museum.mood", {"name": "späte Stunde"})
     here.settle()
     kept = ("hall/mood", "späte Stunde".encode(), True)
-    until(lambda: device("hall/mood").wait(1)[0] == kept, 60.0)  # who comes before the broker has it hears it live
+    until(lambda: device("hall/mood").wait(1)[0] == kept)  # who comes before the broker has it hears it live
     assert pressed.bodies == [], "what the broker kept from before was pressed before"
     there.send("hall/button", '{"number": 2}')
-    assert pressed.wait(1, 60.0) == [{"number": 2}]
+    assert pressed.wait(1) == [{"number": 2}]
     before = module.refused
     for payload in ("no json", '{"number": 10}', '{"number": "x"}', "9" * (mqtt.MAX_PAYLOAD + 1)):
         there.send("hall/button", payload)
-    until(lambda: module.refused == before + 4, 60.0)
+    until(lambda: module.refused == before + 4)
     assert any("hall/button (MQTT) is dropped: it is no JSON" in line for line in here.told)
     assert len([line for line in here.told if "hall/button" in line]) == 1
     for _ in range(200):
         there.send("hall/button", '{"number": 4}')
-    until(lambda: module.refused > before + 4, 60.0)
+    until(lambda: module.refused > before + 4)
     assert len(pressed.bodies) < 150
     there.send("hall/button", b"", retain=True)
 
@@ -193,7 +193,7 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
         assert here.told[1:] == ["a message on lamp (MQTT) is dropped: the broker is away"]
         assert module.refused == 1
         rabbitmq.start()
-        until(lambda: here.told[2:] == [f"{name} is there again"], 120.0)
+        until(lambda: here.told[2:] == [f"{name} is there again"])
         lamp = Device(rabbitmq.mqtt, "hall/lamp", "hall/mood")
         try:
             assert lamp.wait(1) == [("hall/mood", b'{"name":"late"}', True)]
@@ -218,11 +218,11 @@ def test_what_our_own_broker_carries_anyway_does_not_go_round_for_ever(
     module = ShowControl(project, bus, told.append)
     module.begin()
     bus.subscribe(BUTTON, pressed)
-    until(lambda: _asked(lamp, pressed), 60.0)
+    until(lambda: _asked(lamp, pressed))
     bus.publish(LAMP, {"level": 0.5})
     lamp.wait(1)
     lamp.send("hall/button", '{"number": 7}')
-    until(lambda: {"number": 7} in pressed.bodies, 60.0)
+    until(lambda: {"number": 7} in pressed.bodies)
     assert len(lamp.came) == 1
     assert told == ["RabbitMQ carries `lamp` to and from museum/lamp/set by itself: take it out of `mqtt`"]
     module.close()
@@ -243,15 +243,15 @@ def test_a_wrong_password_is_told_and_no_device_stops_the_robot(
     here = stand(museum(mqtt=MqttLink("127.0.0.1", speaker.mqtt, routes=routes)))
     module, there = added(here), device()
     stops, pressed = here.listen("avatar.NAO.stop"), here.listen(BUTTON)
-    until(lambda: _asked_for(there, pressed), 60.0)
+    until(lambda: _asked_for(there, pressed))
     there.send("hall/stop", '{"type": "motion", "method": "rest"}')
-    until(lambda: module.refused == 1, 60.0)
+    until(lambda: module.refused == 1)
     assert stops.bodies == []
     assert here.told == ["a message on hall/stop (MQTT) is dropped: devices may not send on the route `stop`"]
     (tmp_path / "mqtt").write_text("guest:wrong")
     other = stand(here.project)
     added(other)
-    until(lambda: any("lets nobody in" in line for line in other.told), 60.0)
+    until(lambda: any("lets nobody in" in line for line in other.told))
 
 
 def _asked_for(there: Device, pressed: Collector) -> bool:
@@ -366,7 +366,7 @@ def test_dmx_is_kept_alive_and_darkens_nothing_before_its_first_message(
         with pytest.raises(BlockingIOError):
             receiver.recv(1000)
         here.bus.publish(LAMP, {"level": 1})
-        receiver.settimeout(20.0)
+        receiver.settimeout(HANG)
         packets = [receiver.recv(1000) for _ in range(3)]
     assert [len(packet) for packet in packets] == [638] * 3
     assert [packet[111] for packet in packets] == [0, 1, 2]

@@ -20,7 +20,7 @@ from lumen.modules.eyes.window import Window
 from lumen.modules.eyes.window_server import MAX_CONNECTIONS, WindowPage
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_eyes import body, photographed
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 __all__ = ["photographed"]
 
@@ -28,7 +28,7 @@ __all__ = ["photographed"]
 def looking(address: str, **headers: str) -> http.client.HTTPResponse:
     where = urlsplit(address)
     assert where.hostname
-    connection = http.client.HTTPConnection(where.hostname, where.port, timeout=60)
+    connection = http.client.HTTPConnection(where.hostname, where.port, timeout=HANG)
     connection.request("GET", where.path, headers=headers)
     return connection.getresponse()
 
@@ -105,7 +105,7 @@ def test_an_address_is_good_for_one_start(window: Window) -> None:
 
 def test_who_is_slow_is_hung_up_on(window: Window, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(WindowPage, "timeout", 0.2)
-    with socket.create_connection(("127.0.0.1", urlsplit(window.address).port), timeout=60) as slow:
+    with socket.create_connection(("127.0.0.1", urlsplit(window.address).port), timeout=HANG) as slow:
         began = time.monotonic()
         with suppress(OSError):
             while not select([slow], [], [], 0.05)[0]:

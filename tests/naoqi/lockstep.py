@@ -1,15 +1,11 @@
 """The adapter and the fake in one virtual time: nothing passes before every answer has arrived."""
 
-import threading
-import time
-
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Reading, Sense
 from lumen.robots.naoqi import NaoqiRobot
 from tests.naoqi.fake import FakeNao
-
-DEADLINE = 20.0
+from tests.waiting import HANG, until
 
 
 class Lockstep(NaoqiRobot):
@@ -18,7 +14,7 @@ class Lockstep(NaoqiRobot):
     def __init__(self, project: Project, nao: FakeNao | None = None, *, all_fresh: bool = True) -> None:
         self.nao = nao or FakeNao(project.body)
         self._fresh = tuple(Sense) if all_fresh else (Sense.JOINT,)
-        super().__init__(project.body, self.nao.url, lambda: self.nao.times.now, stage=project.stage, patience=DEADLINE)
+        super().__init__(project.body, self.nao.url, lambda: self.nao.times.now, stage=project.stage, patience=HANG)
         self.place, self.face = self.nao.place, self.nao.face
 
     def advance(self, dt: float) -> None:
@@ -28,15 +24,15 @@ class Lockstep(NaoqiRobot):
 
     def settle(self) -> None:
         """Wait until every call but those that block has been answered, and every event heard."""
-        deadline, pause = time.monotonic() + DEADLINE, threading.Event()
-        while self._session.up and (
-            self._session.pending != self.nao.times.waiting or self._naoqi_events.heard < self.nao.told
-        ):
-            assert time.monotonic() < deadline, "the fake robot and the adapter wait for each other"
-            pause.wait(0.0005)
+        until(self._settled, every=0.0005)
+
+    def _settled(self) -> bool:
+        """The fake robot and the adapter wait for nothing of each other."""
+        answered = self._session.pending == self.nao.times.waiting and self._naoqi_events.heard >= self.nao.told
+        return answered or not self._session.up
 
     def read(self, sense: Sense) -> Reading | None:
-        return self._senses[sense].fresh(DEADLINE) if sense in self._fresh else super().read(sense)
+        return self._senses[sense].fresh(HANG) if sense in self._fresh else super().read(sense)
 
     def touch(self, sensor: str, pressed: bool) -> None:
         self.nao.touch(sensor, pressed)

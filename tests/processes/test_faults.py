@@ -20,7 +20,7 @@ from lumen.runtime.snapshot_store import SNAPSHOT_FILE
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded
 from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
 Start = Callable[..., Guarded[str]]
@@ -90,7 +90,7 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
     assert not visitor.process.failed
     assert motions(robot) == ["dance", "goodbye"]
     again.send_signal(signal.SIGTERM)
-    said = again.communicate(timeout=60)[0]
+    said = again.communicate(timeout=HANG)[0]
     assert "this one goes on from there, in dance" in said
     assert again.returncode == 0
     assert "Traceback" not in said
@@ -123,11 +123,11 @@ def test_a_robot_that_is_killed_between_performing_and_saying_so_performs_once(
         """As a brain does that hears nothing: again and again, under one id."""
         bus.publish("avatar.NAO.command", {"id": "once", "type": "motion", "method": "dance"})
 
-    until(lambda: send() or dying.poll() is not None, 60.0)
+    until(lambda: send() or dying.poll() is not None)
     assert dying.returncode == -signal.SIGKILL
     start("robot", speed="1")
     states = lambda: [body["state"] for body in reports.bodies]  # noqa: E731
-    until(lambda: send() or states().count("failed") > 1, 60.0)
+    until(lambda: send() or states().count("failed") > 1)
     assert set(states()) <= {"accepted", "failed"}
     assert states().count("accepted") <= 1
     bus.close()
@@ -149,7 +149,7 @@ def test_a_robot_that_hangs_is_lost_and_does_nothing_late_when_it_goes_on(
     troupe.until(lambda: b'"late"' in dead.next())
     troupe.until(lambda: "idle" in brain.states)
     robot.send_signal(signal.SIGTERM)
-    said = robot.communicate(timeout=60)[0]
+    said = robot.communicate(timeout=HANG)[0]
     assert "rests: it stood still for " in said
     assert "goodbye" not in said
     dead.close()
@@ -163,7 +163,7 @@ def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Sta
         said = [process.stdout.readline(), process.stdout.readline()]
         lines.append(said[1].strip())
         process.send_signal(signal.SIGINT)
-        rest = process.communicate(timeout=60)[0]
+        rest = process.communicate(timeout=HANG)[0]
         assert process.returncode == 0, rest
         assert "Traceback" not in rest
     assert lines == ["waiting for the robot on avatar.NAO.command"] * 3
@@ -181,7 +181,7 @@ def test_the_whole_tour_in_four_processes(troupe: Troupe, start: Start) -> None:
     assert deeds(troupe.trace.bodies) == expected
     for process in others:
         process.send_signal(signal.SIGTERM)
-        rest = process.communicate(timeout=60)[0]
+        rest = process.communicate(timeout=HANG)[0]
         assert process.returncode == 0, rest
         assert "Traceback" not in rest
 
@@ -195,7 +195,7 @@ def test_a_robot_that_is_killed_and_started_again(troupe: Troupe, start: Start) 
     troupe.until(lambda: "robot_lost" in brain.states)
     start("robot")
     troupe.until(lambda: {"offer", "watching"} <= brain.states)
-    troupe.until(lambda: visitor.process.over, 120.0)
+    troupe.until(lambda: visitor.process.over)
     assert not visitor.process.failed
 
 
@@ -212,9 +212,9 @@ def test_a_broker_that_is_killed_mid_tour_and_comes_back(copy: Path) -> None:
         troupe.until(lambda: "robot_lost" in brain.states and isinstance(robot.body.performed[-1][1], Rest))
         before = motions(robot)
         broker.start()
-        troupe.until(lambda: {"offer", "watching"} <= brain.states, 120.0)
+        troupe.until(lambda: {"offer", "watching"} <= brain.states)
         assert motions(robot) == before == ["dance"]
-        troupe.until(lambda: visitor.process.over, 120.0)
+        troupe.until(lambda: visitor.process.over)
         assert not visitor.process.failed
         assert motions(robot) == ["dance", "goodbye"]
         assert motion in troupe.members

@@ -22,10 +22,9 @@ from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from tests.nodes import Printed, whole
-from tests.waiting import Collector
+from tests.waiting import Collector, until
 
 SPEED = "4"
-DEADLINE = 180.0
 STORIES = {
     "short": """title: A short visit
 at: "10:30"
@@ -127,12 +126,12 @@ class Troupe:
         member.process.bus.close()
         member.run_directory.close(forget=False)
 
-    def until(self, condition: Callable[[], object], timeout: float = DEADLINE) -> None:
-        deadline = time.monotonic() + timeout
-        while not condition():
-            for member in self.members:
-                member.process.tick()
-            assert time.monotonic() < deadline, f"not within {timeout:g} s"
+    def until(self, condition: Callable[[], object]) -> None:
+        until(condition, meanwhile=self._tick)
+
+    def _tick(self) -> None:
+        for member in self.members:
+            member.process.tick()
 
     def live(self, seconds: float) -> None:
         """So much real time."""

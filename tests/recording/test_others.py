@@ -14,6 +14,7 @@ from lumen.formats.recordings.rewriting import recover
 from tests.fetched import fetched
 from tests.guarded import run_guarded
 from tests.recording.making import bodies
+from tests.waiting import HANG
 
 READER = Path(__file__).with_name("read.mjs")
 
@@ -55,7 +56,9 @@ def test_others_read_it(tour: Path, tmp_path: Path, cut: bool) -> None:
     path.write_bytes(tour.read_bytes()[: -tour.stat().st_size // 20 if cut else None])
     if cut:
         recover(path)
-    done = run_guarded(["node", READER, fetched("mcap"), path], capture_output=True, text=True, timeout=120, check=True)
+    done = run_guarded(
+        ["node", READER, fetched("mcap"), path], capture_output=True, text=True, timeout=HANG, check=True
+    )
     said = json.loads(done.stdout)
     assert said["done"]
     assert said["inOrder"]

@@ -23,7 +23,7 @@ from lumen.ports import Message
 from tests.journal.making import minimal
 from tests.recording.making import bodies, picture, said
 from tests.tables import for_each
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 
 def project(**changes: object) -> Project:
@@ -63,7 +63,7 @@ class Held:
         self.trouble, self.free, self.count = "", threading.Event(), 0
 
     def write(self, items: Sequence[Recorded], now: float) -> None:
-        assert self.free.wait(20.0)
+        assert self.free.wait(HANG)
         self.count += len(items)
 
     def mark(self, why: str, now: float) -> None: ...

@@ -13,7 +13,7 @@ from lumen.buses.local import LocalBusClient, LocalBusServer
 from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus
-from tests.waiting import Collector
+from tests.waiting import HANG, Collector
 
 KINDS = ["memory", "local", pytest.param("amqp", marks=pytest.mark.broker)]
 
@@ -307,7 +307,7 @@ def test_a_handler_may_close_the_bus(bus: Bus) -> None:
 
     bus.subscribe("lumen.a", handler)
     bus.publish("lumen.a", 1)
-    assert closed.wait(20)
+    assert closed.wait(HANG)
 
 
 def test_two_handles_on_one_bus_hear_each_other(another: Connect) -> None:

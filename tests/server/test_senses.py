@@ -23,7 +23,7 @@ from lumen.robots.server import RobotServer
 from tests.exhibits import TACTILE, messages, project
 from tests.rabbitmq import RabbitMQ
 from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, without
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 
 def test_bodies_are_those_of_2015_and_the_time() -> None:
@@ -144,7 +144,7 @@ def test_a_camera_that_is_slow_keeps_nobody_waiting_and_the_newest_frame_wins() 
 
     def slow() -> np.ndarray:
         inside.set()
-        assert release.wait(20)
+        assert release.wait(HANG)
         return FRAME
 
     stand.server.sample(0.0)
@@ -152,7 +152,7 @@ def test_a_camera_that_is_slow_keeps_nobody_waiting_and_the_newest_frame_wins() 
     stand.robot.pixels = slow
     stand.robot.now = 0.1
     stand.server.sample(stand.robot.now)
-    assert inside.wait(20)
+    assert inside.wait(HANG)
     for i in range(6, 50):
         stand.robot.now = i * 0.02
         stand.server.sample(stand.robot.now)
@@ -170,12 +170,12 @@ def test_the_first_image_is_waited_for_once() -> None:
 
     def slow() -> np.ndarray:
         inside.set()
-        assert release.wait(20)
+        assert release.wait(HANG)
         return FRAME
 
     stand.robot.pixels = slow
     stand.server.sample(0.0)
-    assert inside.wait(20)
+    assert inside.wait(HANG)
     threading.Timer(0.1, release.set).start()
     assert stand.server.settle(PATIENT)
     assert stand.server.counts["image"].published == 1
@@ -273,11 +273,11 @@ def test_a_slow_subscriber_keeps_the_loop_waiting_for_a_tick_at_most() -> None:
 
     def slow(message: Message) -> None:
         inside.set()
-        assert release.wait(20)
+        assert release.wait(HANG)
 
     stand.bus.subscribe("avatar.NAO.data.joint", slow)
     stand.server.sample(0.0)
-    assert inside.wait(20)
+    assert inside.wait(HANG)
     began = time.monotonic()
     assert not any(stand.server.settle(0.4) for _ in range(50))
     assert time.monotonic() - began < 10.0, "it waits once, and not each time"
@@ -294,7 +294,7 @@ def test_a_thread_that_the_machine_holds_back_is_waited_for() -> None:
     encode = stand.server._broadcasts[Sense.JOINT]._encode
 
     def held(reading: Reading) -> dict[str, Any]:
-        assert release.wait(20)
+        assert release.wait(HANG)
         return encode(reading)
 
     stand.server._broadcasts[Sense.JOINT]._encode = held

@@ -23,6 +23,7 @@ from lumen.robots.simulation.film import FILM_RATE, Film
 from lumen.robots.simulation.shells import write
 from tests.guarded import run_guarded
 from tests.simulation.conftest import MODELS, Do, look_at_face
+from tests.waiting import HANG
 
 Pixels = NDArray[np.uint8]
 
@@ -83,7 +84,7 @@ def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -
     drawn: list[Pixels] = []
     thread = threading.Thread(target=lambda: drawn.append(reading.pixels()))
     thread.start()
-    thread.join(30)
+    thread.join(HANG)
     assert (drawn[0] == before).all()
 
 

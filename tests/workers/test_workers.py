@@ -17,13 +17,12 @@ from lumen.errors import UsageError, WorkersError
 from tests.guarded import PIPE, Guarded
 from tests.house.test_guarded import left
 from tests.tables import for_each
-from tests.waiting import until
+from tests.waiting import HANG, until
 from tests.workers.small_tasks import die, process, square, square_or_die
 
 ROOT = Path(__file__).parents[2]
 KIT = WorkKit({}, {"models/mesh.stl": b"solid"})
 TASKS = [(number,) for number in range(6)]
-GONE_TIMEOUT = 60.0
 
 
 @pytest.mark.slow
@@ -112,13 +111,13 @@ def test_whatever_ends_it_leaves_no_process_and_no_folder(
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
     command = [sys.executable, str(program), str(began)]
     with Guarded(command, env=environment, cwd=tmp_path, stderr=PIPE, text=True) as running:
-        until(lambda: len(list(began.iterdir())) >= 2, GONE_TIMEOUT)
+        until(lambda: len(list(began.iterdir())) >= 2)
         assert list(tmp_path.glob("lumen-work-*"))
         (os.killpg if everybody else os.kill)(running.pid, number)
-        _, said = running.communicate(timeout=GONE_TIMEOUT)
+        _, said = running.communicate(timeout=HANG)
         assert running.returncode == code
         assert not said or number == signal.SIGKILL  # then multiprocessing's own tracker tells what it cleans up
-    until(lambda: not left(tmp_path), GONE_TIMEOUT)
+    until(lambda: not left(tmp_path))
     assert left(tmp_path) == []
 
 
