@@ -161,8 +161,8 @@ def batches(tests: Iterable[str], cpu: Mapping[str, float]) -> list[list[str]]:
     for test in ordered:
         if total > 2 * BUDGET:
             break
-        found[sum(total >= limit for limit in BATCHES)].append(test)
         total += cost[test]
+        found[sum(total > limit for limit in BATCHES)].append(test)
     return list(found.values())
 
 
@@ -260,8 +260,8 @@ def table(results: Iterable[Mapping[str, Any]]) -> str:
     return "\n".join("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows)
 
 
-def record(folder: Path, suite: str) -> int:
-    """Run a suite while the lines that each test executes are recorded."""
+def record(folder: Path, suite: str, words: Sequence[str]) -> int:
+    """Run a suite, or what pytest selects by some words, while the lines that each test executes are recorded."""
     from mutation.executed import prepare, read
 
     engine = ROOT / ENGINE
@@ -278,9 +278,8 @@ def record(folder: Path, suite: str) -> int:
         "loadgroup",
     ]
     chosen = ["--suite", suite] if (ROOT / "tests/suites.py").exists() else ["-m", "not soak"]
-    code = subprocess.run(
-        [*command, "--no-loadscope-reorder", *chosen], cwd=ROOT, env=environment, check=False
-    ).returncode
+    command += ["--no-loadscope-reorder", *(words or chosen)]
+    code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
     recording = read(folder, engine)
     print(f"{len(recording.cpu):,} tests, {sum(recording.cpu.values()):,.0f} s of processor time")
     return code
@@ -363,9 +362,10 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2, help="how many mutants are tried at once (default: 2)")
     parser.add_argument("--results", type=Path, metavar="FILE")
     parser.add_argument("--resume", action="store_true", help="keep the results that are there")
+    parser.add_argument("words", nargs="*", help="for --record, after `--`: what pytest is to run instead of the suite")
     options = parser.parse_args()
     if options.record:
-        return record(options.record, options.suite)
+        return record(options.record, options.suite, options.words)
     return compare(*options.compare) if options.compare else draw(options)
 
 

@@ -107,8 +107,9 @@ class Source:
         for node in _expressions(statement):
             found += self._expression(node)
         match statement:
-            case ast.Assign(value=ast.expr() as value) | ast.AnnAssign(value=ast.expr() as value) if not found:
-                found.append(self._replace("assign", value, "None", statement))
+            case ast.Assign(value=ast.expr() as value) | ast.AnnAssign(value=ast.expr() as value):
+                if not found and not isinstance(value, ast.Constant):
+                    found.append(self._replace("assign", value, "None", statement))
         return found
 
     def _statement(self, node: ast.stmt) -> Iterator[Change]:
@@ -294,7 +295,7 @@ def _others(value: object) -> tuple[str, ...]:
         case bool():
             return (str(not value),)
         case int() | float():
-            others = {repr(value + 1), repr(type(value)(0)) if value else repr(value - 1), repr(value * 2 or 1)}
+            others = {repr(value + 1), repr(type(value)(0)) if value else repr(value - 1), repr(value * 2 or value + 1)}
             return tuple(sorted(text if text[0] != "-" else f"({text})" for text in others))
         case str() if not re.search(r"\s", value):
             return (repr(value + "X"), "''") if value else ("'X'",)
