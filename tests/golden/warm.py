@@ -1,0 +1,183 @@
+"""Command lines that are run one after another in one process, so that what Python imports is paid for once.
+
+    with Warm() as warm:
+        done = warm.run(["run", "minimal", "--only", "brain"], folder)
+
+What a command prints, its exit code, and, where it is looked at, what its nodes are made of. The process is a program
+of its own: signals, standard streams and the working folder are those of a terminal.
+"""
+
+import json
+import os
+import sys
+import threading
+import traceback
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+from tests.golden import adapters_running
+from tests.guarded import PIPE, Guarded
+
+ROOT = Path(__file__).parents[2]
+TICKS = 5
+"""After how many ticks of each a process is looked at: all parts that can begin have begun."""
+PLAIN = {
+    "COLUMNS": "100",
+    "LANG": "C.UTF-8",
+    "LC_ALL": "C.UTF-8",
+    "NO_COLOR": "1",
+    "PYTHONHASHSEED": "0",
+    "TERM": "dumb",
+    "TZ": "UTC",
+}
+"""What of the environment a command may print or go by."""
+DROPPED = ("LUMEN_", "PYTEST_", "COV_", "XDG_")
+END_TIMEOUT = 60.0
+"""How long a thread of a command that has ended may take to end [s]."""
+
+
+class Done(NamedTuple):
+    """A command that has ended; `nodes` are what it was made of, each at the same moment."""
+
+    code: int
+    out: str
+    err: str
+    nodes: list[dict[str, Any]]
+    subscribed: list[str]
+    threads: list[str]
+    left: list[str]
+
+
+class Warm:
+    """A process that runs command lines of `lumen`."""
+
+    def __init__(self, home: Path) -> None:
+        self._home = home
+        self._process = Guarded(
+            [sys.executable, "-m", "tests.golden.warm", home],
+            cwd=ROOT, stdin=PIPE, stdout=PIPE, text=True, env=environment(home),
+        )  # fmt: skip
+
+    def run(
+        self,
+        arguments: Sequence[object],
+        folder: Path,
+        *,
+        nodes: int = 0,
+        ends: bool = True,
+        env: Mapping[str, str] | None = None,
+    ) -> Done:
+        """Run a command in a folder. With `nodes` so many are looked at, and it is ended then, unless it ends."""
+        asked = {"arguments": [str(one) for one in arguments], "folder": str(folder), "nodes": nodes, "ends": ends}
+        assert self._process.stdin
+        assert self._process.stdout
+        self._process.stdin.write(json.dumps({**asked, "env": dict(env or {})}) + "\n")
+        self._process.stdin.flush()
+        line = self._process.stdout.readline()
+        assert line, f"the process that runs {arguments} ended: {self._process.wait()}"
+        return Done(*json.loads(line))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        assert self._process.stdin
+        self._process.stdin.close()
+        self._process.wait()
+        assert self._process.stdout
+        self._process.stdout.close()
+
+
+def environment(home: Path) -> dict[str, str]:
+    """An environment that is the same on each machine but for where programs are."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(DROPPED)}
+    places = {"XDG_STATE_HOME": str(home / "state"), "XDG_CACHE_HOME": str(home / "cache"), "HOME": str(home)}
+    return {**kept, **PLAIN, **places, "OPENBLAS_NUM_THREADS": "1"}
+
+
+def _serve(home: Path) -> None:
+    """Run what is asked for on standard input, a line each, until that ends."""
+    asked, answers = os.fdopen(os.dup(0), "r"), os.fdopen(os.dup(1), "w")
+    nowhere = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nowhere, 0)
+    for line in asked:
+        answers.write(json.dumps(_run(json.loads(line), home)) + "\n")
+        answers.flush()
+
+
+def _run(asked: dict[str, Any], home: Path) -> Done:
+    out, err = home / "out", home / "err"
+    handles = [os.open(file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND) for file in (out, err)]
+    for number, handle in enumerate(handles, 1):
+        os.dup2(handle, number)
+        os.close(handle)
+    before = dict(os.environ)
+    os.environ.update(asked["env"])
+    os.chdir(asked["folder"])
+    look = _Look(asked["nodes"], ends=asked["ends"])
+    with adapters_running.looked_at(look) as traces:
+        look.traces = traces
+        code = _code(asked["arguments"])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.chdir(home)
+    os.environ.clear()
+    os.environ.update(before)
+    left = [thread for thread in traces.threads if not _ended(thread)]
+    names = look.threads if look.threads is not None else _names(traces.threads)
+    texts = [file.read_text("utf-8") for file in (out, err)]
+    subscribed = look.subscribed if look.subscribed is not None else traces.subscribed
+    return Done(code, *texts, look.found, subscribed, names, _names(left))
+
+
+def _code(arguments: list[str]) -> int:
+    try:
+        return adapters_running.main(arguments)
+    except SystemExit as error:
+        return error.code if isinstance(error.code, int) else 1
+    except BaseException:
+        traceback.print_exc()
+        return 1
+
+
+class _Look:
+    """Looks at nodes once each has lived through some ticks."""
+
+    def __init__(self, wanted: int, *, ends: bool) -> None:
+        self._wanted, self._ends = wanted, ends
+        self._ticks: dict[Any, int] = {}
+        self.found: list[dict[str, Any]] = []
+        self.traces: adapters_running.Traces | None = None
+        self.threads: list[str] | None = None
+        self.subscribed: list[str] | None = None
+
+    def __call__(self, node: Any) -> None:
+        if not self._wanted or len(self.found) == self._wanted:
+            return
+        self._ticks[node] = self._ticks.get(node, 0) + 1
+        due = [one for one, ticks in self._ticks.items() if ticks >= TICKS]
+        if len(due) < self._wanted:
+            return
+        assert self.traces
+        self.found = [adapters_running.described(one) for one in due]
+        self.threads, self.subscribed = _names(self.traces.threads), list(self.traces.subscribed)
+        if self._ends:
+            for one in due:
+                adapters_running.end(one)
+
+
+def _names(threads: Sequence[threading.Thread]) -> list[str]:
+    """Their names in order, without those of timers, which come and go as the machine is fast."""
+    return sorted(thread.name for thread in threads if not isinstance(thread, threading.Timer))
+
+
+def _ended(thread: threading.Thread) -> bool:
+    if isinstance(thread, threading.Timer):
+        return True
+    thread.join(END_TIMEOUT)
+    return not thread.is_alive()
+
+
+if __name__ == "__main__":
+    _serve(Path(sys.argv[1]))
