@@ -7,20 +7,21 @@ WITH := sh scripts/with_packages.sh
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
-# Four more than there are cores: many tests wait for processes of their own.
-WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 4)
+WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
+PYTEST = $(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder
 LEFT_OUT := soak or slow or broker or physics or npm
 
 # Where Python may not write what it has compiled, each of the processes that tests start compiles everything again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run setup quick test tested soak broker check docs packages clean
+.PHONY: help run setup quick test tested test-all rest soak broker check docs packages clean
 
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
 	@echo "make setup    what the tests need: .venv, Debian packages, what npm has"
 	@echo "make quick    for a minute the tests nearest to what changed, without the long ones (TESTS=tests/FOLDER)"
-	@echo "make test     everything, with style, types and floors"
+	@echo "make test     what proves Lumen: style, types, all that is deterministic, and one broker, browser and physics"
+	@echo "make test-all every test; make rest: those that make test leaves out"
 	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
 	@echo "make docs     the documentation as a site, build/docs/index.html; what it shows is run and compared"
@@ -44,11 +45,15 @@ test: setup
 
 tested:
 	@$(BIN)/lumen lint --strict
-	@$(BIN)/python -m pytest --collect-only -qq tests >/dev/null || true # compiled once, not by each worker
-	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder -rs -m "not soak"
+	@$(PYTEST) -m "not soak" --suite test
+
+test-all: test rest
+
+rest: setup
+	@$(PYTEST) -m "not soak" --suite rest
 
 soak: setup check
-	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder -rs -m soak -p tests.soaking
+	@$(PYTEST) -m soak -p tests.soaking
 
 broker: .venv/test
 	@echo rabbitmq-server | sh scripts/packages.sh /dev/stdin

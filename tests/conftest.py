@@ -6,25 +6,11 @@ from pathlib import Path
 
 from hypothesis import settings
 
-from tests.cpu_time import (
-    pytest_addoption,
-    pytest_runtest_makereport,
-    pytest_runtest_protocol,
-    pytest_terminal_summary,
-)
-from tests.garbage import pytest_collection_finish
-from tests.marking import pytest_collection_modifyitems
 from tests.rabbitmq import broker
 
-__all__ = [
-    "broker",
-    "pytest_addoption",
-    "pytest_collection_finish",
-    "pytest_collection_modifyitems",
-    "pytest_runtest_makereport",
-    "pytest_runtest_protocol",
-    "pytest_terminal_summary",
-]
+__all__ = ["broker"]
+
+pytest_plugins = ["tests.suites", "tests.marking", "tests.cpu_time", "tests.garbage"]
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -16,10 +16,14 @@ from typing import Any
 import pytest
 
 from tests.fetched import fetched
+from tests.guarded import Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
 
 PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
+NETWORK = ("http.", "socket", "lumen.console.serving", "lumen.buses.broker", "lumen.buses.local")
+"""What opens ports or connections."""
+BROWSER = "tests.console.browser"
 SHARED = frozenset(("broker", "own_broker", "speaker"))
 """The fixtures that are a broker for several tests."""
 
@@ -82,11 +86,16 @@ def marks(thing: Any) -> frozenset[str]:
         seen.add(id(one))
         if one is RabbitMQ:
             found.add("broker")
+        elif one is Guarded or one is run_guarded:
+            found.add("process")
         elif one is fetched:
             found.add("npm")
         elif home(one).startswith(PHYSICS):
             found.add("physics")
+        elif home(one).startswith(NETWORK):
+            found.add("network")
         elif home(one).startswith("tests."):
+            found.update(["browser"] * (home(one) == BROWSER))
             left += named(one)
     return frozenset(found)
 

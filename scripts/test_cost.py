@@ -1,0 +1,82 @@
+"""Print what the tests cost in processor time: by folder, the twenty dearest, and all of a run.
+
+    python scripts/test_cost.py [--suite test|rest|all] [--markdown] [-- PYTEST_ARGUMENTS]
+
+Processor time, since machines and what else they do differ by a factor of three on the wall. A test's share is what its
+worker, and the processes that the worker waited for, used meanwhile; what is shared (collecting, the one browser, the
+one broker) is the line below the folders.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from collections import defaultdict
+from pathlib import Path
+from xml.etree import ElementTree
+
+from measured import Measured, measured
+
+DEAREST = 20
+
+
+def main() -> int:
+    """Run the tests, and print the tables; pytest's exit code."""
+    parser = argparse.ArgumentParser(description="Print what the tests cost in processor time.")
+    parser.add_argument("--suite", choices=("test", "rest", "all"), default="test")
+    parser.add_argument("--workers", default=str(os.cpu_count() or 1), help="of pytest-xdist; 0 for none")
+    parser.add_argument("--markdown", action="store_true", help="print tables for a document")
+    parser.add_argument("arguments", nargs="*", help="for pytest")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.xml"
+        how = ["-n", given.workers, "--dist", "loadgroup", "--no-loadscope-reorder", "--suite", given.suite]
+        command = [sys.executable, "-m", "pytest", *how, "-m", "not soak", f"--junitxml={report}", *given.arguments]
+        run = measured(command)
+        if not report.exists():
+            return run.code
+        costs = read(report)
+    print()
+    for line in (markdown if given.markdown else plain)(folders(costs), run):
+        print(line)
+    print(f"\nThe {DEAREST} dearest tests:\n")
+    for name, cost in sorted(costs.items(), key=lambda item: -item[1])[:DEAREST]:
+        print(f"{cost:8.1f} s  {name}")
+    return run.code
+
+
+def read(report: Path) -> dict[str, float]:
+    """The processor time of each test in a report of pytest [s]."""
+    found: dict[str, float] = {}
+    for case in ElementTree.parse(report).iter("testcase"):
+        for entry in case.iter("property"):
+            if entry.get("name") == "cpu_time":
+                found[f"{case.get('classname')}::{case.get('name')}"] = float(entry.get("value") or 0)
+    return found
+
+
+def folders(costs: dict[str, float]) -> dict[str, tuple[int, float]]:
+    """How many tests each folder has, and what they cost [s], the dearest first."""
+    found: dict[str, list[float]] = defaultdict(list)
+    for name, cost in costs.items():
+        found[name.split(".")[1].split("::")[0]].append(cost)
+    return dict(sorted(((name, (len(each), sum(each))) for name, each in found.items()), key=lambda row: -row[1][1]))
+
+
+def plain(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:
+    shared = run.cpu - sum(cost for _, cost in rows.values())
+    lines = [f"{cost:8.1f} s  {count:6d} tests  {name}" for name, (count, cost) in rows.items()]
+    count = sum(count for count, _ in rows.values())
+    return [*lines, f"{shared:8.1f} s  shared: collecting, browser, broker", f"{run.cpu:8.1f} s  {count:6d} tests: {run}"]
+
+
+def markdown(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:
+    shared = run.cpu - sum(cost for _, cost in rows.values())
+    lines = [f"| {name} | {count} | {cost:.1f} |" for name, (count, cost) in rows.items()]
+    head = ["| folder | tests | processor time [s] |", "| --- | ---: | ---: |"]
+    count = sum(count for count, _ in rows.values())
+    return [*head, *lines, f"| shared | | {shared:.1f} |", f"| all | {count} | {run.cpu:.1f} |", "", f"{run}."]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
