@@ -35,6 +35,7 @@ def undelivered(channel: AlertChannel, root: Path = Path()) -> UndeliveredError:
     return error.value
 
 
+@pytest.mark.once
 def test_a_webhook_gets_json(web: Webs, monkeypatch: pytest.MonkeyPatch) -> None:
     here = web()
     monkeypatch.setenv("LUMEN_ALERT_TOKEN", "secret")
@@ -79,6 +80,7 @@ def mail(port: int, security: str = "none") -> Mail:
     return Mail("127.0.0.1", port, security, "lumen@example.org", ("day@example.org", "night@example.org"))
 
 
+@pytest.mark.once
 def test_a_mail() -> None:
     post = Post()
     send(mail(post.port))
@@ -140,6 +142,7 @@ def script(root: Path, text: str) -> Program:
     return Program((sys.executable, "page.py", "a b", "$HOME; x"))
 
 
+@pytest.mark.once
 def test_a_program_gets_json_and_its_words_as_they_are(tmp_path: Path) -> None:
     command = script(tmp_path, "import sys; open('got','w').write(sys.stdin.read() + '|' + '|'.join(sys.argv[1:]))")
     send(command, tmp_path)

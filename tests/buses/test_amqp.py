@@ -75,6 +75,7 @@ def test_closing_leaves_no_thread_and_no_queue(broker: RabbitMQ, stranger: Any) 
         stranger.queue_declare(queue, passive=True)
 
 
+@pytest.mark.once
 def test_on_the_wire_it_is_json_on_amq_topic(bus: Bus, stranger: Any) -> None:
     queue = stranger.queue_declare("", exclusive=True).method.queue
     stranger.queue_bind(queue, "amq.topic", "avatar.NAO.data.*")
@@ -89,6 +90,7 @@ def test_on_the_wire_it_is_json_on_amq_topic(bus: Bus, stranger: Any) -> None:
     assert 1500 < int(properties.expiration) <= 2000
 
 
+@pytest.mark.once
 def test_a_module_of_2015_gets_its_answer_in_its_queue_as_plain_text(bus: Bus, stranger: Any) -> None:
     bus.subscribe("avatar.NAO.command", lambda message: bus.reply(message, "command finished"))
     queue = stranger.queue_declare("", exclusive=True).method.queue
@@ -188,6 +190,7 @@ def test_who_publishes_sends_unless_the_connection_is_in_use(bus: Any, monkeypat
     assert senders[b'"in use"'] == "lumen-bus-out"
 
 
+@pytest.mark.once
 def test_a_flood_arrives_whole(bus: Bus) -> None:
     seen = Collector()
     bus.subscribe("lumen.flood", seen)

@@ -49,6 +49,7 @@ def ended(wire: socket.socket) -> bool:
     return True
 
 
+@pytest.mark.once
 def test_only_the_owner_can_open_it(opened: Opened) -> None:
     assert stat.S_IMODE(Path(opened.server.address.path).stat().st_mode) == 0o600
 
@@ -191,6 +192,7 @@ def test_who_dies_is_forgotten(opened: Opened) -> None:
     client.close()
 
 
+@pytest.mark.once
 def test_when_the_exhibition_ends_its_clients_are_told(opened: Opened) -> None:
     client = LocalBusClient(opened.server.address)
     opened.server.close()

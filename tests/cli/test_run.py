@@ -105,6 +105,7 @@ def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) 
     assert "Selamat pagi!" in capsys.readouterr().out
 
 
+@pytest.mark.once
 def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> None:
     """At ten times real time, for a broker does not hurry when simulated time does."""
     story = project.stories["visitor"]
@@ -124,6 +125,7 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
     ]
 
 
+@pytest.mark.once
 @pytest.mark.slow
 def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
     """A person on a pipe: each line waits for what it answers."""
@@ -146,6 +148,7 @@ def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
     assert "visitor  walks away" in told
 
 
+@pytest.mark.once
 @pytest.mark.slow
 def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) -> None:
     log = tmp_path / "told.txt"

@@ -14,6 +14,7 @@ from tests.cli.conftest import Terminal
 from tests.waiting import until
 
 
+@pytest.mark.once
 @pytest.mark.slow
 def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
     exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -1,10 +1,13 @@
 """A page is told how the robot is and what happens, and what becomes of a command."""
 
+import pytest
+
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Stream
 from tests.waiting import until
 
 
+@pytest.mark.once
 def test_it_says_how_each_robot_is(browser: Browser, hosted: Hosted) -> None:
     said = browser.get("/api/now").data
     [robot] = said["robots"]
@@ -12,6 +15,7 @@ def test_it_says_how_each_robot_is(browser: Browser, hosted: Hosted) -> None:
     assert set(robot) >= set(hosted.exhibition.status())
 
 
+@pytest.mark.once
 def test_rest_is_done_when_the_robot_says_so(browser: Browser, hosted: Hosted) -> None:
     answer = browser.command("rest", robot="NAO")
     assert (answer.status, answer.data["state"], answer.headers["lumen-state"]) == (200, "finished", "sent")

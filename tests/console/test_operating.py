@@ -119,6 +119,7 @@ def test_who_signs_in_sees_what_the_role_may_use(viewer: Viewer, console: str, r
     assert viewer.all("rest-button[main] .rest")
 
 
+@pytest.mark.once
 def test_a_wrong_pin_is_told_and_lets_nobody_in(viewer: Viewer, console: str) -> None:
     viewer.open(console, "robot/NAO", ready=".notice .strong")
     viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))

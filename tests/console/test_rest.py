@@ -168,6 +168,7 @@ def print_times(desk: Desk) -> None:
     sys.stdout.write(f"until the robot rests: median {median(desk.times):.2f} s, p95 {p95:.2f} s\n")
 
 
+@pytest.mark.once
 @pytest.mark.slow
 @pytest.mark.xdist_group("rest")
 def test_rest_at_6_moments_on_the_local_bus(house: House, chromium: Chromium, draw: Random) -> None:

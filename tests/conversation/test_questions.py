@@ -81,6 +81,7 @@ def visit(project: Project, request: pytest.FixtureRequest) -> Callable[..., Vis
 QUESTION = "does Budi think that robots dream"
 
 
+@pytest.mark.once
 def test_a_model_is_asked_without_names_and_what_it_says_is_said(visit: Callable[..., Visit]) -> None:
     here = visit()
     here.says(QUESTION, "answer")

@@ -63,6 +63,7 @@ def test_the_visitor_of_one_is_nobody_to_the_other(two: Path) -> None:
     assert both["ben"] == ["None () ('waiting',)", "done.command.c1 () ()"], "it wakes, and waits"
 
 
+@pytest.mark.once
 def test_the_stop_of_one_stops_nobody_else(two: Path) -> None:
     with opened(two, story=None) as shows:
         house = House({name: show.node for name, show in shows.items()})

@@ -23,6 +23,7 @@ def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.until_told("“Come again, please?”")
 
 
+@pytest.mark.once
 @pytest.mark.slow
 def test_the_visitors_name_survives(live: Live) -> None:
     walker = live.show.visitor

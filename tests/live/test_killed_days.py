@@ -45,6 +45,7 @@ def replayed(folder: Path, **environment: str) -> dict[str, Any]:
     return dict(json.loads(done.stdout))
 
 
+@pytest.mark.once
 @pytest.mark.slow
 @pytest.mark.usefixtures("silent")
 def test_a_visit_that_was_cut_by_a_kill_replays_as_it_was(copy: Path, tmp_path_factory: pytest.TempPathFactory) -> None:

@@ -58,6 +58,7 @@ def test_what_it_can_do(client: Client) -> None:
         assert able[f"{service}Provider"], service
 
 
+@pytest.mark.once
 def test_findings_of_what_is_not_saved(client: Client) -> None:
     """A mistake in an open file is told in every file it concerns, and taken back when it is gone."""
     text = client.open(TOUR)

@@ -105,6 +105,7 @@ def _again(bus: Bus, answers: Collector) -> bool:
     return False
 
 
+@pytest.mark.once
 def test_a_module_of_ones_own_takes_the_place_of_one(bus: Bus, brain: Presence, start: Started) -> None:
     process, perceived = start(str(POSTER)), Collector()
     bus.subscribe("lumen.NAO.social.perception", perceived)

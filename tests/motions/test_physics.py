@@ -84,6 +84,7 @@ def show(name: str, mass: float = 1.0, friction: float = 1.0) -> Show:
     return Show(moments, events, tilt, took)
 
 
+@pytest.mark.once
 @pytest.mark.parametrize("name", SHIPPED)
 def test_it_finishes_upright_and_in_time(name: str) -> None:
     seen = show(name)

@@ -16,6 +16,7 @@ from tests.relay import Relay
 from tests.waiting import Collector
 
 
+@pytest.mark.once
 def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     photo = troupe.folder / "motions" / "photo.yaml"
     cues = "{at: 1.4s, pose: pose, say: {en: Cheese, id: Senyum}, sound: sounds/shutter.wav}"

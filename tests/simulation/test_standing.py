@@ -16,6 +16,7 @@ from tests.simulation.conftest import MODELS, Do, until_answered
 STANDING = ("Stand", "StandInit", "StandZero", "Crouch")
 
 
+@pytest.mark.once
 def test_it_stands(robot: SimulatedRobot) -> None:
     robot.advance(10.0)
     assert robot.greatest_tilt < 2.0
@@ -80,6 +81,7 @@ def test_a_nudge_is_borne(robot: SimulatedRobot) -> None:
     assert robot.world.tilt < 0.05
 
 
+@pytest.mark.once
 def test_a_fall_is_noticed_and_ends_everything(robot: SimulatedRobot, do: Do) -> None:
     robot.start("p", Posture("Crouch", 0.3))
     robot.advance(0.1)

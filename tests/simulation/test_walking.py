@@ -45,6 +45,7 @@ def test_any_robot_ends_where_it_should(body: Body, target: Walk) -> None:
     assert walked.tilt < 10
 
 
+@pytest.mark.once
 def test_it_walks_again_from_where_it_stands_and_can_do_everything_else_there(body: Body) -> None:
     robot = on_the_floor(body, posture="Crouch")
     for target in (Walk(0.1), Walk(-0.1, 0.0, -pi / 6)):
@@ -109,6 +110,7 @@ def test_a_cancelled_walk_ends_balanced_within_a_second(body: Body, moment: floa
     assert np.abs(robot.world.speeds).max() < 0.05
 
 
+@pytest.mark.once
 def test_stop_and_rest_win(body: Body) -> None:
     robot = on_the_floor(body)
     robot.start("w", Walk(0.5))

@@ -38,6 +38,7 @@ def test_the_shipped_story_in_physics(blind: Project, robot: SimulatedRobot) -> 
     assert robot.greatest_tilt < 20.0
 
 
+@pytest.mark.once
 def test_who_is_pushed_over_gets_up_and_goes_on(blind: Project, robot: SimulatedRobot) -> None:
     """A push of 70 N from behind while it greets: it says so, stands up by itself, and says that too."""
 
