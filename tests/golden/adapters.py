@@ -1,0 +1,224 @@
+"""What goldens use of the engine besides its public modules: if those move, only this module changes."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+from unittest.mock import patch
+
+import lumen
+from lumen.app.recovery.previous_run import recover
+from lumen.app.rehearsal import rehearse
+from lumen.app.reload.records import RunRecords
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import takes
+from lumen.buses.local import LocalBusServer
+from lumen.buses.local.address import LocalAddress
+from lumen.buses.local.client import LocalBusClient
+from lumen.cli.main import main
+from lumen.interpreters.replay.command_data import command_data
+from lumen.interpreters.replay.entries import entry_data
+from lumen.interpreters.replay.forking import fork
+from lumen.interpreters.replay.replaying import replay
+from lumen.interpreters.routing import matches
+from lumen.interpreters.statechart import deserialize, serialize
+from lumen.language.commands import Say
+from lumen.language.gestures import merged
+from lumen.ports import Live, Perform, Sense
+from lumen.robots.body_parts import WHOLE_BODY
+from lumen.robots.life_layer import LifeLayer
+from lumen.robots.recording import RecordingRobot
+from lumen.runtime.home import Home
+from lumen.runtime.inputs.frames import FramePacker, unpack
+from lumen.runtime.inputs.journal_file import line_of, read_journal, read_lines
+from lumen.runtime.resuming import FreshStart, Resumption, resume
+from tests.golden.texts import in_one_line
+
+__all__ = [
+    "KeptBundles",
+    "LocalAddress",
+    "LocalBusClient",
+    "LocalBusServer",
+    "Replayed",
+    "Sense",
+    "alive",
+    "continued",
+    "forked",
+    "journal_lines",
+    "main",
+    "matches",
+    "read_positions",
+    "recovered",
+    "reloaded_to",
+    "replayed",
+    "robot_commands",
+    "told_to_robots",
+]
+
+
+def command_text(command: Any) -> Any:
+    """A command as JSON data, as the journal has it; of a motion and a style only the names."""
+    match command:
+        case Perform(motion):
+            return {"Perform": motion.name}
+        case Live(style, gestures):
+            return {"Live": {"style": style.name, "gestures": len(gestures.gestures)}}
+    return command_data(command)
+
+
+@contextmanager
+def told_to_robots(tell: Callable[[float, str, str, Any], None]) -> Iterator[None]:
+    """Call `tell` with the time, the verb, the id and the command of all that a recording robot is told."""
+    start, cancel = RecordingRobot.start, RecordingRobot.cancel
+
+    def started(robot: RecordingRobot, id: str, command: Any) -> None:
+        tell(robot.time, "start", id, command_text(command))
+        start(robot, id, command)
+
+    def cancelled(robot: RecordingRobot, id: str) -> None:
+        tell(robot.time, "cancel", id, None)
+        cancel(robot, id)
+
+    with patch.object(RecordingRobot, "start", started), patch.object(RecordingRobot, "cancel", cancelled):
+        yield
+
+
+def robot_commands(project: lumen.Project, story: str) -> list[tuple[float, str, str, Any]]:
+    """What the robot is told in a story, which is rehearsed; the last one says when it ended, and how."""
+    told: list[tuple[float, str, str, Any]] = []
+    with told_to_robots(lambda *command: told.append(command)):
+        played = rehearse(project, project.stories[story])
+    return [*told, (played.time, "end", "", str(played.failed) if played.failed else None)]
+
+
+def alive(project: lumen.Project, style: str, seconds: float) -> Iterator[dict[str, float]]:
+    """How far life moves each joint [rad] at 50 Hz, while the robot hears, speaks and is led as in a visit."""
+    layer, body = LifeLayer(project.body, seed=7), project.body
+    layer.live(Live(project.life[style], merged(project.gestures)))
+    free = frozenset(WHOLE_BODY)
+    for tick in range(round(seconds * 50)):
+        now = tick / 50
+        match tick:
+            case 250:
+                layer.heard(0.6, -0.1, now)
+            case 500:
+                layer.say(Say("Hello! I am pleased to meet you, and this is a large hall."), 4.0, now)
+            case 900:
+                layer.led(body.joints, now)
+            case 1200:
+                layer.touched("FrontTactil", now)
+        busy = frozenset({"head"}) if 1300 <= tick < 1400 else frozenset()
+        yield dict(layer.advance(now, 1 / 50, free - busy, lambda _part: 1.0))
+
+
+class Replayed(NamedTuple):
+    """An entry of a journal, taken again: the entry as JSON data, what came of it, and the snapshot after it.
+
+    `differs` has what was and what is, if that is not the same; `unknown` says why it could not be taken.
+    """
+
+    position: int
+    entry: dict[str, Any]
+    exited: tuple[str, ...]
+    entered: tuple[str, ...]
+    commands: tuple[Any, ...]
+    digest: str
+    snapshot: dict[str, Any] | None
+    differs: tuple[str, str] | None
+    unknown: str
+
+
+def journal_lines(file: Path) -> tuple[bytes, bool, list[bytes], list[bytes], bool]:
+    """The header of a journal written again, whether it is whole, its lines, the same lines written again.
+
+    The last is whether these are read as they are written after they were packed into frames.
+    """
+    content, lines = read_journal(file), read_lines(file)
+    again = [line_of(entry) for entry in content.entries]
+    packer = FramePacker()
+    packed = b"".join(packer.pack(line) for line in again)
+    return content.header.line(), content.whole, lines, again, [text for text, _ in unpack(packed)] == again
+
+
+def replayed(file: Path, bundles: KeptBundles) -> Iterator[Replayed]:
+    """The entries of a journal, each taken again with the files that ran then."""
+    for row in replay(read_journal(file).entries, bundles.machine):
+        now = row.now
+        after = serialize(row.machine, row.after) if row.machine and row.after else None
+        yield Replayed(
+            row.entry.position,
+            entry_data(row.entry),
+            now.exited if now else (),
+            now.entered if now else (),
+            now.commands if now else (),
+            now.digest if now else "",
+            after,
+            (str(row.was), str(now)) if row.differs else None,
+            row.unknown,
+        )
+
+
+def read_positions(file: Path, event: str) -> list[int]:
+    """Where in a journal that event came from outside."""
+    entries = read_journal(file).entries
+    return [entry.position for entry in entries if entry_data(entry).get("heard") == event]
+
+
+def reloaded_to(file: Path, bundles: KeptBundles) -> lumen.Project:
+    """The files that ran when a file of a journal was written."""
+    project = bundles.load(read_journal(file).header.bundle)
+    assert project
+    return project
+
+
+def forked(
+    file: Path, position: int, bundles: KeptBundles, event: lumen.Event | None, saved: lumen.Project | None
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]], str]:
+    """What was from a position of a journal on, what would have been, and what ended that early."""
+    found = fork(read_journal(file).entries, position, bundles.project, takes, event=event, saved=saved)
+    return list(found.was), list(found.would), found.trouble
+
+
+def continued(
+    old: lumen.Project, new: lumen.Project, frozen: dict[str, Any], away: float, unchanged: float
+) -> list[str]:
+    """How a start goes on with a snapshot, after the engine was away [s]: sentences, or why it does not."""
+    found = resume(old, new, deserialize(old.machine, frozen), away, ("head", "gone"), unchanged)
+    return _how(found, new)
+
+
+def recovered(root: Path, project: lumen.Project, now: float) -> list[str]:
+    """What a start at `now` [s since 1970] makes of the home of a run that ended before."""
+    home = Home(root / ".lumen")
+    assert home.hold()
+    records = RunRecords(home)
+    try:
+        with patch("time.time", lambda: now):
+            found = recover(root, records, project)
+    finally:
+        records.close()
+        home.release()
+    return [*_how(found.how, project), *(f"  news {one.verdict}: {', '.join(one.notes)}" for one in found.news)]
+
+
+def _how(found: Any, project: lumen.Project) -> list[str]:
+    match found:
+        case FreshStart(why, rests, crashed):
+            return [f"  begins anew: {why or 'without a word'}; rests: {rests}, crashed: {crashed}"]
+        case Resumption():
+            return [
+                f"  goes on after {found.away:.3f} s, told to end: {found.told}",
+                *_standing(serialize(project.machine, found.snapshot)),
+                *(f"  command {in_one_line(command_text(command))}" for command in found.commands),
+                f"  lost {' '.join(found.lost)}",
+                f"  tracking {' '.join(found.tracking)}",
+                *(f"  note {note}" for note in found.notes),
+            ]
+    return [f"  can't go on: {found.reason}"]
+
+
+def _standing(now: dict[str, Any]) -> list[str]:
+    """States, context, timers and what is under way in a snapshot."""
+    lines = [f"  states {' '.join(now['configuration'])}", f"  context {in_one_line(now['context'])}"]
+    lines += [f"  timer {one['event']} in {one['due'] - now['at']:.6f} of {one['delay']:g} s" for one in now["timers"]]
+    return [*lines, *(f"  {what} {in_one_line(now[what])}" for what in ("doing", "halted", "history") if now[what])]
