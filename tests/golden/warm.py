@@ -12,10 +12,11 @@ import os
 import sys
 import threading
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
+import lumen
 from tests.golden import adapters_running
 from tests.guarded import PIPE, Guarded
 
@@ -33,12 +34,17 @@ PLAIN = {
 }
 """What of the environment a command may print or go by."""
 DROPPED = ("LUMEN_", "PYTEST_", "COV_", "XDG_")
+OPEN = "open"
+"""In place of a verb: `lumen.open` with what is told as JSON, until it is ended."""
 END_TIMEOUT = 60.0
 """How long a thread of a command that has ended may take to end [s]."""
 
 
 class Done(NamedTuple):
-    """A command that has ended; `nodes` are what it was made of, each at the same moment."""
+    """A command that has ended; `nodes` are what it was made of, each at the same moment.
+
+    `left` are the threads that have not ended, of one that was looked at: others end with their process.
+    """
 
     code: int
     out: str
@@ -115,24 +121,30 @@ def _run(asked: dict[str, Any], home: Path) -> Done:
     before = dict(os.environ)
     os.environ.update(asked["env"])
     os.chdir(asked["folder"])
-    look = _Look(asked["nodes"], ends=asked["ends"])
-    with adapters_running.looked_at(look) as traces:
-        look.traces = traces
-        code = _code(asked["arguments"])
+    done = looked_at(lambda: _code(asked["arguments"]), asked["nodes"], ends=asked["ends"])
     sys.stdout.flush()
     sys.stderr.flush()
     os.chdir(home)
     os.environ.clear()
     os.environ.update(before)
-    left = [thread for thread in traces.threads if not _ended(thread)]
-    names = look.threads if look.threads is not None else _names(traces.threads)
-    texts = [file.read_text("utf-8") for file in (out, err)]
-    subscribed = look.subscribed if look.subscribed is not None else traces.subscribed
-    return Done(code, *texts, look.found, subscribed, names, _names(left))
+    return done._replace(out=out.read_text("utf-8"), err=err.read_text("utf-8"))
+
+
+def looked_at(do: Callable[[], int | None], nodes: int, *, ends: bool = True) -> Done:
+    """Do something and look at the nodes that it makes, so many; what it prints goes where it goes."""
+    look = _Look(nodes, ends=ends)
+    with adapters_running.looked_at(look) as traces:
+        look.traces = traces
+        code = do()
+    left = [thread for thread in traces.threads if not _ended(thread)] if look.found else []
+    threads, subscribed = look.told or (_names(traces.threads), traces.subscribed)
+    return Done(code or 0, "", "", look.found, subscribed, threads, _names(left))
 
 
 def _code(arguments: list[str]) -> int:
     try:
+        if arguments[0] == OPEN:
+            return _open(**json.loads(arguments[1]))
         return adapters_running.main(arguments)
     except SystemExit as error:
         return error.code if isinstance(error.code, int) else 1
@@ -141,27 +153,32 @@ def _code(arguments: list[str]) -> int:
         return 1
 
 
+def _open(path: str, **options: str) -> int:
+    with lumen.open(path, **options) as exhibition:  # type: ignore[arg-type]
+        while not exhibition.over:
+            exhibition.tick()
+    return 0
+
+
 class _Look:
-    """Looks at nodes once each has lived through some ticks."""
+    """Looks at nodes once each has lived through some ticks; `told` are the threads and keys until then."""
 
     def __init__(self, wanted: int, *, ends: bool) -> None:
         self._wanted, self._ends = wanted, ends
         self._ticks: dict[Any, int] = {}
         self.found: list[dict[str, Any]] = []
-        self.traces: adapters_running.Traces | None = None
-        self.threads: list[str] | None = None
-        self.subscribed: list[str] | None = None
+        self.traces = adapters_running.Traces()
+        self.told: tuple[list[str], list[str]] | None = None
 
     def __call__(self, node: Any) -> None:
-        if not self._wanted or len(self.found) == self._wanted:
+        if len(self.found) == self._wanted:
             return
         self._ticks[node] = self._ticks.get(node, 0) + 1
         due = [one for one, ticks in self._ticks.items() if ticks >= TICKS]
         if len(due) < self._wanted:
             return
-        assert self.traces
         self.found = [adapters_running.described(one) for one in due]
-        self.threads, self.subscribed = _names(self.traces.threads), list(self.traces.subscribed)
+        self.told = _names(self.traces.threads), list(self.traces.subscribed)
         if self._ends:
             for one in due:
                 adapters_running.end(one)

@@ -1,0 +1,63 @@
+"""Exhibitions to be started: the frozen small one, with one robot or two, and who is told of trouble."""
+
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tests.golden.golden import PROJECTS
+from tests.rabbitmq import RabbitMQ
+
+ONE = "robot: {name: NAO, model: nao}"
+TWO = "robots:\n  ana: {model: nao, at: {y: -0.4}}\n  ben: {model: nao, at: {y: 0.4}}"
+ALERTS = "alerts: {to: [{command: [./told.sh]}]}\n"
+TOLD = "alerts.jsonl"
+PROGRAM = f'#!/bin/sh\nread -r line\necho "$line" >> {TOLD}\n'
+"""Of the one who is told: a line for each alert, written at once, for two may come at the same time."""
+
+
+def small(folder: Path, *, robots: int = 1, more: str = "") -> Path:
+    """The small exhibition in a new folder; `more` stands at the end of its lumen.yaml."""
+    shutil.copytree(PROJECTS / "minimal", folder)
+    main = folder / "lumen.yaml"
+    text = main.read_text("utf-8")
+    assert ONE in text
+    main.write_text(text.replace(ONE, ONE if robots == 1 else TWO) + ALERTS + more, "utf-8")
+    program = folder / "told.sh"
+    program.write_text(PROGRAM, "utf-8")
+    program.chmod(0o755)
+    return folder
+
+
+@contextmanager
+def broker() -> Iterator[str]:
+    """A broker of our own, with nobody else on it."""
+    rabbitmq = RabbitMQ()
+    try:
+        rabbitmq.start()
+        yield rabbitmq.url
+    finally:
+        rabbitmq.stop()
+
+
+def plain(text: str, *folders: Path) -> str:
+    """A text without what no one can fix: places, ports, processes, times of day and how long things took."""
+    for number, folder in enumerate(folders, 1):
+        text = text.replace(str(folder), "<folder>" if number == 1 else f"<folder {number}>")
+    for pattern, instead in UNFIXED:
+        text = pattern.sub(instead, text)
+    return text
+
+
+UNFIXED = [
+    (re.compile(pattern), instead)
+    for pattern, instead in (
+        (r"ready after [\d.]+ s", "ready after … s"),
+        (r"in \d+ s \([\d.]+ × real time\)", "in … s (… × real time)"),
+        (r"\b\d{4}-\d\d-\d\dT\d\d[:-]\d\d[:-]\d\d(?:\.\d+)?(?:\+00:00|Z)?", "<time>"),
+        (r"\b127\.0\.0\.1:\d+", "127.0.0.1:<port>"),
+        (r"\b[0-9a-f]{16,64}\b", "<hash>"),
+        (r"\bprocess \d+", "process <pid>"),
+    )
+]
