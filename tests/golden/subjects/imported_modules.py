@@ -1,0 +1,114 @@
+"""Third-party packages, and dear ones of Python, that three commands import: each in a process of its own.
+
+The engine's own modules are not listed, since they move; neither is what Python imports before it runs anything.
+"""
+
+import re
+import shutil
+import sys
+import time
+from collections.abc import Iterator
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from types import MappingProxyType
+
+from tests.golden.command_line import CHECKOUT, environment
+from tests.golden.golden import PROJECTS
+from tests.guarded import run_guarded, temporary_folder
+from tests.waiting import until
+
+SUITE = "rest"
+BEGIN = "--- the command begins"
+CODE = f"""
+import sys
+print({BEGIN!r}, file=sys.stderr, flush=True)
+from lumen.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+DEAR = frozenset((
+    "asyncio", "concurrent", "ctypes", "decimal", "email", "http", "inspect", "multiprocessing", "sqlite3", "ssl",
+    "subprocess", "tomllib", "unittest", "urllib", "xml", "zipfile",
+))  # fmt: skip
+"""Packages of Python that take long to import."""
+ENGINE = "lumen"
+KEPT_AFTER = 3.0
+"""A little more than the age of files from which on the engine keeps what it found in them [s]."""
+COMMANDS = {
+    "version": ("--version",),
+    "lint-cold": ("lint",),
+    "lint-kept": ("lint",),
+    "run-recording": ("run", "--robot", "recording", "--speed", "max", "--story", "visitor"),
+}
+LINE = re.compile(r"import time: +\d+ \| +\d+ \|( +)([\w.]+)")
+
+
+def record(folder: Path) -> None:
+    """Write the sorted names for each command, one on a line."""
+    for command in COMMANDS:
+        names = sorted(imported()[command])
+        (folder / f"{command}.txt").write_text("".join(f"{name}\n" for name in names), "utf-8")
+
+
+def explain(recorded: Path, now: Path) -> Iterator[str]:
+    """Yield a sentence for each package that a command did not import when it was recorded."""
+    for command, words in COMMANDS.items():
+        files = (recorded / f"{command}.txt", now / f"{command}.txt")
+        before, after = (set(file.read_text("utf-8").split()) if file.is_file() else set() for file in files)
+        for name in sorted(after - before):
+            yield f"`lumen {' '.join(words)}` ({command}) imports {name} now: {imported()[command][name]}"
+
+
+@cache
+def imported() -> MappingProxyType[str, dict[str, str]]:
+    """Return, for each command, its packages and what led to them, from the engine on."""
+    work = temporary_folder("lumen-imports-")
+    project = work / "minimal"
+    shutil.copytree(PROJECTS / "minimal", project)
+    _settle(project)
+    variables = {**environment(work), "PYTHONPATH": str(CHECKOUT / "engine")}
+    found = {}
+    for command, words in COMMANDS.items():
+        call = [sys.executable, "-X", "importtime", "-c", CODE, *words]
+        done = run_guarded(call, cwd=project, env=variables, capture_output=True, text=True, timeout=600)
+        assert done.returncode == 0, f"lumen {' '.join(words)} ended with {done.returncode}: {done.stderr[-2000:]}"
+        assert BEGIN in done.stderr, done.stderr[-2000:]
+        found[command] = _packages(done.stderr.split(BEGIN, 1)[1])
+    shutil.rmtree(work)
+    return MappingProxyType(found)
+
+
+def _packages(report: str) -> dict[str, str]:
+    """Return the packages that count, with the chain of imports that led to each, of a report of `-X importtime`.
+
+    It lists a module after those that it imports, which are indented by two more.
+    """
+    rows = [(len(found[1]), found[2]) for found in LINE.finditer(report)]
+    assert any(name == ENGINE for _, name in rows), report[-2000:]
+    found: dict[str, str] = {}
+    above: list[tuple[int, str]] = []
+    for depth, name in reversed(rows):
+        while above and above[-1][0] >= depth:
+            above.pop()
+        package = name.partition(".")[0]
+        if _counts(package):
+            chain = [one for _, one in above]
+            ours = max((i for i, one in enumerate(chain) if one.partition(".")[0] == ENGINE), default=0)
+            found[package] = " imports ".join([*chain[ours:], name]) if chain else f"the command imports {name}"
+        above.append((depth, name))
+    return found
+
+
+@cache
+def _counts(package: str) -> bool:
+    """Return whether to list it: it is no part of Python or the engine, and was not only looked for in vain."""
+    if package in DEAR:
+        return True
+    known = package.startswith("_") or package in (ENGINE, *sys.stdlib_module_names)
+    return not known and find_spec(package) is not None
+
+
+def _settle(project: Path) -> None:
+    """Wait until the files are old enough for lint to keep its findings: a change must show in their times."""
+    newest = max(file.stat().st_ctime for file in (project, *project.rglob("*")))
+    until(lambda: time.time() > newest + KEPT_AFTER)
