@@ -17,6 +17,11 @@ PATIENT = "2h"
 
 @pytest.fixture
 def copy(whole: Path) -> Path:
+    return trimmed(whole)
+
+
+def trimmed(whole: Path) -> Path:
+    """The copy with few stories and a patient guide."""
     for story in (whole / "behaviors" / "stories").glob("*.yaml"):
         if story.stem not in ("refuses", "known_visitor"):
             story.unlink()

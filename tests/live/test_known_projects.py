@@ -3,22 +3,53 @@
 import os
 import shutil
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 from lumen.app.reload import known_projects, validation_worker
 from lumen.app.reload.idle_process import end_idle
 from lumen.app.reload.validation_worker import ValidationWorker, load_apart
+from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.upkeep import cache_folder
+from tests.live.conftest import trimmed
+from tests.tour.conftest import copied
 
 MAIN = "lumen.yaml"
 
 
+class Known(NamedTuple):
+    """A project that one process has judged, and the cache that keeps it."""
+
+    folder: Path
+    project: Project
+    cache: Path
+
+
+@pytest.fixture(scope="module")
+def known(tmp_path_factory: pytest.TempPathFactory) -> Known:
+    """Judged once for all tests; nobody changes its files or its cache."""
+    folder, home = trimmed(copied(tmp_path_factory.mktemp("project"))), tmp_path_factory.mktemp("home")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(home))
+        project, _ = load_apart(folder, read_files(folder))
+    assert project
+    return Known(folder, project, home / "lumen/projects")
+
+
 @pytest.fixture(autouse=True)
 def cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """The folder of the test's own cache, which is not there yet."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return tmp_path / "cache/lumen/projects"
+
+
+@pytest.fixture
+def kept(known: Known, cache: Path) -> Path:
+    """A copy of the judged project, which the test's cache keeps; both may be changed."""
+    shutil.copytree(known.cache, cache)
+    return Path(shutil.copytree(known.folder, cache.parents[2] / "project"))
 
 
 def alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -31,57 +62,56 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(validation_worker.subprocess, "Popen", refused)
 
 
-def test_the_second_start_needs_no_process(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    files = read_files(copy)
-    first, _ = load_apart(copy, files)
+@pytest.mark.usefixtures("kept")
+def test_the_second_start_needs_no_process(known: Known, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
-    again, _ = load_apart(copy, files)
-    assert again == first
+    again, _ = load_apart(known.folder, read_files(known.folder))
+    assert again == known.project
     assert again
-    assert again.documents["behaviors/tour.yaml"] == first.documents["behaviors/tour.yaml"]  # type: ignore[union-attr]
+    assert again.documents["behaviors/tour.yaml"] == known.project.documents["behaviors/tour.yaml"]
 
 
-def test_the_same_files_elsewhere_are_the_same_project_there(
-    copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    load_apart(copy, read_files(copy))
+def test_the_same_files_elsewhere_are_the_same_project_there(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
-    there = Path(shutil.copytree(copy, tmp_path / "there"))
-    found, _ = load_apart(there, read_files(there))
+    found, _ = load_apart(kept, read_files(kept))
     assert found
-    assert found.root == str(there)
+    assert found.root == str(kept)
 
 
 @pytest.mark.parametrize("what", ["a file", "a file of a model that is not read", "the engine"])
-def test_anything_else_is_read(what: str, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (copy / "models").mkdir(exist_ok=True)
-    load_apart(copy, read_files(copy))
+def test_anything_else_is_read(what: str, kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
     match what:
         case "a file":
-            (copy / MAIN).write_bytes((copy / MAIN).read_bytes() + b"# more\n")
+            (kept / MAIN).write_bytes((kept / MAIN).read_bytes() + b"# more\n")
         case "the engine":
             monkeypatch.setattr(known_projects, "engine", lambda: "another")
         case _:
-            (copy / "models/foot.stl").write_bytes(b"")
+            (kept / "models/foot.stl").write_bytes(b"")
     with pytest.raises(AssertionError, match="a process is begun"):
-        load_apart(copy, read_files(copy))
+        load_apart(kept, read_files(kept))
 
 
-@pytest.mark.parametrize("trouble", ["half of it", "nonsense", "others may write there", "nothing can be kept"])
+@pytest.mark.parametrize("trouble", ["half of it", "nonsense", "others may write there"])
 def test_what_is_kept_badly_is_read_again(
-    trouble: str, copy: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
+    trouble: str, kept: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if trouble == "nothing can be kept":
-        cache.parent.parent.mkdir()
-        cache.parent.write_bytes(b"")
-    files = read_files(copy)
-    assert load_apart(copy, files)[0]
-    for file in cache.iterdir() if cache.is_dir() else ():
+    assert [*cache.iterdir()]
+    for file in cache.iterdir():
         if trouble in ("half of it", "nonsense"):
             file.write_bytes(file.read_bytes()[:1000] if trouble == "half of it" else b"nonsense")
     if trouble == "others may write there":
         cache.chmod(0o777)
+    alone(monkeypatch)
+    with pytest.raises(AssertionError, match="a process is begun"):
+        load_apart(kept, read_files(kept))
+
+
+def test_what_can_not_be_kept_is_read_again(copy: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cache.parent.parent.mkdir()
+    cache.parent.write_bytes(b"")
+    files = read_files(copy)
+    assert load_apart(copy, files)[0]
     alone(monkeypatch)
     with pytest.raises(AssertionError, match="a process is begun"):
         load_apart(copy, files)
