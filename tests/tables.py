@@ -1,7 +1,8 @@
 """Tables of small cases: one test that goes through all rows, and lists every one that fails.
 
 `@for_each` accepts what `pytest.mark.parametrize` accepts, without marks. It is for rows that cost little. Cases that
-take half a second, start a process or need a fixture of their own are parametrized, so that workers share them.
+take half a second, start a process or need a fixture of their own are parametrized, so that workers share them. Of
+pytest's own fixtures each row has `tmp_path`, `monkeypatch` and `capsys` as if it were the only one.
 """
 
 import functools
@@ -50,7 +51,10 @@ def for_each(names: str | Sequence[str], cases: Iterable[Any], ids: Ids = None) 
         @functools.wraps(inner)
         def every(**fixtures: Any) -> None:
             __tracebackhide__ = True
-            check((row.name, functools.partial(inner, **row.given, **fixtures)) for row in every.rows)  # type: ignore[attr-defined]
+            check(
+                (row.name, functools.partial(_run, inner, row.given, fixtures, str(number)))
+                for number, row in enumerate(every.rows)  # type: ignore[attr-defined]
+            )
 
         every.rows = [_both(one, two) for two in rows for one in within]  # type: ignore[attr-defined]
         signature = inspect.signature(test)
@@ -76,6 +80,20 @@ def check(cases: Iterable[tuple[str, Callable[[], object]]]) -> None:
         listed = [f"- {name}: {_sentence(error)}" for name, error in failed[:SHOWN]]
         listed += [f"- {name}" for name, _ in failed[SHOWN:]]
         raise CasesFailedError("\n".join([f"{len(failed)} of {count} cases fail:", *listed])) from failed[0][1]
+
+
+def _run(test: Callable[..., None], given: dict[str, Any], fixtures: dict[str, Any], number: str) -> None:
+    """Run one row with a folder, patches and captured output that no other row has seen."""
+    own = dict(fixtures)
+    if "tmp_path" in own:
+        own["tmp_path"] /= number
+        own["tmp_path"].mkdir()
+    if "capsys" in own:
+        own["capsys"].readouterr()
+    with pytest.MonkeyPatch.context() as patch:
+        if "monkeypatch" in own:
+            own["monkeypatch"] = patch
+        test(**given, **own)
 
 
 def _row(keys: Sequence[str], case: Any, ids: Sequence[str] | Callable[[Any], object] | None, number: int) -> Row:

@@ -1,6 +1,9 @@
 """A table of cases is one test: it runs every row and lists all failures."""
 
 import inspect
+import os
+from pathlib import Path
+from traceback import extract_tb
 
 import pytest
 
@@ -31,7 +34,9 @@ def test_every_row_runs_and_all_failures_are_listed() -> None:
         "- 1-2-2: a is smaller",
         "- late-2: a is smaller",
     ]
-    assert f"  (tests/house/test_tables.py:{caught.value.__cause__.__traceback__.tb_next.tb_lineno})" in words
+    assert caught.value.__cause__
+    line = extract_tb(caught.value.__cause__.__traceback__)[-1].lineno
+    assert f"  (tests/house/test_tables.py:{line})" in words
 
 
 def test_pytest_passes_only_the_fixtures() -> None:
@@ -51,3 +56,16 @@ def test_many_failures_are_named_and_only_some_described() -> None:
     lines = str(caught.value).split("\n")
     assert lines[0] == "30 of 30 cases fail:"
     assert lines[-1] == "- case 29"
+
+
+@for_each("number", [0, 1])
+def test_every_row_has_its_own_folder_patches_and_output(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert [*tmp_path.iterdir()] == []
+    (tmp_path / "file").touch()
+    assert "LUMEN_ROW" not in os.environ
+    monkeypatch.setenv("LUMEN_ROW", "set")
+    print(number)  # noqa: T201
+    assert capsys.readouterr().out == f"{number}\n"
+    print("left behind")  # noqa: T201
