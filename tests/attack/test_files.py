@@ -10,6 +10,7 @@ from lumen.cli.main import main
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from tests.attack.files import FOREIGN, LARGEST, damaged, foreign_file, project_file
+from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parents[1] / "lint" / "base")
 LIMIT = 5.0
@@ -52,7 +53,7 @@ def test_a_hostile_file_of_another_tool_is_imported_or_a_line(
         assert "Traceback" not in error
 
 
-@pytest.mark.parametrize("ending", FOREIGN)
+@for_each("ending", FOREIGN)
 def test_the_sound_file_of_each_kind_is_imported(ending: str, tmp_path: Path) -> None:
     (tmp_path / f"sound.{ending}").write_text(FOREIGN[ending], "utf-8")
     assert main(["import", str(tmp_path / f"sound.{ending}"), "-o", str(tmp_path / "out.yaml")]) in (0, 1)
@@ -84,7 +85,7 @@ def test_hundreds_of_thousands_of_blanks_are_nothing(name: str, blank: str, tmp_
     assert time.process_time() - began < 2.0
 
 
-@pytest.mark.parametrize("name", NUMBERED)
+@for_each("name", NUMBERED)
 def test_numbers_of_thousands_of_digits_are_findings(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from lumen.cli.main import VERBS, main
 from tests.guarded import Guarded, run_guarded
+from tests.tables import for_each
 from tests.waiting import HANG, until
 
 ROOT = Path(__file__).parents[2]
@@ -31,7 +32,7 @@ def test_options_are_completed_but_those_that_are_there(capsys: pytest.CaptureFi
     assert completed(capsys, "lint", "--select", "speech", "--sel") == ["--select"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("words", "some"),
     [
         (["lint", "--format", ""], "sarif"),

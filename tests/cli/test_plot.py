@@ -14,6 +14,7 @@ from lumen.cli.main import main
 from lumen.formats.plots import controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.motion import Motion
+from tests.tables import for_each
 
 HEAD = "fuzzy/head.yaml"
 SEVERAL = {
@@ -127,7 +128,7 @@ def test_any_name_can_be_drawn(head: Controller) -> None:
     assert Image.open(io.BytesIO(draw(sheet, ".png"))).size[0] > 0
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("arguments", "words"),
     [
         (["fuzzy/haed.yaml"], "did you mean `fuzzy/head.yaml`?"),

@@ -75,7 +75,7 @@ def test_a_run_tells_on_standard_error_and_says_how_it_ended(copy: Path, capsys:
     assert out.count("\n") == 1
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("words", "answer"),
     [
         (["lnt"], "there is no verb `lnt`: did you mean `lint`?"),

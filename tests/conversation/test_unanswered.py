@@ -17,6 +17,7 @@ from lumen.language.commands import Ask, Start
 from lumen.language.events import Event
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests.tables import for_each
 
 
 def asks(position: int, id: str, question: str) -> JournalInput:
@@ -65,7 +66,7 @@ def test_the_robot_answers_it_from_then_on(tmp_path: Path) -> None:
     assert project.knowledge["what-is-love"].answer == {"en": "A question."}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("question", "answer", "language"),
     [("", "x", "en"), ("?", "x", "en"), ("x", " ", "en"), ("x" * 1001, "x", "en"), ("x", "x", "../en"), ("x", "x", "")],
 )

@@ -275,7 +275,7 @@ def test_no_file_breaks_a_reader(read: Read, text: str, data: st.DataObject) -> 
     assert set(found) <= {"description", "inputs", "outputs", "rules", "operators", "blocks"}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "content", "words"),
     [
         ("a.fll", b"", "no variables"),

@@ -10,6 +10,7 @@ import pytest
 from lumen import bus, fuzzy, motion
 from lumen.errors import SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, VirtualClock, initial, step
+from tests.tables import for_each
 
 KEPT = Path(__file__).parents[2] / ".cache/mypy"
 """What mypy found out about the engine, for later runs; the one of `make check`, which may run beside, is another."""
@@ -86,7 +87,7 @@ WRONG: dict[str, Callable[[], Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
+@for_each("name", WRONG)
 def test_what_it_does_not_take_is_told(name: str) -> None:
     with pytest.raises((UsageError, SnapshotError, bus.BusError)) as caught:
         WRONG[name]()

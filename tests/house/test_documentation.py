@@ -4,8 +4,9 @@ import json
 import re
 from pathlib import Path
 
-import pytest
 from scripts.schema_pages import page, pages
+
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 
@@ -16,7 +17,7 @@ def test_the_reference_has_a_page_for_each_schema() -> None:
     assert len(made) == len(list((ROOT / "schemas").rglob("*.schema.json"))) + 2
 
 
-@pytest.mark.parametrize(
+@for_each(
     "kind", ["behavior", "lumen", "motion", "story", "controller", "body", "words", "knowledge", "life", "gestures"]
 )
 def test_the_reference_names_describes_and_shows_each_property(kind: str) -> None:

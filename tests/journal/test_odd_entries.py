@@ -13,6 +13,7 @@ import lumen
 from lumen.cli.main import main
 from lumen.runtime.inputs.frames import FramePacker
 from lumen.runtime.inputs.journal_file import encode, read_header, read_lines
+from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
 ODD: tuple[Any, ...] = (
@@ -66,7 +67,7 @@ def oddly(file: Path, chance: random.Random) -> str:
     return repr(told)[:2000]
 
 
-@pytest.mark.parametrize(
+@for_each(
     "words",
     [
         ["replay", "--format", "json"],

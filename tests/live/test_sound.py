@@ -18,6 +18,7 @@ from lumen.loading.sounds import sound_duration
 from lumen.modules.audio_track import RATE, AudioTrack
 from lumen.modules.sound import Sound, save
 from tests.guarded import run_guarded
+from tests.tables import for_each
 from tests.waiting import until
 
 TONE, LENGTH = 880.0, 0.5
@@ -134,7 +135,7 @@ def test_that_there_is_no_player_is_said_once(
     assert capsys.readouterr().err == "There is no sound player here: sounds take their time, unheard.\n"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("content", "reason"),
     [
         (b"", "no WAV"),

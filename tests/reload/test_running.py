@@ -24,6 +24,7 @@ from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
 from lumen.statechart import Machine
 from tests import exhibits
 from tests.nodes import whole
+from tests.tables import for_each
 from tests.tour.names import ROOT
 
 
@@ -215,7 +216,7 @@ POINTS = ("situation.place", "situation.can_continue", "carried_state.context", 
           "carried_state.history", "migrating.microstep", "migrating.complete")  # fmt: skip
 
 
-@pytest.mark.parametrize("point", POINTS)
+@for_each("point", POINTS)
 def test_a_fault_anywhere_in_a_plan_changes_nothing(point: str, monkeypatch: pytest.MonkeyPatch) -> None:
     project = exhibits.project(behaviors={"tour": DANCING})
     exhibition, seen = running(project)

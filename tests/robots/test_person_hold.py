@@ -12,6 +12,7 @@ from lumen.language.events import Event
 from lumen.ports import Aim, RobotCommand
 from lumen.robots.person_hold import PersonHold
 from tests.server.stand import Stand
+from tests.tables import for_each
 from tests.waiting import Collector
 
 MOVING: tuple[RobotCommand, ...] = (
@@ -82,9 +83,7 @@ def test_it_is_kept_until_somebody_lets_it_move(tmp_path: Path) -> None:
     assert fourth.stopped is None
 
 
-@pytest.mark.parametrize(
-    "content", [b"", b"{", b"[]", b'{"by": 1, "since": 2}', b'{"by": "x", "since": "now"}', b"\xff"]
-)
+@for_each("content", [b"", b"{", b"[]", b'{"by": 1, "since": 2}', b'{"by": "x", "since": "now"}', b"\xff"])
 def test_a_damaged_file_stops_nobody(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "stopped.json").write_bytes(content)
     hold = PersonHold()

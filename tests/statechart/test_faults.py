@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError, ProjectError, UsageError
 from lumen.statechart import Event, Machine, initial, step
+from tests.tables import for_each
 
 FAULTS: dict[str, tuple[str, str, str, str]] = {
     "unknown sibling": ("states: {idle: {on: {go: gret}}, greet: }", "unknown-state", "gret", "did you mean `greet`?"),
@@ -80,7 +81,7 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", FAULTS)
+@for_each("name", FAULTS)
 def test_a_fault_is_told_at_its_word(name: str, tmp_path: Path) -> None:
     text, code, word, hint = FAULTS[name]
     file = tmp_path / "tour.yaml"

@@ -8,10 +8,11 @@ from lumen.interpreters.statechart import Snapshot, Step
 from lumen.interpreters.statechart.fast_path import FastPaths
 from lumen.statechart import Event
 from tests.statechart.table import CASES, play, read
+from tests.tables import for_each
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
-@pytest.mark.parametrize("again", [False, True], ids=["first", "again"])
+@for_each("path", CASES, ids=lambda path: path.stem)
+@for_each("again", [False, True], ids=["first", "again"])
 def test_rule(path: Path, again: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     if again:  # every step by the function that is written for what has happened before, if one is
         step = FastPaths.step

@@ -10,6 +10,7 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.language.projects import Project
+from tests.tables import for_each
 
 Write = Callable[..., Path]
 
@@ -78,7 +79,7 @@ def test_coverage_names_what_no_story_did(story: Write, capsys: pytest.CaptureFi
     assert "less than the 50 % wanted" in told([str(folder), "knocking", "--fail-under", "50"], 1, capsys)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("arguments", "words"),
     [
         (["vistor"], "no project or story `vistor`: did you mean `visitor`?"),

@@ -8,13 +8,14 @@ from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.language.actions import If, Parallel, PlacedAction, SayText
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.projects import Project
+from tests.tables import for_each
 from tests.tour.names import GUIDE, SAFETY
 
 LANGUAGES = {"en", "id"}
 QUESTIONS = 18
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def tour(project: Project) -> MachineDefinition:
     return project.behaviors["tour"]
 
@@ -92,8 +93,8 @@ def test_it_explains_three_things_and_answers_eighteen_questions(tour: MachineDe
     assert len(tour.answers["faq"]) == QUESTIONS
 
 
-@pytest.mark.parametrize("language", sorted(LANGUAGES))
-@pytest.mark.parametrize("number", range(QUESTIONS))
+@for_each("language", sorted(LANGUAGES))
+@for_each("number", range(QUESTIONS))
 def test_every_phrase_of_a_question_leads_to_its_answer(tour: MachineDefinition, number: int, language: str) -> None:
     row = tour.answers["faq"][number]
     for phrase in row.phrases[language]:
