@@ -1,0 +1,93 @@
+"""`scripts/shaken.py` plans its runs, tells what failed in them, and the tests it runs come in random order."""
+
+import random
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from scripts import shaken
+
+from tests import shuffled
+from tests.buses import test_amqp, test_poll_loop
+from tests.house import test_guarded
+
+
+def item(name: str, *, ordered: bool = False) -> Any:
+    marks = {"ordered": pytest.mark.ordered.mark} if ordered else {}
+    return SimpleNamespace(nodeid=name, get_closest_marker=marks.get)
+
+
+FILES = [item(f"tests/a/test_{file}.py::test_{n}") for file in "xyz" for n in range(5)]
+
+
+def test_the_same_seed_gives_the_same_order_and_another_another() -> None:
+    orders = [[one.nodeid for one in shuffled.shuffled(FILES, random.Random(seed))] for seed in (3, 3, 4)]
+    assert orders[0] == orders[1] != orders[2]
+    assert sorted(orders[0]) == [one.nodeid for one in FILES]
+
+
+def test_a_file_stays_together_and_one_that_is_ordered_as_it_is() -> None:
+    ordered = [item(f"tests/a/test_o.py::test_{n}", ordered=True) for n in range(5)]
+    for seed in range(20):
+        found = shuffled.shuffled([*FILES, *ordered], random.Random(seed))
+        files = [shuffled.file_of(one) for one in found]
+        assert len({at for at, file in enumerate(files) if file != files[at - 1]}) == 4
+        assert [one for one in found if one in ordered] == ordered
+
+
+def test_what_starts_a_process_or_a_broker_is_real() -> None:
+    assert shuffled.starts(test_guarded.start)
+    assert shuffled.starts(test_amqp.test_a_failed_connection_leaves_no_thread) is False, "its fixture is"
+    assert not any(shuffled.starts(thing) for name, thing in vars(test_poll_loop).items() if name.startswith("test_"))
+
+
+def test_eight_runs_quiet_eight_crowded_and_four_on_half_a_core() -> None:
+    plans = shaken.planned(shaken.USUAL, 100)
+    assert [plan.condition for plan in plans] == ["quiet"] * 8 + ["crowded"] * 8 + ["half"] * 4
+    assert [plan.seed for plan in plans] == list(range(100, 120))
+
+
+@pytest.mark.parametrize(
+    ("words", "counts"),
+    [
+        ("", {"quiet": 8, "crowded": 8, "half": 4}),
+        ("--only-real --suite test", {"quiet": 0, "crowded": 0, "half": 30}),
+        ("--half 2", {"quiet": 0, "crowded": 0, "half": 0}),
+    ],
+)
+def test_the_runs_that_nobody_counts(words: str, counts: dict[str, int]) -> None:
+    assert shaken.usual(shaken.parsed(words.split())) == counts
+
+
+def test_the_words_for_pytest_are_handed_on() -> None:
+    arguments = shaken.parsed(["--suite", "test", "--only-real", "--half", "1", "--", "tests/buses", "-k", "stop"])
+    assert shaken.selection(arguments) == ["--suite", "test", "--only-real", "tests/buses", "-k", "stop"]
+
+
+def test_what_failed_is_listed_with_how_often_and_the_seeds(tmp_path: Path) -> None:
+    def run(condition: str, seed: int, *failed: str) -> shaken.Run:
+        return shaken.Run(condition, seed, 9, frozenset(failed), 1.0, 2.0, 0, tmp_path)
+
+    runs = [run("quiet", 1), run("half", 2, "a::b"), run("half", 3, "a::b", "a::c"), run("crowded", 4, "a::b")]
+    assert shaken.summary(runs) == [
+        "a::b",
+        "    half: 2 of 2 runs, seeds 2, 3",
+        "    crowded: 1 of 1 runs, seeds 4",
+        "a::c",
+        "    half: 1 of 2 runs, seeds 3",
+    ]
+    assert shaken.summary(runs[:1]) == ["no test failed in 1 runs"]
+
+
+def test_outcomes_are_read_whole_and_cut(tmp_path: Path) -> None:
+    file = tmp_path / "outcomes"
+    writer = shuffled.Outcomes(file)
+    writer.pytest_runtest_logreport(SimpleNamespace(when="call", outcome="passed", nodeid="a::b[x@y]@tests/a"))  # type: ignore[arg-type]
+    writer.pytest_runtest_logreport(SimpleNamespace(when="teardown", outcome="failed", nodeid="a::c"))  # type: ignore[arg-type]
+    writer.pytest_runtest_logreport(SimpleNamespace(when="setup", outcome="passed", nodeid="a::d"))  # type: ignore[arg-type]
+    assert shaken.read(file) == (1, {"a::c"})
+    assert '"a::b[x@y]"' in file.read_text("utf-8")
+    with file.open("a") as more:
+        more.write('["a::e", "fai')
+    assert shaken.read(file) == (1, {"a::c"})
