@@ -1,6 +1,5 @@
-"""Random hostile files: whatever is saved or imported is an answer, in time, and never a traceback."""
+"""Random hostile files: whatever is saved or imported is an answer, and never a traceback."""
 
-import time
 from pathlib import Path
 from random import Random
 
@@ -13,8 +12,6 @@ from tests.attack.files import FOREIGN, LARGEST, damaged, foreign_file, project_
 from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parents[1] / "lint" / "base")
-LIMIT = 5.0
-"""How long one file may take [s of processor time]; most take some milliseconds."""
 
 
 def test_a_seed_says_what_comes() -> None:
@@ -28,10 +25,8 @@ def test_a_seed_says_what_comes() -> None:
 def test_a_project_with_a_hostile_file_is_judged(batch: int) -> None:
     for seed in range(40 * batch, 40 * batch + 40):
         path, content = project_file(Random(seed), BASE)
-        began = time.process_time()
         project, found = check_files(Path("/nowhere"), {**BASE, path: content})
         assert project is not None or found, f"seed {seed}: {path}"
-        assert time.process_time() - began < LIMIT, f"seed {seed}: {path}"
         for finding in found:
             assert finding.place.line >= 1
             assert len(finding.message) <= 1_000
@@ -45,9 +40,7 @@ def test_a_hostile_file_of_another_tool_is_imported_or_a_line(
     for seed in range(30 * batch, 30 * batch + 30):
         name, content = foreign_file(Random(seed))
         (tmp_path / name).write_bytes(content)
-        began = time.process_time()
         code = main(["import", str(tmp_path / name), "-o", str(tmp_path / "out.yaml")])
-        assert time.process_time() - began < LIMIT, f"seed {seed}: {name}"
         error = capsys.readouterr().err
         assert code in (0, 1) or error.count("\n") == 1, f"seed {seed}: {error[:500]}"
         assert "Traceback" not in error
@@ -75,14 +68,15 @@ NUMBERED = {
 }
 
 
+def blanks(name: str, blank: str) -> str:
+    return FOREIGN[name.partition(".")[2]].replace(" ", " " + blank * 100_000, 1)
+
+
 @pytest.mark.parametrize("name", ["blank.py", "blank.fcl", "blank.fll", "blank.fis", "blank.motion", "blank.scxml"])
 @pytest.mark.parametrize("blank", [" ", "\n", "\t"])
 def test_hundreds_of_thousands_of_blanks_are_nothing(name: str, blank: str, tmp_path: Path) -> None:
-    ending = name.partition(".")[2]
-    (tmp_path / name).write_text(FOREIGN[ending].replace(" ", " " + blank * 100_000, 1), "utf-8")
-    began = time.process_time()
+    (tmp_path / name).write_text(blanks(name, blank), "utf-8")
     assert main(["import", str(tmp_path / name), "-o", str(tmp_path / "out.yaml")]) in (0, 1, 2)
-    assert time.process_time() - began < 2.0
 
 
 @for_each("name", NUMBERED)
@@ -90,9 +84,7 @@ def test_numbers_of_thousands_of_digits_are_findings(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / name).write_text(NUMBERED[name], "utf-8")
-    began = time.process_time()
     assert main(["import", str(tmp_path / name), "-o", str(tmp_path / "out.yaml")]) in (1, 2)
-    assert time.process_time() - began < 2.0
     error = capsys.readouterr().err
     assert "Traceback" not in error
     assert "the result" not in error

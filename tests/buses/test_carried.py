@@ -9,7 +9,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, Refused, connect
-from lumen.buses.consumer import BIND_TIMEOUT, PREFETCH
+from lumen.buses.consumer import PREFETCH
 from lumen.buses.polled import PolledConnection
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
@@ -95,27 +95,34 @@ def test_old_telemetry_is_not_handed_on(opened: Open) -> None:
         assert go.wait(HANG)
 
     bus.subscribe("lumen.old", slow)
+
+    def arrived(body: object) -> bool:
+        """Whether one has come; sends one more, for on a slow machine it may be old when it gets there."""
+        bus.publish("lumen.old", body)
+        return body in seen.bodies
+
+    until(lambda: arrived("first"))
     for i in range(3):
         bus.publish("lumen.old", i)
-    seen.wait(1)
     passed = time.monotonic() + 0.1
     until(lambda: time.monotonic() > passed)
     go.set()
-    bus.publish("lumen.old", "new")
-    until(lambda: seen.bodies[-1] == "new")
-    assert seen.bodies == [0, "new"]
+    until(lambda: arrived("new"))
+    assert set(seen.bodies) == {"first", "new"}
 
 
 def test_a_command_waits_for_a_reader_that_is_away_but_not_for_long(opened: Open, stranger: Any) -> None:
-    way = route("avatar.A.command", Carried.COMMAND, ttl=4.0)  # longer than a busy machine needs to connect
-    bus, sender, seen, dead = opened(way), opened(way), Collector(), copies(stranger, "lumen.dead")
-    bus.subscribe(way.key, Collector())
+    short, long = route("avatar.A.command", Carried.COMMAND, ttl=0.5), route("avatar.A.stop", Carried.COMMAND, ttl=HANG)
+    bus, sender, seen, dead = opened(short, long), opened(short, long), Collector(), copies(stranger, "lumen.dead")
+    for way in (short, long):
+        bus.subscribe(way.key, Collector())
     bus.close()
-    sender.publish(way.key, "too early")
+    sender.publish(short.key, "too early")
+    sender.publish(long.key, "in time")
     assert read(stranger, dead)[2] == b'"too early"'
-    sender.publish(way.key, "in time")
-    bus = opened(way)
-    bus.subscribe(way.key, seen)
+    bus = opened(short, long)
+    for way in (short, long):
+        bus.subscribe(way.key, seen)
     assert seen.wait(1) == ["in time"]
 
 
@@ -315,18 +322,19 @@ def test_who_leaves_while_another_comes_takes_nothing_from_them(
     assert seen.wait(1) == ["to who comes"]
 
 
-def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(broker: RabbitMQ, opened: Open) -> None:
+def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(
+    broker: RabbitMQ, opened: Open, caplog: pytest.LogCaptureFixture
+) -> None:
     relay, seen = Relay(broker.port), Collector()
     url = f"amqp://guest:guest@127.0.0.1:{relay.port}/"
-    ways = [route(f"lumen.L.{i}", carried) for i, carried in enumerate((Carried.TELEMETRY, Carried.COMMAND))]
+    ways = [route(f"lumen.L.{i}", carried, ttl=HANG) for i, carried in enumerate((Carried.TELEMETRY, Carried.COMMAND))]
     bus, sender = opened(url=url), opened()
     bus.prepare({way.key: way for way in ways})
     relay.cut()
-    began = time.monotonic()
     bus.carry({way.key: way for way in ways})
     for way in ways:
         bus.subscribe(way.key, seen)
-    assert time.monotonic() - began < BIND_TIMEOUT, "nothing comes through a relay that is cut"
+    assert "does not confirm the subscription" not in caplog.text, "nothing comes through a relay that is cut"
     for way in ways:
         sender.publish(way.key, way.key)
     sender.close()

@@ -12,11 +12,10 @@ import pika
 import pytest
 
 from lumen.bus import Bus, Message, connect
-from lumen.buses.consumer import BIND_TIMEOUT
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 WAYS = {
     "lumen.fault.command": Route(
@@ -70,7 +69,7 @@ class Effects(Counter[tuple[str, int]]):
         self[message.key, message.body] += 1
 
 
-def arrive_once(effects: Effects, sent: int, timeout: float) -> None:
+def arrive_once(effects: Effects, sent: int, timeout: float = HANG) -> None:
     wanted = {(key, n): 1 for key in WAYS for n in range(sent)}
     until(lambda: len(effects) >= len(wanted), timeout)
     assert dict(effects) == wanted
@@ -86,6 +85,7 @@ def test_a_broker_that_is_killed_and_started_again_loses_and_doubles_nothing(cap
     finally:
         broker.stop()
     said = [record.getMessage() for record in caplog.records]
+    assert not any("does not confirm the subscription" in text for text in said)
     assert sum(" is lost: " in text for text in said) == 2
     assert sum(text.startswith("the broker") and text.endswith("is back") for text in said) == 2, (
         "once for each of the two buses, whatever they are made of"
@@ -102,16 +102,14 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     links = [link for bus in (reader, sender) for link in links_of(bus)]
     until(lambda: all(link.connection is None for link in links))
     assert reader.away, "who tells people of it asks this"
-    began = time.monotonic()
-    reader.subscribe("lumen.fault.later", later)
+    reader.subscribe("lumen.fault.later", later)  # who waited for the broker would tell so: see the test's end
     sender.publish("lumen.fault.later", "stale", ttl=0.001)
-    assert time.monotonic() - began < BIND_TIMEOUT, "who subscribes and sends waits for no broker that is away"
     sent = sending.sent
     until(lambda: sending.sent > sent + 50)
     broker.start()
     sent = sending.sent
     until(lambda: len(effects) > 2 * sent)
-    arrive_once(effects, sending.end(), 60)
+    arrive_once(effects, sending.end())
     until(lambda: all(link.connection for link in links) and not reader.away)
     sender.publish("lumen.fault.later", "bound since")
     assert later.wait(1) == ["bound since"]
@@ -158,11 +156,11 @@ def cut_for(seconds: float, broker: RabbitMQ) -> None:
     until(lambda: len(effects) > 20)
     relay.cut()
     passed = time.monotonic() + seconds
-    until(lambda: time.monotonic() > passed, seconds + 5.0)
+    until(lambda: time.monotonic() > passed)
     relay.mend()
     came = len(effects)
     until(lambda: len(effects) > came + 50)
-    arrive_once(effects, sending.end(), 60)
+    arrive_once(effects, sending.end())
     sender.close()
     reader.close()
     relay.close()
@@ -194,8 +192,7 @@ def flood(broker: RabbitMQ, count: int, pause: float) -> float:
     tracemalloc.start()
     for n in range(count):
         for key in WAYS:
-            while len(sender._transport.publisher.outbox) > 5_000:  # type: ignore[attr-defined]
-                threading.Event().wait(0.01)
+            until(lambda: len(sender._transport.publisher.outbox) <= 5_000)  # type: ignore[attr-defined]
             sender.publish(key, {"n": n, "filler": filler})
     arrive_once(effects, count, 600)
     most = tracemalloc.get_traced_memory()[1]

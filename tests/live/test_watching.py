@@ -1,4 +1,8 @@
-"""Files saved in all the ways in which they are: one verdict for each content that stays, none for what passes."""
+"""Files saved in all the ways in which they are: one verdict for each content that stays, none for what passes.
+
+The quiet period is one of a clock that stands still unless a test lets it go on, so that a machine that stops for a
+while between two writes makes no other verdict of them.
+"""
 
 import os
 import threading
@@ -8,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from lumen.loading.files import Unreadable, fingerprint, read_files
-from lumen.runtime.watcher import FileWatcher, SavedFiles
-from tests.waiting import HANG
+from lumen.runtime.watcher import FileWatcher, SavedFiles, WatchedFiles
+from tests.waiting import until
 
 QUIET = 0.1
 TOUR, DANCE = "behaviors/tour.yaml", "motions/dance.yaml"
@@ -22,16 +26,52 @@ def fill(folder: Path, text: str = "first") -> Path:
     return folder
 
 
+class Clock:
+    """The watcher's time, as of the module `time`."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    found = Clock()
+    monkeypatch.setattr("lumen.runtime.watcher.time", found)
+    return found
+
+
 class Watched:
     """A watched project, and what came of its files."""
 
-    def __init__(self, root: Path) -> None:
-        self.root = root
-        self.watcher: FileWatcher[SavedFiles] = FileWatcher(root, read_files(root), lambda saved: saved, quiet=QUIET)
+    def __init__(self, root: Path, clock: Clock) -> None:
+        self.root, self.clock, self.looks = root, clock, 0
+        self.watcher: FileWatcher[SavedFiles] = self.watch()
+        read = self.watcher._read
+
+        def looked() -> WatchedFiles:
+            found = read()
+            self.looks += 1
+            return found
+
+        self.watcher._read = looked  # type: ignore[method-assign]
         self.watcher.start()
 
+    def watch(self) -> FileWatcher[SavedFiles]:
+        return FileWatcher(self.root, read_files(self.root), lambda saved: saved, quiet=QUIET)
+
     def next(self) -> SavedFiles:
-        return self.watcher.results.get(timeout=HANG)
+        """The next verdict, however long its quiet period is."""
+        results = self.watcher.results
+        until(lambda: not results.empty(), meanwhile=lambda: self.pause(QUIET / 3), what="a verdict")
+        return results.get()
+
+    def looked(self) -> None:
+        """Wait until the watcher has read what the files are now."""
+        before = self.looks
+        until(lambda: self.watcher._hint.set() or self.looks >= before + 2, every=0.001, what="two looks at the files")
 
     def last(self, text: str = "the last word") -> list[SavedFiles]:
         """All verdicts up to that of a file written now."""
@@ -42,12 +82,15 @@ class Watched:
         return found
 
     def pause(self, seconds: float) -> None:
-        threading.Event().wait(seconds)
+        """Let so much time pass after the watcher has read the files, and let it heed that."""
+        self.looked()
+        self.clock.now += seconds
+        self.looked()
 
 
 @pytest.fixture
-def watched(tmp_path: Path) -> Iterator[Watched]:
-    one = Watched(fill(tmp_path / "show"))
+def watched(tmp_path: Path, clock: Clock) -> Iterator[Watched]:
+    one = Watched(fill(tmp_path / "show"), clock)
     yield one
     one.watcher.close()
 
@@ -160,11 +203,11 @@ def test_what_can_not_be_read_is_told_and_mended(watched: Watched) -> None:
     assert watched.next().files[TOUR] == b"new"
 
 
-def test_a_project_that_is_a_link_is_switched(tmp_path: Path) -> None:
+def test_a_project_that_is_a_link_is_switched(tmp_path: Path, clock: Clock) -> None:
     for name in ("one", "two"):
         fill(tmp_path / name, name)
     (tmp_path / "show").symlink_to(tmp_path / "one")
-    watched = Watched(tmp_path / "show")
+    watched = Watched(tmp_path / "show", clock)
     (tmp_path / "next").symlink_to(tmp_path / "two")
     os.replace(tmp_path / "next", tmp_path / "show")
     saved = watched.next()
@@ -174,7 +217,7 @@ def test_a_project_that_is_a_link_is_switched(tmp_path: Path) -> None:
     watched.watcher.close()
 
 
-def test_files_that_are_links_are_switched_together(tmp_path: Path) -> None:
+def test_files_that_are_links_are_switched_together(tmp_path: Path, clock: Clock) -> None:
     """As Kubernetes mounts a ConfigMap: `..data` is a link that is replaced."""
     root = fill(tmp_path / "show")
     for name in ("one", "two"):
@@ -183,7 +226,7 @@ def test_files_that_are_links_are_switched_together(tmp_path: Path) -> None:
     (root / "motions" / "..data").symlink_to("..one")
     (root / DANCE).unlink()
     (root / DANCE).symlink_to("..data/dance.yaml")
-    watched = Watched(root)
+    watched = Watched(root, clock)
     (root / "motions" / "..next").symlink_to("..two")
     os.replace(root / "motions" / "..next", root / "motions" / "..data")
     assert watched.next().files[DANCE] == b"two"
@@ -196,10 +239,8 @@ def test_who_asks_gets_an_answer_whether_something_changed_or_not(watched: Watch
     assert (saved.asked, saved.changed) == ("please", ())
 
 
-def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    root = fill(tmp_path / "show")
-
-    failed = threading.Event()
+def test_a_judge_that_fails_ends_nothing(tmp_path: Path, clock: Clock, caplog: pytest.LogCaptureFixture) -> None:
+    root, failed = fill(tmp_path / "show"), threading.Event()
 
     def judge(saved: SavedFiles) -> bytes:
         if saved.files[TOUR] == b"bad":
@@ -210,14 +251,21 @@ def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptu
     watcher: FileWatcher[bytes] = FileWatcher(root, read_files(root), judge, quiet=QUIET)
     watcher.start()
     (root / TOUR).write_text("bad", "utf-8")
-    assert failed.wait(HANG)
+    until(failed.is_set, meanwhile=lambda: passing(clock), what="a judge that fails")
     (root / TOUR).write_text("good", "utf-8")
-    assert watcher.results.get(timeout=HANG) == b"good"
+    until(lambda: not watcher.results.empty(), meanwhile=lambda: passing(clock), what="a verdict")
+    assert watcher.results.get() == b"good"
     assert "a fault of ours" in caplog.text
     watcher.close()
 
 
-def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path) -> None:
+def passing(clock: Clock) -> None:
+    """Let time pass as it does, and faster."""
+    threading.Event().wait(0.001)
+    clock.now += QUIET / 10
+
+
+def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path, clock: Clock) -> None:
     root, order = fill(tmp_path / "show"), list[str]()
 
     def judge(saved: SavedFiles) -> SavedFiles:
@@ -227,7 +275,7 @@ def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path) -> None
     watcher = FileWatcher(root, read_files(root), judge, quiet=QUIET, noticed=lambda: order.append("noticed"))
     watcher.start()
     (root / TOUR).write_text("new", "utf-8")
-    watcher.results.get(timeout=HANG)
+    until(lambda: not watcher.results.empty(), meanwhile=lambda: passing(clock), what="a verdict")
     watcher.close()
     assert order == ["noticed", "judged"]
 
@@ -238,13 +286,14 @@ END = "\nits last line\n"
 class Judged(Watched):
     """A project whose quiet period is longer than any test, and which is judged before it is over."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, clock: Clock) -> None:
         for path in (TOUR, DANCE):
             (root / path).write_text(f"first{END}", "utf-8")
-        self.root, self.judged = root, list[bytes]()
-        self.watcher = FileWatcher(root, read_files(root), self.judge, quiet=QUIET, good=self.is_good)
-        self.watcher.start()
-        self.waited = threading.Event()
+        self.judged = list[bytes]()
+        super().__init__(root, clock)
+
+    def watch(self) -> FileWatcher[SavedFiles]:
+        return FileWatcher(self.root, read_files(self.root), self.judge, quiet=QUIET, good=self.is_good)
 
     def judge(self, saved: SavedFiles) -> SavedFiles:
         self.judged.append(saved.files[TOUR])
@@ -255,9 +304,9 @@ class Judged(Watched):
 
 
 @pytest.fixture
-def judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Judged]:
+def judged(tmp_path: Path, clock: Clock, monkeypatch: pytest.MonkeyPatch) -> Iterator[Judged]:
     monkeypatch.setattr("lumen.runtime.watcher.SHORT_QUIET_FRACTION", 0.0)
-    one = Judged(fill(tmp_path / "show"))
+    one = Judged(fill(tmp_path / "show"), clock)
     yield one
     one.watcher.close()
 

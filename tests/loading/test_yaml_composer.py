@@ -1,6 +1,5 @@
 """Nodes from events: what libyaml's own composer makes of sound files, and an early end where there is too much."""
 
-import time
 from pathlib import Path
 
 import pytest
@@ -75,13 +74,11 @@ def test_nothing_is_none_or_a_fault(text: str) -> None:
 
 @for_each("kind", DEEP)
 def test_what_is_nested_too_deep_ends_the_reading_at_its_place(kind: str) -> None:
-    began = time.process_time()
     document, [found] = parse("behaviors/notes.yaml", DEEP[kind].encode())
     assert document is None
     assert found.code == "too-large"
     assert "nested deeper than 100 levels" in found.message
     assert (found.place.line, found.place.column) > (1, 1)
-    assert time.process_time() - began < 1.0
 
 
 @pytest.mark.parametrize("kind", LONG)

@@ -10,12 +10,12 @@ from lumen.language.events import Event
 from lumen.ports import Battery, Image, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.server import RobotServer
 from tests.exhibits import JOINTS, TACTILE, project
-from tests.waiting import Collector
+from tests.waiting import HANG, Collector
 
 PROJECT = project()
 NAMES = tuple(JOINTS)
 FRAME = np.zeros((240, 320, 3), np.uint8)
-PATIENT = 20.0
+PATIENT = HANG
 DATE = "2015-06-01T09:30:00.000+00:00"
 
 

@@ -1,0 +1,12 @@
+"""A server whose threads are waited for, however late the machine begins them."""
+
+import pytest
+
+from lumen.robots import server
+from tests.waiting import HANG
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "THREAD_START_TIMEOUT", HANG)
+    monkeypatch.setattr(server, "FIRST_IMAGE_TIMEOUT", HANG)
