@@ -212,7 +212,9 @@ def check(page: Path, there: set[str], bus: str = "") -> tuple[int, list[str], l
 
 
 def all_pages() -> list[Path]:
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    if not (pages := sorted((ROOT / "docs").glob("*.md"))):
+        raise SystemExit(f"no page is in {ROOT / 'docs'}: nothing is checked")
+    return [ROOT / "README.md", *pages]
 
 
 def main() -> int:

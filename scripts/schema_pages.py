@@ -37,6 +37,8 @@ def pages(folder: Path) -> dict[str, str]:
     """The pages by their paths below the reference: `motion.md`, `messages/sonar.md` and the two lists of them."""
     kinds = {file: load(file) for file in sorted(folder.glob("*.schema.json"))}
     messages = {file: load(file) for file in sorted((folder / "messages").glob("*.schema.json"))}
+    if not kinds or not messages:
+        raise SystemExit(f"no schema is in {folder} and {folder / 'messages'}: the reference would be empty")
     written = {f"{name(file)}.md": page(schema, f"`schemas/{file.name}`") for file, schema in kinds.items()}
     for file, schema in messages.items():
         written[f"messages/{name(file)}.md"] = page(schema, f"`schemas/messages/{file.name}`", name(file))

@@ -112,7 +112,9 @@ class Shape:
 
 def read(package: Path) -> list[SourceFile]:
     """The Python files beneath a folder, in the order of their paths; raises SyntaxError for one that is not Python."""
-    return [_source_file(package, path) for path in sorted(package.rglob("*.py"))]
+    if not (files := sorted(package.rglob("*.py"))):
+        raise SystemExit(f"no Python file is beneath {package}: the shape of nothing is not checked")
+    return [_source_file(package, path) for path in files]
 
 
 def _source_file(package: Path, path: Path) -> SourceFile:

@@ -65,7 +65,9 @@ def _entry(label: str, path: str, written: set[str]) -> dict[str, Any]:
 
 
 def _written() -> set[str]:
-    return {file.relative_to(DOCS).as_posix() for file in DOCS.rglob("*.md")}
+    if not (found := {file.relative_to(DOCS).as_posix() for file in DOCS.rglob("*.md")}):
+        raise SystemExit(f"no page is in {DOCS}")
+    return found
 
 
 def made() -> dict[str, str]:

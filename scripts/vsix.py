@@ -60,7 +60,9 @@ def build(output: Path) -> None:
     """The same bytes whenever it is built of the same files."""
     data = json.loads((EXTENSION / "package.json").read_text("utf-8"))
     files = {f"extension/{name}": (EXTENSION / name).read_bytes() for name in FILES}
-    for file in sorted(CLIENT.rglob("*")):
+    if not (packages := sorted(CLIENT.rglob("*"))):
+        raise SystemExit(f"nothing is in {CLIENT}: the extension would be without its language client")
+    for file in packages:
         wanted = file.suffix in KEPT or file.name.upper().startswith(("LICEN", "NOTICE"))
         if file.is_file() and wanted and not file.name.endswith((".d.ts", ".map")):
             files[f"extension/node_modules/{file.relative_to(CLIENT).as_posix()}"] = file.read_bytes()

@@ -10,6 +10,7 @@ from lumen.language.projects import Project
 from lumen.language.robots import Body, Camera, Joint, Ultrasound
 from lumen.language.roles import Base, BaseKind, JointRole, Roles
 from lumen.language.routes import Direction, Route
+from tests.scanning import matching
 
 MESSAGES = Path(__file__).parents[1] / "schemas" / "messages"
 ENDING = ".schema.json"
@@ -50,7 +51,9 @@ SENSES = {"image": 0.066, "joint": 0.06, "sonar": 0.1, "tactile": 0.1, "battery"
 
 def messages() -> dict[str, dict[str, object]]:
     """The shipped message schemas by name."""
-    return {path.name.removesuffix(ENDING): json.loads(path.read_text("utf-8")) for path in MESSAGES.glob(f"*{ENDING}")}
+    return {
+        path.name.removesuffix(ENDING): json.loads(path.read_text("utf-8")) for path in matching(MESSAGES, f"*{ENDING}")
+    }
 
 
 def project(**changes: object) -> Project:

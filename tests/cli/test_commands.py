@@ -9,6 +9,7 @@ import yaml
 
 import lumen
 from lumen.cli.main import main
+from tests.scanning import matching
 
 ROOT = Path(__file__).parents[2]
 
@@ -32,7 +33,7 @@ def test_a_project_like_another_is_whole_and_clean(
     assert f"lumen run --story {story} " in capsys.readouterr().out
     assert lumen.check(folder) == []
     assert main(["test", str(folder), story]) == 0
-    for file in folder.rglob("*.yaml"):
+    for file in matching(folder, "**/*.yaml"):
         schema = file.read_text("utf-8").partition("$schema=")[2].partition("\n")[0]
         assert (file.parent / schema).is_file()
     workflow = yaml.safe_load((folder / ".github/workflows/exhibition.yml").read_text("utf-8"))
@@ -44,7 +45,7 @@ def test_a_project_like_another_is_whole_and_clean(
 
 
 def test_the_minimal_project_is_short() -> None:
-    files = (ROOT / "examples" / "minimal").rglob("*.yaml")
+    files = matching(ROOT / "examples" / "minimal", "**/*.yaml")
     assert sum(len(file.read_text("utf-8").splitlines()) for file in files) <= 55
 
 

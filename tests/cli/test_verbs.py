@@ -10,6 +10,7 @@ from scripts.command_pages import DOCS, written
 from lumen.cli.main import VERBS, command_line, main
 from lumen.cli.pages import page
 from lumen.cli.suggesting import parse
+from tests.scanning import matching
 from tests.tables import for_each
 
 NO_REPORT = {"completion": "prints a script", "lsp": "speaks the protocol of editors", "console": "shows pages"}
@@ -17,7 +18,7 @@ NO_REPORT = {"completion": "prints a script", "lsp": "speaks the protocol of edi
 
 
 def test_the_pages_are_those_that_the_parser_makes() -> None:
-    there = {file.name: file.read_text(encoding="utf-8") for file in DOCS.glob("*.md")}
+    there = {file.name: file.read_text(encoding="utf-8") for file in matching(DOCS, "*.md")}
     assert there == written(), "call `python scripts/command_pages.py`"
 
 

@@ -18,6 +18,7 @@ from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.loading.yaml_reader import parse
 from lumen.statechart import Event, Machine, Snapshot, Step, due, initial, step
 from tests.fetched import fetched
+from tests.scanning import matching
 
 FOLDER = fetched("scion") / "test"
 TABLE = Path(__file__).parent / "unsupported.yaml"
@@ -91,7 +92,7 @@ def table() -> Mapping[str, Any]:
 
 def cases() -> list[Case]:
     """All cases; none where they have not been fetched."""
-    return [_case(path) for path in sorted(FOLDER.glob("*/*.scxml"))]
+    return [_case(path) for path in matching(FOLDER, "*/*.scxml")]
 
 
 def _case(chart: Path) -> Case:

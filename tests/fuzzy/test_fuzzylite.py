@@ -33,9 +33,10 @@ from lumen.language.controllers import (
     TERM_PARAMETERS,
     Term,
 )
+from tests.scanning import matching
 from tests.tables import for_each
 
-EXAMPLES = sorted((Path(fl.__file__).parent / "examples").rglob("*.fll"))
+EXAMPLES = matching(Path(fl.__file__).parent / "examples", "**/*.fll")
 EDGES = {"binary": 1, "arc": 1}
 """At how many of its parameters a membership is compared: a falling arc of theirs has a hole at its end."""
 factories = fl.settings.factory_manager

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from scripts.schema_pages import page, pages
 
+from tests.scanning import matching
 from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
@@ -14,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 def test_the_reference_has_a_page_for_each_schema() -> None:
     made = pages(ROOT / "schemas")
     assert set(made) >= {"motion.md", "lumen.md", "messages/command.md", "README.md", "messages/README.md"}
-    assert len(made) == len(list((ROOT / "schemas").rglob("*.schema.json"))) + 2
+    assert len(made) == len(matching(ROOT / "schemas", "**/*.schema.json")) + 2
 
 
 @for_each(

@@ -5,6 +5,8 @@ import re
 import pytest
 from scripts.shape import PACKAGE, ROOT, Shape, floor_order, measure, read
 
+from tests.scanning import matching
+
 
 @pytest.fixture(scope="module")
 def house() -> Shape:
@@ -30,7 +32,7 @@ def test_every_thread_is_watched() -> None:
     """
     made = {
         str(file.relative_to(ROOT / PACKAGE))
-        for file in (ROOT / PACKAGE).rglob("*.py")
+        for file in matching(ROOT / PACKAGE, "**/*.py")
         if re.search(r"threading\.Thread\(|ThreadPoolExecutor\(", file.read_text("utf-8"))
     }
     assert made == {"upkeep/threads.py", "app/reload/records.py", "robots/simulation/film.py"}

@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import lumen
+from tests.scanning import matching
 
 ROOT = Path(__file__).parents[2]
 ENGINE = ROOT / "engine" / "lumen"
@@ -22,7 +23,7 @@ def test_no_joint_or_link_of_nao_is_named_in_the_engine() -> None:
     named = re.compile(rf"\b({'|'.join(sorted(names))})\b")
     found = [
         f"{where}:{number}: {match[0]}"
-        for file in sorted(ENGINE.rglob("*.py"))
+        for file in matching(ENGINE, "**/*.py")
         if not (where := file.relative_to(ENGINE).as_posix()).startswith(MAY)
         for number, line in enumerate(file.read_text("utf-8").splitlines(), 1)
         if (match := named.search(line))

@@ -9,9 +9,10 @@ import pytest
 from lumen.loading.files import PROJECT_FOLDERS
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.scanning import matching
 
 ROOT = Path(__file__).parents[2]
-FILES = [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in sorted((ROOT / name).rglob("*.yaml")))]
+FILES = [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in matching(ROOT / name, "**/*.yaml"))]
 READ = """
 const {parseAllDocuments} = require(process.argv[1]), {readFileSync} = require('fs');
 const wrong = [];

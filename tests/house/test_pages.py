@@ -11,6 +11,8 @@ from types import ModuleType
 
 import pytest
 
+from tests.scanning import matching
+
 ROOT = Path(__file__).parents[2]
 ENGINE = ROOT / "engine/lumen"
 ARCHITECTURE = "docs/architecture.md"
@@ -60,7 +62,7 @@ def names(text: str) -> Iterator[str]:
 @cache
 def words() -> frozenset[str]:
     """Every word of the package's and the tests' code."""
-    files = [*ENGINE.rglob("*.py"), *(ROOT / "tests").rglob("*.py")]
+    files = [*matching(ENGINE, "**/*.py"), *matching(ROOT / "tests", "**/*.py")]
     return frozenset(word for file in files for word in re.findall(r"\w+", file.read_text(encoding="utf-8")))
 
 

@@ -12,6 +12,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from tests.guarded import run_guarded
+from tests.scanning import matching
 from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
@@ -35,7 +36,7 @@ REPOSITORY = "lumen-robot @ git+https://github.com/OWNER/lumen@COMMIT"
 def lines() -> Iterator[tuple[str, str]]:
     """The page and what follows `pip install` of each such line that is there."""
     for pattern in PAGES:
-        for page in sorted(ROOT.glob(pattern)):
+        for page in matching(ROOT, pattern):
             for found in COMMAND.finditer(page.read_text()):
                 if "{extra}" not in found[1]:
                     yield str(page.relative_to(ROOT)), found[1]

@@ -17,11 +17,12 @@ from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from tests.lint.spans import assert_marks_what_is_spoken_of
+from tests.scanning import matching
 from tests.tables import check
 
 HERE = Path(__file__).parent
 BASE = read_files(HERE / "base")
-TABLES = sorted(HERE.glob("*.yaml"))
+TABLES = matching(HERE, "*.yaml")
 
 
 def cases(table: Path) -> dict[str, Any]:

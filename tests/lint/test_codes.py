@@ -10,6 +10,7 @@ import lumen
 from lumen.language.diagnostics import Severity
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import page
+from tests.scanning import matching
 from tests.tables import for_each
 
 ENGINE = Path(lumen.__file__).parent
@@ -18,7 +19,7 @@ RAISING = ("loading", "rules", "interpreters/expressions", "app/reload")
 
 @cache
 def trees() -> dict[str, ast.Module]:
-    return {str(f.relative_to(ENGINE)): ast.parse(f.read_text(encoding="utf-8")) for f in ENGINE.rglob("*.py")}
+    return {str(f.relative_to(ENGINE)): ast.parse(f.read_text(encoding="utf-8")) for f in matching(ENGINE, "**/*.py")}
 
 
 def declarations() -> Iterator[tuple[str, str, str]]:

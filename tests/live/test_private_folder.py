@@ -11,6 +11,7 @@ from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.runtime.home import Home
 from lumen.upkeep.private_folder import private_folder
 from tests.guarded import run_guarded
+from tests.scanning import matching
 
 ENGINE = Path(__file__).parents[2] / "engine" / "lumen"
 MAKERS = {
@@ -72,7 +73,7 @@ def test_a_folder_of_before_is_mended_and_what_somebody_wrote_stays(tmp_path: Pa
 def test_nobody_else_makes_a_folder_that_stays() -> None:
     made = {
         path.relative_to(ENGINE).as_posix()
-        for path in ENGINE.rglob("*.py")
+        for path in matching(ENGINE, "**/*.py")
         if re.search(r"\.mkdir\(|makedirs\(", path.read_text())
     }
     assert made == MAKERS.keys()

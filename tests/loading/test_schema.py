@@ -10,6 +10,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
 from lumen.loading.schema import FILE_KINDS, check_schema, faults, load_schema
 from lumen.loading.yaml_reader import parse
+from tests.scanning import matching
 from tests.tables import for_each
 
 
@@ -99,9 +100,7 @@ def test_the_editors_line_of_every_file_leads_to_its_schema() -> None:
     root = schema_folder().parent
     for file in [
         root / "lumen.yaml",
-        *root.glob("behaviors/**/*.yaml"),
-        *root.glob("fuzzy/*.yaml"),
-        *root.glob("motions/*.yaml"),
+        *matching(root, "behaviors/**/*.yaml", "fuzzy/*.yaml", "motions/*.yaml"),
     ]:
         first = file.read_text().split("\n", 1)[0]
         assert first.startswith("# yaml-language-server: $schema="), file

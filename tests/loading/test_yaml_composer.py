@@ -8,9 +8,10 @@ import yaml
 from lumen.loading.packaged import shipped_root
 from lumen.loading.yaml_composer import TooLargeError, compose
 from lumen.loading.yaml_reader import parse
+from tests.scanning import matching
 from tests.tables import for_each
 
-FILES = sorted(path for folder in ("behaviors", "fuzzy", "motions") for path in shipped_root().glob(f"{folder}/*.yaml"))
+FILES = matching(shipped_root(), "behaviors/*.yaml", "fuzzy/*.yaml", "motions/*.yaml")
 
 DEEP = {
     "flow lists": "[" * 60_000,

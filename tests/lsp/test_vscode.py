@@ -13,6 +13,7 @@ from lumen.app.exhibition import Exhibition
 from tests.cli.conftest import bus, copy, exhibition, project
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.scanning import matching
 from tests.waiting import HANG
 
 __all__ = ["bus", "copy", "exhibition", "project"]
@@ -51,7 +52,7 @@ def test_it_holds_what_it_needs_and_says_what_it_is(extension: Path) -> None:
     installed = json.loads((extension / "node_modules/vscode-languageclient/package.json").read_text("utf-8"))
     assert installed["version"] == data["dependencies"]["vscode-languageclient"]
     assert data["version"] == "0.1.0"
-    assert not list(extension.rglob("*.d.ts"))
+    assert not [file for file in matching(extension, "**/*") if file.name.endswith(".d.ts")]
 
 
 def test_a_lens_runs_a_story_in_a_terminal_of_the_project(extension: Path) -> None:

@@ -13,9 +13,10 @@ from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 from lumen.motion import Motion
 from tests.motions.making import nao, read
+from tests.scanning import matching
 from tests.tables import for_each
 
-CASES = sorted((Path(__file__).parent / "broken").glob("*.yaml"))
+CASES = matching(Path(__file__).parent / "broken", "*.yaml")
 
 
 @for_each("case", CASES, ids=lambda case: case.stem)

@@ -21,6 +21,7 @@ from lumen.loading.lending import model_files
 from lumen.robots.simulation import SimulatedRobot
 from lumen.rules import check_files
 from lumen.runtime.loop import Observer
+from tests.scanning import matching
 from tests.tour.playing import play
 
 ROOT = Path(__file__).parents[2]
@@ -40,7 +41,7 @@ def test_nothing_is_wrong_with_it() -> None:
     assert check_files(MUSEUM, read_files(MUSEUM))[1] == ()
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in (MUSEUM / "behaviors" / "stories").glob("*.yaml")))
+@pytest.mark.parametrize("name", sorted(path.stem for path in matching(MUSEUM, "behaviors/stories/*.yaml")))
 def test_the_story_ends_well(museum: Project, name: str) -> None:
     run = play(museum, museum.stories[name])
     assert run.failure == ""
@@ -54,7 +55,7 @@ def test_whatever_happens_nothing_fails(museum: Project) -> None:
 
 def test_the_page_shows_what_is_there() -> None:
     """Every line of YAML in docs/museum.md stands in a file of the project, in that order within a block."""
-    lines = [line.strip() for file in MUSEUM.rglob("*.yaml") for line in file.read_text("utf-8").splitlines()]
+    lines = [line.strip() for file in matching(MUSEUM, "**/*.yaml") for line in file.read_text("utf-8").splitlines()]
     known = {re.sub(r"\s+#.*", "", line) for line in lines}
     blocks = re.findall(r"```yaml\n(.*?)```", PAGE, re.S)
     assert len(blocks) >= 8

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
+from tests.scanning import matching
 
 EXAMPLES = Path(__file__).parents[2] / "examples/bodies"
 BODIES = sorted(folder.name for folder in EXAMPLES.iterdir() if folder.is_dir())
@@ -12,7 +13,7 @@ BODIES = sorted(folder.name for folder in EXAMPLES.iterdir() if folder.is_dir())
 
 def test_there_are_two_and_neither_brings_a_model_along() -> None:
     assert BODIES == ["jaco", "rat"]
-    assert not [file for file in EXAMPLES.rglob("*") if file.suffix in (".xml", ".stl", ".obj", ".msh")]
+    assert not [file for file in matching(EXAMPLES, "**/*") if file.suffix in (".xml", ".stl", ".obj", ".msh")]
 
 
 @pytest.mark.parametrize("name", BODIES)

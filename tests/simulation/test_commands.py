@@ -12,6 +12,7 @@ from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinitio
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, RobotCommand
 from lumen.robots.simulation import SimulatedRobot
+from tests.scanning import matching
 from tests.simulation.conftest import MODELS, Do, answer, until_answered
 
 WAVE = MotionDefinition(
@@ -181,7 +182,7 @@ def test_the_same_seed_gives_the_same_run(body: Body) -> None:
 def test_a_model_that_can_t_be_used_is_said_to_be(
     body: Body, tmp_path: Path, name: str, content: str | None, reason: str
 ) -> None:
-    for source in MODELS.rglob("*"):
+    for source in matching(MODELS, "**/*"):
         target = tmp_path / source.relative_to(MODELS)
         target.mkdir(exist_ok=True) if source.is_dir() else target.write_bytes(source.read_bytes())
     (tmp_path / name).unlink()

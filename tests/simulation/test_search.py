@@ -10,10 +10,11 @@ from lumen.app.workers.workers import Workers
 from lumen.language.robots import Body
 from lumen.loading.files import read_files
 from lumen.motion import Motion
+from tests.scanning import matching
 from tests.simulation.conftest import MODELS
 from tests.tables import for_each
 
-PASSAGES = sorted((MODELS / "passages").glob("*.yaml"))
+PASSAGES = matching(MODELS / "passages", "*.yaml")
 
 
 @for_each("path", PASSAGES, ids=lambda path: path.stem)

@@ -8,8 +8,9 @@ from typing import Any
 from lumen.language.commands import Cancel, Command, Log, Publish, Start
 from lumen.loading.yaml_reader import parse
 from lumen.statechart import Interpreter, Machine, Step
+from tests.scanning import matching
 
-CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
+CASES = matching(Path(__file__).parent / "cases", "*.yaml")
 
 
 def read(path: Path) -> Mapping[str, Any]:

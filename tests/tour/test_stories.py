@@ -11,11 +11,12 @@ from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
 from lumen.loading.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
+from tests.scanning import matching
 from tests.tables import for_each
 from tests.tour.names import GUIDE, ROOT, SAFETY
 from tests.tour.playing import Run, play
 
-STORIES = sorted(path.stem for path in (ROOT / "behaviors" / "stories").glob("*.yaml"))
+STORIES = sorted(path.stem for path in matching(ROOT, "behaviors/stories/*.yaml"))
 
 
 @pytest.fixture(scope="module")

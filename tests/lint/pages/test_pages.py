@@ -10,6 +10,7 @@ from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import _HERE, page
+from tests.scanning import matching
 from tests.tables import for_each
 
 pytestmark = pytest.mark.xdist_group("pages")
@@ -24,7 +25,7 @@ def test_the_project_below_the_examples_is_sound() -> None:
 
 
 def test_every_code_has_a_page_and_every_page_a_code() -> None:
-    assert {file.stem for file in _HERE.glob("*.md")} == CODES.keys()
+    assert {file.stem for file in matching(_HERE, "*.md")} == CODES.keys()
 
 
 def judge(code: str) -> None:
@@ -66,5 +67,5 @@ def test_a_page_says_what_and_why_in_few_words(code: str) -> None:
 
 @pytest.mark.physics
 def test_the_docs_are_what_the_pages_say() -> None:
-    there = {file.name: file.read_text(encoding="utf-8") for file in DOCS.glob("*.md")}
+    there = {file.name: file.read_text(encoding="utf-8") for file in matching(DOCS, "*.md")}
     assert there == written(), "run `python scripts/rule_pages.py`"
