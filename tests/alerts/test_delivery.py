@@ -6,6 +6,7 @@ import socket
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -175,6 +176,15 @@ def test_a_program_that_can_not(tmp_path: Path, command: list[str], said: str, f
 def test_a_program_that_does_not_end_is_ended_with_its_children(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    begin = program.subprocess.Popen
+
+    def begun(*words: Any, **options: Any) -> Any:
+        """Its time begins when its child has."""
+        process, child = begin(*words, **options), tmp_path / "child"
+        until(lambda: child.exists() and child.read_text())
+        return process
+
+    monkeypatch.setattr(program, "subprocess", SimpleNamespace(**vars(program.subprocess) | {"Popen": begun}))
     monkeypatch.setattr(program, "PROGRAM_TIMEOUT", 0.3)
     error = undelivered(Program(("sh", "-c", "sleep 60 & echo $! > child; sleep 60")), tmp_path)
     assert str(error) == "it has not ended within 0.3 s"

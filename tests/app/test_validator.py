@@ -13,15 +13,30 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.runtime.watcher import SavedFiles
+from tests.waiting import until
 
 ROOT = Path(__file__).parents[2]
 
 
-class SlowJudge:
-    """Waits, while it is asked, for whoever might ask besides; counts how many were there at once."""
+class Turn:
+    """A lock that counts who has asked for it."""
 
     def __init__(self) -> None:
-        self.most, self._here, self._count = 0, threading.Semaphore(0), threading.Lock()
+        self.asked, self._lock = 0, threading.Lock()
+
+    def __enter__(self) -> None:
+        self.asked += 1
+        self._lock.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+
+class SlowJudge:
+    """Is asked until another asks as well; counts how many were there at once."""
+
+    def __init__(self) -> None:
+        self.most, self.turn, self._count = 0, Turn(), threading.Lock()
         self._now = 0
 
     def begin(self) -> None: ...
@@ -34,7 +49,7 @@ class SlowJudge:
         with self._count:
             self._now += 1
             self.most = max(self.most, self._now)
-        self._here.acquire(timeout=0.3)  # a second one would come within that time
+        until(lambda: self.turn.asked == 2 or self.most == 2, what="another who asks meanwhile")
         found = check_files(ROOT, files)
         with self._count:
             self._now -= 1
@@ -50,6 +65,7 @@ class SlowJudge:
 def test_two_threads_are_judged_one_after_the_other() -> None:
     judge, project = SlowJudge(), lumen.load(ROOT)
     validator, found = BundleValidator(judge, lambda: project), list[bool]()
+    validator._turn = judge.turn  # type: ignore[assignment]
     saved = SavedFiles(read_files(ROOT), (), 0.0, 0.0, None)
     threads = [threading.Thread(target=lambda: found.append(validator(saved).good)) for _ in range(2)]
     for thread in threads:

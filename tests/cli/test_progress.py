@@ -8,7 +8,7 @@ import pytest
 from lumen.cli import progress as module
 from lumen.cli.progress import ProgressState, progress, progress_line
 from tests.tables import for_each
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 
 @for_each(
@@ -49,6 +49,7 @@ def test_a_terminal_sees_it_after_a_while_and_nothing_of_it_is_left(monkeypatch:
 def test_what_is_short_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(module, "PATIENCE", HANG)
     with progress() as tell:
         tell(1, 4, "wave")
     assert "wave" not in terminal.getvalue()

@@ -27,6 +27,10 @@ def with_model(project: Project, url: str, **options: Any) -> Project:
     return replace(project, modules={**project.modules, ANSWERS: ModuleSettings(False, options)})
 
 
+LONGEST = 60.0
+"""The longest that a question may wait for its answer: the module takes no more [s]."""
+
+
 class Desk:
     """Asks the module; `told` are lines for the operator."""
 
@@ -40,7 +44,9 @@ class Desk:
         self.module.begin()
         self.asked = 0
 
-    def ask(self, question: str = "what is it", language: str = "en", within: float = 20.0, **more: Any) -> list[Any]:
+    def ask(
+        self, question: str = "what is it", language: str = "en", within: float = LONGEST, **more: Any
+    ) -> list[Any]:
         """What is published for a question, without its id."""
         self.asked += 1
         id = f"d{self.asked}"

@@ -100,7 +100,7 @@ def test_a_brain_for_one_robot_moves_no_other(troupe: Troupe) -> None:
     one, other = troupe.join("robot"), troupe.join("robot", robot="KURNIA")
     brain = troupe.join("brain")
     troupe.until(lambda: "idle" in brain.states and one.body.performed)
-    troupe.live(0.3)
+    troupe.rounds(20)
     assert other.body.performed == []
     assert {body["robot"] for body in troupe.trace.bodies} == {"NAO"}
 

@@ -31,34 +31,34 @@ at: "10:30"
 steps:
   - wait: 1s
   - visitor: arrives
-  - expect: {state: ask_name, said: Good morning}
+  - expect: {state: ask_name, said: Good morning, within: 1h}
   - says: My name is Ada
-  - expect: {state: how_are_you, context: {visitor: Ada}}
+  - expect: {state: how_are_you, context: {visitor: Ada}, within: 1h}
   - says: fine
-  - expect: {state: offer}
+  - expect: {state: offer, within: 1h}
   - says: A photo, please
-  - expect: {state: offer, played: photo, within: 2min}
+  - expect: {state: offer, played: photo, within: 1h}
   - says: No, that is all
-  - expect: {played: goodbye, within: 1min}
+  - expect: {played: goodbye, within: 1h}
   - visitor: leaves
-  - expect: {state: idle}
+  - expect: {state: idle, within: 1h}
 """,
     "dancing": """title: A visitor and a dance
 at: "10:30"
 steps:
   - visitor: arrives
-  - expect: {state: ask_name, within: 60s}
+  - expect: {state: ask_name, within: 1h}
   - says: My name is Ada
-  - expect: {state: how_are_you, context: {visitor: Ada}}
+  - expect: {state: how_are_you, context: {visitor: Ada}, within: 1h}
   - says: fine
-  - expect: {state: offer}
+  - expect: {state: offer, within: 1h}
   - says: dance
-  - expect: {state: dance}
-  - expect: {state: offer, within: 10min}
+  - expect: {state: dance, within: 1h}
+  - expect: {state: offer, within: 1h}
   - says: No, that is all
-  - expect: {state: goodbye, context: {visitor: Ada}}
+  - expect: {state: goodbye, context: {visitor: Ada}, within: 1h}
   - visitor: leaves
-  - expect: {state: idle}
+  - expect: {state: idle, within: 1h}
 """,
 }
 
@@ -117,7 +117,7 @@ class Troupe:
         """A robot that follows a brain, which is idle."""
         robot, brain = self.join("robot"), self.join("brain")
         self.until(lambda: "idle" in brain.states and robot.process.presence.find(BRAIN))
-        self.live(0.1)
+        self.rounds(5)
         return robot, brain
 
     def kill(self, member: Member) -> None:
@@ -137,6 +137,11 @@ class Troupe:
         """So much real time."""
         end = time.monotonic() + seconds
         self.until(lambda: time.monotonic() >= end)
+
+    def rounds(self, count: int) -> None:
+        """So many ticks of each."""
+        for _ in range(count):
+            self._tick()
 
     def close(self) -> None:
         for member in self.members:

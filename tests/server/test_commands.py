@@ -101,6 +101,7 @@ def test_a_flood_of_commands_is_bounded_and_stopping_is_not_part_of_it() -> None
 
 def test_everybody_in_a_flood_gets_an_answer(caplog: pytest.LogCaptureFixture) -> None:
     stand = Stand()
+    stand.server._orders.drops._clock = lambda: stand.clock
     caller = Caller(stand)
     for i in range(1500):
         caller.order("leds", str(i), colours={"eyes": "red"})
