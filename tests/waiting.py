@@ -83,6 +83,11 @@ def finished(thread: threading.Thread) -> None:
     assert not thread.is_alive(), f"waited {HANG:g} s for the end of the thread {thread.name}"
 
 
+def threads(prefix: str = "") -> set[threading.Thread]:
+    """Return the threads whose name begins so: compared as sets, for those of other tests may end late."""
+    return {thread for thread in threading.enumerate() if thread.name.startswith(prefix)}
+
+
 def source_of(condition: Callable[[], object]) -> str:
     """Return a lambda's expression as written, a function's name and its first line of documentation, else a repr."""
     function = inspect.unwrap(getattr(condition, "__func__", condition))

@@ -24,7 +24,7 @@ from lumen.robots.server import RobotServer
 from tests.exhibits import TACTILE, messages, project
 from tests.rabbitmq import RabbitMQ
 from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, without
-from tests.waiting import HANG, Collector, until
+from tests.waiting import HANG, Collector, threads, until
 
 
 def test_bodies_are_those_of_2015_and_the_time() -> None:
@@ -220,9 +220,9 @@ def test_another_bundle_gives_the_camera_another_chance() -> None:
     stand.server.sample(0.1)
     until(lambda: stand.server.counts["image"].published == 1)
     assert stand.server.counts["image"].off == ""
-    before = threading.active_count()
+    before = threads("lumen-")
     stand.server.close()
-    assert threading.active_count() == before - 5
+    assert len(before - threads("lumen-")) == 5
 
 
 def wrong(sense: str) -> Project:
@@ -328,13 +328,13 @@ def test_a_robot_without_a_sense_is_no_trouble() -> None:
 
 
 def test_closing_ends_the_threads_and_may_be_repeated() -> None:
-    before = threading.active_count()
+    before = threads()
     stand = Stand()
-    assert threading.active_count() == before + 5
+    assert len(threads() - before) == 5
     stand.live(0.1)
     stand.server.close()
     stand.server.close()
-    assert threading.active_count() == before
+    assert threads() <= before
 
 
 def test_the_same_server_on_a_broker(broker: RabbitMQ) -> None:

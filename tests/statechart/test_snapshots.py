@@ -77,7 +77,7 @@ def test_a_real_clock_goes_on_counting() -> None:
     assert 50.0 <= frozen["at"] <= it.clock.now()
     assert (it.next_due() or 0.0) > 54.0 - 1e-6
     again = Interpreter.restore(machine(WAITING), frozen, RealClock(), "remaining")
-    assert 0.0 < (again.next_due() or 0.0) < 4.5
+    assert 0.0 < (again.next_due() or 0.0) <= 4.0 + again.clock.now()
 
 
 @pytest.mark.parametrize(("timers", "hour"), [("deadline", 3), ("remaining", 2), ("restart", 2)])
