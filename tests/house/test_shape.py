@@ -28,7 +28,6 @@ HOUSE = {
     "kitchen/words.py": "MOST, LEAST = 2, 1\n",
     "kitchen/oven.py": """
 from typing import TYPE_CHECKING, TypeVar
-from tests.waiting import HANG
 
 if TYPE_CHECKING:
     from lumen.kitchen import pan

@@ -3,6 +3,7 @@
 Their clocks are real ones: in one loop who follows the robot's time would make the robot wait for it.
 """
 
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -63,14 +64,50 @@ steps:
 }
 
 
+LONGEST_ROUND = 0.25
+"""The most [s] that passes for the clocks of the members while each of them ticks once."""
+
+
+class RoundTime:
+    """The time outside without what a slow machine adds to a round, so that no visitor is silent because of it."""
+
+    def __init__(self) -> None:
+        self._last, self._now, self._left = time.monotonic(), 0.0, LONGEST_ROUND
+        self._asking = threading.Lock()
+
+    def __call__(self) -> float:
+        with self._asking:
+            outside = time.monotonic()
+            passed = min(outside - self._last, self._left)
+            self._last, self._now, self._left = outside, self._now + passed, self._left - passed
+            return self._now
+
+    def begin_round(self) -> None:
+        self()
+        self._left = LONGEST_ROUND
+
+
+class RoundClock(RealClock):
+    """A `RealClock` in the time of the rounds."""
+
+    def __init__(self, outside: RoundTime, speed: float) -> None:
+        super().__init__(speed=speed)
+        self._outside, self._start = outside, outside()
+
+    def now(self) -> float:
+        return (self._outside() - self._start) * self.speed
+
+
 class Member:
     """One process, its parts, and what stands behind it."""
 
-    def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str) -> None:
+    def __init__(
+        self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str, outside: RoundTime
+    ) -> None:
         project = replace(lumen.load(folder), robot=name)
         self.run_directory = RunDirectory(folder, guest=BRAIN not in names)
         self.cast: Setup | None = set_up("recording", project, speed) if ROBOT_PART in names else None
-        clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
+        clock: Clock = self.cast.clock if self.cast else RoundClock(outside, float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
         narrator = Printed(clock.now, lambda: self.process.project.machine)
@@ -103,13 +140,14 @@ class Troupe:
     def __init__(self, folder: Path, url: str) -> None:
         self.folder, self.url, self.speed = folder, url, SPEED
         self.members: list[Member] = []
+        self._time = RoundTime()
         self.told = StringIO()
         self.ear: Bus = connect(url)
         self.trace = Collector()
         self.ear.subscribe("lumen.NAO.state", self.trace)
 
     def join(self, *names: str, story: str = "", robot: str = "NAO", url: str = "") -> Member:
-        member = Member(self.folder, url or self.url, names, story, robot, self.speed)
+        member = Member(self.folder, url or self.url, names, story, robot, self.speed, self._time)
         self.members.append(member)
         return member
 
@@ -130,6 +168,7 @@ class Troupe:
         until(condition, meanwhile=self._tick)
 
     def _tick(self) -> None:
+        self._time.begin_round()
         for member in self.members:
             member.process.tick()
 
