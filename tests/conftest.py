@@ -4,7 +4,7 @@ import os
 import signal
 from pathlib import Path
 
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from tests.rabbitmq import broker
 
@@ -18,6 +18,11 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of
 os.environ["XDG_CACHE_HOME"] = str(Path(__file__).parents[1] / ".cache/xdg")
 """What starts keep for the next one is kept here, for all tests of this and later runs."""
 
-settings.register_profile("seeded", derandomize=True, deadline=None)
+settings.register_profile(
+    "seeded",
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],  # on a slow machine
+)
 settings.register_profile("quick", settings.get_profile("seeded"), max_examples=10)
 settings.load_profile("seeded")

@@ -16,13 +16,13 @@ from lumen.loading.files import read_files
 from lumen.runtime.home import ADDRESS_FILE, Home
 from lumen.runtime.journal import Journal
 from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 ROOT = Path(__file__).parents[2]
 PARTS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models")
 SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
 SPEED = "4"
-PATIENCE, BEGINNING = 20.0, 120.0
+PATIENCE = BEGINNING = HANG
 """How long any answer, and a start, may take on a crowded machine [s]."""
 TRIES = 3
 """How often a text is said that somebody cancels: a stop of the attack, or of the behaviour, that came just then."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from lumen.app import claiming, node
 from lumen.cli.main import main
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
@@ -84,7 +85,10 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(sys, "stdin", None)
     process, _ = hall.begin()
     until(hall.both)
-    code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")
+    with monkeypatch.context() as patient:  # the first may be slow to say that it is there
+        patient.setattr(claiming, "CLAIM_DURATION", HANG)
+        patient.setattr(node, "CLAIM_DURATION", HANG)
+        code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")
     assert (code, "is the robot of ana on this bus already: end it first" in said) == (2, True)
     assert hall.call("stop", "--robot-name", "ana")[0] == 0
     found = hall.status()

@@ -29,11 +29,18 @@ def watching(project: Path) -> Iterator[Guarded[str]]:
     command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", str(project)]
     environment = {**os.environ, "PYTHONPATH": str(ENGINE)}
     with Guarded(command, stdout=PIPE, stderr=PIPE, text=True, env=environment) as process:
-        deadline = threading.Timer(60, process.kill)
+        deadline = threading.Timer(HANG, process.kill)
         deadline.start()
         yield process
         deadline.cancel()
         process.kill()
+
+
+def save(file: Path, text: str) -> None:
+    """Save it at once: what is watched is never half of it."""
+    draft = file.with_name(f".{file.name}.new")
+    draft.write_text(text)
+    draft.replace(file)
 
 
 def answer(process: Guarded[str]) -> str:
@@ -52,16 +59,14 @@ def test_a_saved_file_is_answered(project: Path, watching: Guarded[str]) -> None
     assert "nothing wrong; " in answer(watching)
     tour = project / "behaviors/tour.yaml"
     text = tour.read_text()
-    tour.write_text(text.replace("onError: idle", "onError: idel"))
+    save(tour, text.replace("onError: idle", "onError: idel"))
     assert "error[unknown-state]" in answer(watching)
-    (project / "motions/bow.yml").write_text("start: Stand\n")
+    save(project / "motions/bow.yml", "start: Stand\n")
     said = answer(watching)
     assert "error[unknown-state]" in said
     assert "warning[not-read]" in said
     (project / "motions/bow.yml").unlink()
-    new = project / "behaviors/.tour.yaml.new"
-    new.write_text(text)
-    new.replace(tour)
+    save(tour, text)
     while "nothing wrong; " not in (said := answer(watching)):
         assert "error" in said or "warning" in said
     watching.send_signal(signal.SIGINT)

@@ -116,11 +116,15 @@ class Live:
         self.show.visitor.actor.speak(text)
         self.until(lambda: state in self.states)
 
-    def edit(self, old: str, new: str, file: str = "behaviors/tour.yaml") -> None:
-        path = self.folder / file
+    def edit(self, old: str, new: str, file: str = "behaviors/tour.yaml", *more: str) -> None:
+        """Save a file with these changes at once: a machine that stops between two writes makes no half of it."""
+        path, draft, words = self.folder / file, self.folder.parent / "draft", (old, new, *more)
         text = path.read_text("utf-8")
-        assert old in text
-        path.write_text(text.replace(old, new), "utf-8")
+        for before, after in zip(words[::2], words[1::2], strict=True):
+            assert before in text
+            text = text.replace(before, after)
+        draft.write_text(text, "utf-8")
+        draft.replace(path)
 
     def ask(self, command: object, **more: object) -> dict[str, Any]:
         """The first answer to a command."""

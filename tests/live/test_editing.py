@@ -32,8 +32,10 @@ def test_the_visitors_name_survives(live: Live) -> None:
     live.until_told("ask_name")
     walker.actor.speak("my name is Ada")
     live.until(lambda: "how_are_you" in live.states)
-    live.edit("en: [I am glad to hear that.,", 'en: ["Wonderful, {{ context.visitor }}!",')
-    live.edit('"That is good to hear, {{ context.title_en }}."]', '"Wonderful, {{ context.visitor }}!"]')
+    live.edit(
+        *("en: [I am glad to hear that.,", 'en: ["Wonderful, {{ context.visitor }}!",', "behaviors/tour.yaml"),
+        *('"That is good to hear, {{ context.title_en }}."]', '"Wonderful, {{ context.visitor }}!"]'),
+    )
     live.until_told("are active")
     assert "how_are_you" in live.states
     walker.actor.speak("fine")
@@ -58,8 +60,7 @@ def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
     assert told in live.transcript
     assert "behaviors/tour.yaml:" in live.transcript
     assert live.show.loop.project is before
-    live.edit(new, old)
-    live.edit("en: Never mind.", "en: No problem.")
+    live.edit(new, old, "behaviors/tour.yaml", "en: Never mind.", "en: No problem.")
     live.until_told("are active")
 
 

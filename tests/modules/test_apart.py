@@ -13,10 +13,18 @@ from lumen.language.projects import Project
 from lumen.runtime.presence import Peer, Presence
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 POSTER = Path(__file__).parents[2] / "examples/modules/poster.py"
 FACT = "lumen.NAO.persistence.fact"
+PATIENT = f"""
+import sys
+from lumen.app import claiming, node
+from lumen.cli.main import main
+claiming.CLAIM_DURATION = node.CLAIM_DURATION = {HANG}
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command line, which waits for a rival that is slow to say that it is there."""
 
 
 @pytest.fixture
@@ -81,7 +89,7 @@ def test_a_module_is_announced_does_its_work_is_one_and_is_missed(
     bus.publish("lumen.state", {"robot": "NAO", "time": 1.0, "entered": ["idle"], "context": {"visitor": "Ani"}})
     bus.publish(FACT, {"method": "list"}, reply_to="lumen.answers")
     until(lambda: _again(bus, answers))
-    second = start("-m", "lumen", "run", str(copy), "--only", "memory")
+    second = start("-c", PATIENT, "run", str(copy), "--only", "memory")
     until(lambda: (brain.tick(), second.poll())[1] is not None)
     assert second.returncode == 2
     assert second.stdout

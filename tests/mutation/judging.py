@@ -20,7 +20,7 @@ from lumen.rules import check_files
 from lumen.rules.codes import CODES
 from lumen.runtime.loop import Observer
 
-PATIENCE = 5.0
+PATIENCE = 60.0
 """CPU time that lint, or a story, may take [s]."""
 
 LONGEST = 400.0

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from tests.nodes import Printed, whole
-from tests.waiting import Collector, until
+from tests.waiting import Collector, source_of, until
 
 SPEED = "4"
 STORIES = {
@@ -64,6 +65,8 @@ steps:
 }
 
 
+PAUSE_ROUNDS = 200
+"""After so many ticks of each, what came to nothing is sent again."""
 LONGEST_ROUND = 0.25
 """The most [s] that passes for the clocks of the members while each of them ticks once."""
 
@@ -166,6 +169,15 @@ class Troupe:
 
     def until(self, condition: Callable[[], object]) -> None:
         until(condition, meanwhile=self._tick)
+
+    def insist(self, send: Callable[[], object], condition: Callable[[], object]) -> None:
+        """Send what may be old by the time that a slow machine has carried it, again and again until that holds."""
+        rounds = count()
+
+        def holds() -> object:
+            return condition() or ((next(rounds) % PAUSE_ROUNDS or send()) and False)
+
+        until(holds, meanwhile=self._tick, what=source_of(condition))
 
     def _tick(self) -> None:
         self._time.begin_round()
