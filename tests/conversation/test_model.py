@@ -37,7 +37,7 @@ def test_the_first_sentence_goes_out_before_the_second_comes(desk: Make) -> None
     )
     assert [one["text"] for one in here.answers.wait(1)] == ["That is it."], "the model still holds its answer back"
     assert here.said(within=0.6) in (["That is it."], []), "by when a slow machine has nothing yet"
-    assert here.told == ["the language model did not answer in time"]
+    assert here.told[-1] == "the language model did not answer in time"
 
 
 def test_what_is_sent(desk: Make) -> None:

@@ -3,6 +3,7 @@
 import pytest
 
 from lumen.robots import server
+from lumen.robots.sense_publisher import SensePublisher
 from tests.waiting import HANG
 
 
@@ -10,3 +11,4 @@ from tests.waiting import HANG
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "THREAD_START_TIMEOUT", HANG)
     monkeypatch.setattr(server, "FIRST_IMAGE_TIMEOUT", HANG)
+    monkeypatch.setattr(SensePublisher, "PATIENCE", HANG)

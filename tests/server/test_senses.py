@@ -291,12 +291,13 @@ def test_a_slow_subscriber_keeps_the_loop_waiting_for_a_tick_at_most() -> None:
 
 
 def waits_of(stand: Stand) -> list[float]:
-    """For how long [s] each of the next looks wants to wait for what is leaving."""
-    waited: list[float] = []
+    """For how long [s] each of this thread's next looks wants to wait for what is leaving."""
+    waited, me = list[float](), threading.current_thread()
     for handed in stand.server._leaving:
 
         def wait(seconds: float, usual: Callable[[float], bool] = handed.done.wait) -> bool:
-            waited.append(seconds)
+            if threading.current_thread() is me:
+                waited.append(seconds)
             return usual(seconds)
 
         handed.done.wait = wait  # type: ignore[method-assign, assignment]
