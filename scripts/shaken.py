@@ -185,7 +185,7 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
     outcomes.write_text("")
     command: list[object] = [sys.executable, "-m", "pytest", "-n", arguments.workers, "--dist", "loadgroup"]
     command += ["--no-loadscope-reorder", "-p", "tests.shuffled", "--order-seed", plan.seed, "--outcomes", outcomes]
-    command += selection(arguments)
+    command += ["-m", "not soak", *selection(arguments)]
     with ExitStack() as stack, log.open("w") as told:
         group = Group(f"shaken-{os.getpid()}-{plan.seed}")
         stack.callback(group.close)

@@ -1,7 +1,7 @@
 """Tests in random order: `-p tests.shuffled --order-seed N`; without a seed one is drawn, and printed.
 
 Shuffled are whole groups of xdist (else files), the files of a group, and the tests within a file. A file whose tests
-build on each other says so with `pytestmark = pytest.mark.ordered`, and keeps its order. `scripts/shaken.py` uses this
+build on each other has `pytestmark = pytest.mark.ordered`, and keeps its order. `scripts/shaken.py` uses this
 with `--outcomes FILE`, which gets a line of JSON for each test, and `--only-real`, which leaves only tests with a
 process, a broker or a browser.
 """
@@ -10,18 +10,12 @@ import json
 import random
 import re
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from tests.marking import home, named, parameters
-
-REAL = ("tests.guarded", "tests.rabbitmq", "subprocess", "multiprocessing", "selenium")
-"""The modules by which tests start a process, a broker or a browser."""
-BROWSING = ("browser", "page", "driver")
-"""Fixtures that are a browser."""
+REAL = ("process", "broker", "browser")
+"""The marks of tests that start something."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -60,8 +54,8 @@ class Outcomes:
             file.write(json.dumps([re.sub(r"@[^]@]*$", "", test), outcome]) + "\n")
 
 
-def pytest_report_header(config: pytest.Config) -> str:
-    return f"random order: --order-seed {config.getoption('order_seed')}"
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    terminalreporter.write_line(f"random order: --order-seed {config.getoption('order_seed')}")
 
 
 @pytest.hookimpl(trylast=True)
@@ -105,26 +99,5 @@ def file_of(item: pytest.Item) -> str:
 
 
 def is_real(item: pytest.Item) -> bool:
-    """Whether a test, its fixtures or its parameters name what starts a process, a broker or a browser."""
-    if item.get_closest_marker("broker") or not isinstance(item, pytest.Function):
-        return True
-    fixtures = item._fixtureinfo.name2fixturedefs
-    used = [item.function, *(definition.func for found in fixtures.values() for definition in found)]
-    used += [value for value in parameters(item) if callable(value)]
-    return any(name in BROWSING for name in fixtures) or any(starts(thing) for thing in used)
-
-
-@cache
-def starts(thing: Any) -> bool:
-    """Whether a function or class of the tests, or one that it names, starts something."""
-    seen, left = set[int](), [thing]
-    while left:
-        one = left.pop()
-        if id(one) in seen:
-            continue
-        seen.add(id(one))
-        if home(one).startswith(REAL):
-            return True
-        if home(one).startswith("tests."):
-            left += named(one)
-    return False
+    """Return whether the test has a process, a broker or a browser, as `tests/marking.py` finds."""
+    return any(item.get_closest_marker(mark) for mark in REAL)

@@ -9,8 +9,6 @@ import pytest
 from scripts import shaken
 
 from tests import shuffled
-from tests.buses import test_amqp, test_poll_loop
-from tests.house import test_guarded
 
 
 def item(name: str, *, ordered: bool = False) -> Any:
@@ -36,10 +34,10 @@ def test_a_file_stays_together_and_one_that_is_ordered_as_it_is() -> None:
         assert [one for one in found if one in ordered] == ordered
 
 
-def test_what_starts_a_process_or_a_broker_is_real() -> None:
-    assert shuffled.starts(test_guarded.start)
-    assert shuffled.starts(test_amqp.test_a_failed_connection_leaves_no_thread) is False, "its fixture is"
-    assert not any(shuffled.starts(thing) for name, thing in vars(test_poll_loop).items() if name.startswith("test_"))
+@pytest.mark.parametrize(("mark", "real"), [("process", True), ("broker", True), ("browser", True), ("physics", False)])
+def test_what_has_a_process_a_broker_or_a_browser_is_real(mark: str, real: bool) -> None:
+    one: Any = SimpleNamespace(get_closest_marker={mark: "there"}.get)
+    assert shuffled.is_real(one) is real
 
 
 def test_eight_runs_quiet_eight_crowded_and_four_on_half_a_core() -> None:
