@@ -8,7 +8,7 @@
 Crowded means four busy loops beside the tests. Half a core is a cgroup's quota, if this user may make one; else the
 first core alone, shared with a busy loop. `--only-real` takes the tests with a process, a broker or a browser. The run
 numbered i has the seed plus i; what a run printed is kept in `.cache/shaken`. The exit code is 1 if anything failed.
-Whatever this starts ends with it, also on Ctrl-C.
+All processes that it starts end with it, also on Ctrl-C.
 """
 
 import argparse
@@ -40,9 +40,9 @@ CROWD = 4
 PERIOD, QUOTA = 100_000, 50_000
 """Half a core: so many microseconds of each period."""
 ENDING = 60.0
-"""How long an interrupted pytest has to end its fixtures before it is killed [s]."""
+"""The time that an interrupted pytest has for ending its fixtures, before it is killed [s]."""
 LINGERING = 5.0
-"""How long what tests started may take to end by itself after pytest [s]."""
+"""The time that processes of tests have for ending by themselves after pytest [s]."""
 USUAL = {"quiet": 8, "crowded": 8, "half": 4}
 REAL = {"quiet": 0, "crowded": 0, "half": 30}
 ENTER = 'for group in $GROUPS_ENTERED; do echo $$ > "$group/cgroup.procs"; done; exec "$@"'
@@ -246,7 +246,7 @@ def pinned(command: list[object]) -> list[object]:
 
 
 def read(outcomes: Path) -> tuple[int, set[str]]:
-    """How many tests passed, and those that failed; a line that was cut by a kill is left out."""
+    """Return the number of tests that passed, and those that failed; skip a line that a kill has cut."""
     passed, failed = 0, set[str]()
     for line in outcomes.read_text("utf-8").splitlines():
         with suppress(ValueError):

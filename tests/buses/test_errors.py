@@ -40,7 +40,7 @@ def world(broker: RabbitMQ, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setenv("LUMEN_BUS_CREDENTIALS", str(tmp_path / "missing"))
     inside = connect("memory://")
     served = LocalBusServer(inside, tmp_path)
-    with socket.socket() as unheard:  # taken by us, so that nobody opens it meanwhile
+    with socket.socket() as unheard:  # bound here, so that no other process opens it
         unheard.bind(("127.0.0.1", 0))
         yield World(broker, served, tmp_path, int(unheard.getsockname()[1]))
     served.close()

@@ -102,7 +102,7 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     links = [link for bus in (reader, sender) for link in links_of(bus)]
     until(lambda: all(link.connection is None for link in links))
     assert reader.away, "who tells people of it asks this"
-    reader.subscribe("lumen.fault.later", later)  # who waited for the broker would tell so: see the test's end
+    reader.subscribe("lumen.fault.later", later)  # waiting for the broker would log a warning: see the test's end
     sender.publish("lumen.fault.later", "stale", ttl=0.001)
     sent = sending.sent
     until(lambda: sending.sent > sent + 50)

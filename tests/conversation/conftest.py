@@ -28,7 +28,7 @@ def with_model(project: Project, url: str, **options: Any) -> Project:
 
 
 LONGEST = 60.0
-"""The longest that a question may wait for its answer: the module takes no more [s]."""
+"""The longest time that the module lets a question wait for its answer [s]."""
 
 
 class Desk:

@@ -1,6 +1,6 @@
 """Files of thousands of states or targets are imported with work that grows as they do.
 
-A state with 8,000 events took a quarter of a minute once, a transition of 8,000 targets half of one. The time that it
+A state with 8,000 events once needed 15 s, a transition of 8,000 targets 30 s. The time that it
 takes is measured in test_time_taken.py.
 """
 
@@ -58,7 +58,7 @@ def imported(shape: str, count: int, folder: Path) -> None:
 
 
 def calls(do: Callable[[], object]) -> int:
-    """How many functions were called, of Python's and of C's: the same number on every machine."""
+    """Return the number of functions called, in Python and in C: it is the same on every machine."""
     count = 0
 
     def seen(frame: object, event: str, argument: object) -> None:

@@ -1,4 +1,4 @@
-"""`scripts/shaken.py` plans its runs, tells what failed in them, and the tests it runs come in random order."""
+"""`scripts/shaken.py` plans its runs and lists the failures; its tests run in random order."""
 
 import random
 from pathlib import Path

@@ -85,7 +85,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(sys, "stdin", None)
     process, _ = hall.begin()
     until(hall.both)
-    with monkeypatch.context() as patient:  # the first may be slow to say that it is there
+    with monkeypatch.context() as patient:  # the first may announce itself late
         patient.setattr(claiming, "CLAIM_DURATION", HANG)
         patient.setattr(node, "CLAIM_DURATION", HANG)
         code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")

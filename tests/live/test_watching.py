@@ -1,7 +1,7 @@
 """Files saved in all the ways in which they are: one verdict for each content that stays, none for what passes.
 
-The quiet period is one of a clock that stands still unless a test lets it go on, so that a machine that stops for a
-while between two writes makes no other verdict of them.
+The quiet period is measured by a clock that only the tests advance. A machine that stops between two writes changes no
+verdict.
 """
 
 import os

@@ -24,7 +24,7 @@ from lumen.cli.main import main
 claiming.CLAIM_DURATION = node.CLAIM_DURATION = {HANG}
 sys.exit(main(sys.argv[1:]))
 """
-"""The command line, which waits for a rival that is slow to say that it is there."""
+"""The command line, with time for a rival that announces itself late."""
 
 
 @pytest.fixture

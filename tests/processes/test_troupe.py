@@ -110,7 +110,7 @@ def test_a_brain_for_one_robot_moves_no_other(troupe: Troupe) -> None:
 def test_a_second_one_of_the_same_kind_is_refused(troupe: Troupe, part: str, monkeypatch: pytest.MonkeyPatch) -> None:
     robot, brain = troupe.join("robot"), troupe.join("brain")
     troupe.until(lambda: "idle" in brain.states)
-    monkeypatch.setattr(node, "CLAIM_DURATION", HANG)  # the first may be slow to say that it is there
+    monkeypatch.setattr(node, "CLAIM_DURATION", HANG)  # the first may announce itself late
     troupe.join(part)
     with pytest.raises(UsageError, match=f"is the {part} of NAO on this bus already: end it first"):
         troupe.until(lambda: False)

@@ -291,7 +291,7 @@ def test_a_slow_subscriber_keeps_the_loop_waiting_for_a_tick_at_most() -> None:
 
 
 def waits_of(stand: Stand) -> list[float]:
-    """For how long [s] each of this thread's next looks wants to wait for what is leaving."""
+    """Collect the times [s] that this thread asks to wait for readings on their way."""
     waited, me = list[float](), threading.current_thread()
     for handed in stand.server._leaving:
 
