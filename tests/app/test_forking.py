@@ -7,10 +7,12 @@ from typing import Any
 import pytest
 
 import lumen
+from lumen.app import forking
 from lumen.app.exhibition import Exhibition
 from lumen.bus import connect
 from lumen.language.events import Event
 from tests.app.test_now import Asker, asker
+from tests.waiting import HANG
 
 MINE = """
 context: {n: 0}
@@ -40,7 +42,8 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def ask(folder: Path) -> Iterator[Asker]:
+def ask(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Asker]:
+    monkeypatch.setattr(forking, "PATIENCE", HANG)
     bus = connect("memory://")
     with lumen.open(folder, bus=bus) as exhibition:
         raised(exhibition, "left")

@@ -22,7 +22,7 @@ from lumen.robots.recording import RecordingRobot
 from lumen.rules import check_files
 from lumen.runtime.home import Home
 from tests.nodes import Printed, whole
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 QUIET = 0.06
 
@@ -83,7 +83,7 @@ class Live:
             mode=mode,
             records=self.records,
             quiet=QUIET,
-            budget=0.5,
+            budget=HANG,
             seen=seen,
             worker=None if apart else Here(folder),
         )

@@ -26,7 +26,7 @@ from lumen.runtime.journal import Journal
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
 from tests.guarded import PIPE, STDOUT, Guarded
-from tests.waiting import until
+from tests.waiting import HANG, until
 
 GUEST = """
 id: guest
@@ -172,12 +172,15 @@ def test_no_byte_of_a_forgotten_name_is_left_after_a_crash(copy: Path, capsys: p
 
 @pytest.mark.slow
 def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
-    copy: Path, capsys: pytest.CaptureFixture[str]
+    copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with running(copy) as (process, bus):
         hear(bus, "my name is İpek")
         until(lambda: {"snapshot.json", "posts.jsonl"} <= set(found(copy, "İpek")))
-        assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 0
+        with monkeypatch.context() as patient:
+            patient.setattr("lumen.cli.memory.ANSWER_TIMEOUT", HANG)
+            patient.setattr("lumen.app.forgetting.files.PATIENCE", HANG)
+            assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 0
         told = capsys.readouterr().out
         assert "STILL THERE" not in told
         assert "deleted: the memory that runs: visitors: 1" in told

@@ -48,7 +48,7 @@ def say(folder: Path, old: str, new: str, file: str = HELLO) -> None:
     (folder / file).write_text(text.replace(old, new), "utf-8")
 
 
-def check(folder: Path, budget: float = 30.0, running: str = "") -> VisitsCheck:
+def check(folder: Path, budget: float = 300.0, running: str = "") -> VisitsCheck:
     return check_visits(folder, lumen.load(folder), running, budget)
 
 
