@@ -17,15 +17,15 @@ import pytest
 
 from tests.fetched import fetched
 from tests.guarded import Guarded, run_guarded
-from tests.rabbitmq import RabbitMQ
+from tests.rabbitmq import LentBroker, RabbitMQ
 
 PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
 NETWORK = ("http.", "socket", "lumen.console.serving", "lumen.buses.broker", "lumen.buses.local")
 """What opens ports or connections."""
 BROWSER = "tests.console.browser"
-SHARED = frozenset(("broker", "own_broker", "speaker"))
-"""The fixtures that are a broker for several tests."""
+OWN_SERVERS = "own servers"
+"""The group of tests with a broker of their own, which run one after another: one such broker at a time."""
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -36,7 +36,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             used = [item.function, *(definition.func for found in fixtures for definition in found)]
             used += [value for value in parameters(item) if isinstance(value, FunctionType | type)]
             for mark in {mark for thing in used for mark in marks(thing)}:
-                item.add_marker(mark)
+                if mark != OWN_SERVERS:
+                    item.add_marker(mark)
+                elif not item.get_closest_marker("xdist_group"):
+                    item.add_marker(pytest.mark.xdist_group(OWN_SERVERS))
     if config.getoption("loadgroup", False):
         items[:] = grouped(items)
 
@@ -63,9 +66,8 @@ def has(group: Iterable[pytest.Item], mark: str) -> bool:
 
 
 def shared(item: pytest.Item) -> str:
-    """With which tests one is to have a worker, since they share what is dear: a folder its broker, a file the rest."""
-    brokers = SHARED.intersection(getattr(item, "fixturenames", ()))
-    return f"{min(brokers)} {item.path.parent.name}" if brokers else item.nodeid.partition("::")[0]
+    """With which tests one is to have a worker, if it has no group yet: those of its file."""
+    return item.nodeid.partition("::")[0]
 
 
 def parameters(item: pytest.Function) -> Iterator[Any]:
@@ -85,6 +87,8 @@ def marks(thing: Any) -> frozenset[str]:
             continue
         seen.add(id(one))
         if one is RabbitMQ:
+            found |= {"broker", OWN_SERVERS}
+        elif one is LentBroker:
             found.add("broker")
         elif one is Guarded or one is run_guarded:
             found.add("process")

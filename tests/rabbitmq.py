@@ -1,7 +1,8 @@
 """A private RabbitMQ for the tests: on loopback only, as whoever runs them, gone when they end, however they end.
 
-`broker` is one for the whole session; a test that kills its broker makes one of its own with `RabbitMQ()`. As a program
-(`make broker`) it is one for whoever develops a module, until Ctrl-C.
+`broker` (servers.py) is a virtual host of the run's broker; a test that kills its broker, or needs TLS or a plug-in,
+starts one of its own with `RabbitMQ()`. As a program (`make broker`) it is one for whoever develops a module, until
+Ctrl-C.
 """
 
 import base64
@@ -14,7 +15,7 @@ import shutil
 import signal
 import socket
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import NoReturn
@@ -33,6 +34,8 @@ START_TIMEOUT = 180.0
 """How long a broker may take until it listens, on a crowded machine [s]."""
 STOP_TIMEOUT = 20.0
 """How long it may take to end in order [s]."""
+VIRTUAL_HOSTS = 64
+"""How many the run's broker has, each for one module; 40 of them cost less than a second of processor time."""
 HASHING = "rabbit_password_hashing_sha256"
 
 ERLANG_ARGUMENTS = "-kernel inet_dist_use_interface {127,0,0,1} +S 1:1 +sbwt none"
@@ -42,7 +45,7 @@ USERS = {
     "lamp": (r"^museum\.button$", r"^museum\.lamp\."),
     "eyes": (r"^lumen\.(NAO\.)?visual\.", r"^avatar\.NAO\.data\.image$"),
 }
-"""Who may use the broker: which keys of `amq.topic` each may write, and which read."""
+"""The users of each virtual host: which keys of `amq.topic` each may write, and which read."""
 RIGHTS = {
     "eyes": ("^amq\\.gen", "^(amq\\.topic|amq\\.gen|amq\\.default)", "^(amq\\.topic|amq\\.gen)"),
     "lamp": ("^mqtt-subscription", "^(amq\\.topic|mqtt-subscription)", "^(amq\\.topic|mqtt-subscription)"),
@@ -63,13 +66,23 @@ class RabbitMQ:
 
     With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/broker.md for
     messages that nobody waits for. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`; `plugins` are
-    others. `definitions` are imported in place of the tests' usual ones.
+    others. With `virtual_hosts` it has so many, named `t0` and so on, in place of the usual one. `definitions` are
+    imported in place of the tests' usual ones.
     """
 
+    host = ""
+    """The virtual host; empty for the only one."""
+
     def __init__(
-        self, certificate: Path | None = None, *, speaks_mqtt: bool = False, plugins: Sequence[str] = ()
+        self,
+        certificate: Path | None = None,
+        *,
+        speaks_mqtt: bool = False,
+        plugins: Sequence[str] = (),
+        virtual_hosts: int = 0,
     ) -> None:
         self._root, self._script = _installed()
+        self._hosts = [f"t{number}" for number in range(virtual_hosts)] or ["/"]
         self.certificate, self._speaks_mqtt, self._plugins = certificate, speaks_mqtt, plugins
         self.definitions: Mapping[str, object] | None = None
         self.folder = temporary_folder("lumen-rabbitmq-")
@@ -80,7 +93,11 @@ class RabbitMQ:
 
     def url_of(self, user: str) -> str:
         """The address for one of `USERS`, whose password is the same as the name."""
-        return f"amqp://{user}:{user}@127.0.0.1:{self.port}/"
+        return f"amqp://{user}:{user}@{self.place()}"
+
+    def place(self, port: int = 0) -> str:
+        """The last part of an address: of this broker, or of a relay in front of it."""
+        return f"127.0.0.1:{port or self.port}/{self.host}"
 
     @property
     def ctl(self) -> str:
@@ -100,7 +117,7 @@ class RabbitMQ:
         (self.folder / "plugins").write_text(f"[{','.join(plugins)}].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
         (self.folder / "definitions.json").write_text(
-            json.dumps(self.definitions or _definitions(nowhere=self.certificate is not None))
+            json.dumps(self.definitions or _definitions(self._hosts, nowhere=self.certificate is not None))
         )
         link_modules(self.folder, self._root / "usr/lib/erlang", Path(self._script).parents[1], self._plugins)
         if self._names is None:
@@ -156,9 +173,9 @@ class RabbitMQ:
         os.killpg(self._process.pid, number)
 
     def stop(self) -> None:
-        """End it and its name server, and delete its folder."""
+        """End it and its name server, and delete its folder: what it has stored is not worth an end in order."""
         for process in (self._process, self._names):
-            _end(process, signal.SIGTERM)
+            _end(process, signal.SIGKILL)
         self._process = self._names = None
         shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -189,6 +206,23 @@ class RabbitMQ:
         return log.read_text(errors="replace")[-2000:] if log.exists() else "nothing"
 
 
+class LentBroker(RabbitMQ):
+    """A virtual host of a broker that others use, too: it can't be ended or set up."""
+
+    def __init__(self, port: int, epmd: int, host: str) -> None:
+        self.port, self.epmd, self.host = port, epmd, host
+        self.certificate = None
+        self.url = self.url_of("guest")
+
+    def __getattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"`broker` has no `{name}`, since others use it: start one by `RabbitMQ()`")
+
+    def begin(self) -> NoReturn:
+        self.__getattr__("begin")
+
+    start = wait = kill = stop = begin
+
+
 class GivenBroker:
     """A broker that somebody else has started and may go on using: nothing of it is ended, or set up."""
 
@@ -206,18 +240,6 @@ class GivenBroker:
         return self.url if user == "guest" else self.__getattr__("url_of")
 
 
-@pytest.fixture(scope="session")
-def broker() -> Iterator[RabbitMQ | GivenBroker]:
-    """The session's broker."""
-    if url := os.environ.get(GIVEN):
-        yield GivenBroker(url)
-        return
-    rabbitmq = RabbitMQ()
-    rabbitmq.start()
-    yield rabbitmq
-    rabbitmq.stop()
-
-
 def _end(process: Guarded[bytes] | None, how: signal.Signals) -> None:
     """End a process and its children, by force where it takes too long."""
     if process is None:
@@ -232,20 +254,22 @@ def _end(process: Guarded[bytes] | None, how: signal.Signals) -> None:
         process.wait()
 
 
-def _definitions(*, nowhere: bool) -> dict[str, object]:
-    """Users and permissions as the broker imports them, and whether what nobody waits for goes to `lumen.nowhere`."""
+def _definitions(hosts: Sequence[str], *, nowhere: bool) -> dict[str, object]:
+    """What the broker imports: each host with all users; `nowhere`: what nobody waits for goes to `lumen.nowhere`."""
     return {
-        "vhosts": [{"name": "/"}],
+        "vhosts": [{"name": host} for host in hosts],
         "users": [
             {"name": user, "password_hash": _hashed(user), "hashing_algorithm": HASHING, "tags": ""} for user in USERS
         ],
         "permissions": [
-            {"user": user, "vhost": "/", **dict(zip(("configure", "write", "read"), _rights(user), strict=True))}
+            {"user": user, "vhost": host, **dict(zip(("configure", "write", "read"), _rights(user), strict=True))}
+            for host in hosts
             for user in USERS
         ],
         "policies": [NOWHERE] if nowhere else [],
         "topic_permissions": [
-            {"user": user, "vhost": "/", "exchange": "amq.topic", "write": write, "read": read}
+            {"user": user, "vhost": host, "exchange": "amq.topic", "write": write, "read": read}
+            for host in hosts
             for user, (write, read) in USERS.items()
         ],
     }

@@ -166,7 +166,7 @@ def test_a_slow_handler_costs_no_heartbeat(
 
 def test_a_publisher_does_not_wait_for_a_broker_that_hears_nothing(broker: RabbitMQ, bus: Bus) -> None:
     relay, seen = Relay(broker.port), Collector()
-    far = connect(f"amqp://guest:guest@127.0.0.1:{relay.port}/")
+    far = connect(f"amqp://guest:guest@{broker.place(relay.port)}")
     bus.subscribe("lumen.a", seen)
     relay.cut()
     for i in range(1000):

@@ -326,7 +326,7 @@ def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(
     broker: RabbitMQ, opened: Open, caplog: pytest.LogCaptureFixture
 ) -> None:
     relay, seen = Relay(broker.port), Collector()
-    url = f"amqp://guest:guest@127.0.0.1:{relay.port}/"
+    url = f"amqp://guest:guest@{broker.place(relay.port)}"
     ways = [route(f"lumen.L.{i}", carried, ttl=HANG) for i, carried in enumerate((Carried.TELEMETRY, Carried.COMMAND))]
     bus, sender = opened(url=url), opened()
     bus.prepare({way.key: way for way in ways})

@@ -148,7 +148,7 @@ def links_of(bus: Any) -> list[Any]:
 def cut_for(seconds: float, broker: RabbitMQ) -> None:
     """A network that carries nothing for a while, and tells nobody."""
     relay, effects = Relay(broker.port), Effects()
-    url = f"amqp://guest:guest@127.0.0.1:{relay.port}/?heartbeat=1"
+    url = f"amqp://guest:guest@{broker.place(relay.port)}?heartbeat=1"
     reader, sender = opened(url), opened(url)
     for key in WAYS:
         reader.subscribe(key, effects)
@@ -217,7 +217,7 @@ def test_a_flood_of_fifty_thousand_arrives_whole_and_fills_no_memory(broker: Rab
 def test_telemetry_that_nobody_can_take_fills_no_memory(broker: RabbitMQ) -> None:
     """A camera goes on while the network is away: the newest frame waits, and no other."""
     relay, key = Relay(broker.port), "lumen.fault.image"
-    bus, seen = connect(f"amqp://guest:guest@127.0.0.1:{relay.port}/"), Collector()
+    bus, seen = connect(f"amqp://guest:guest@{broker.place(relay.port)}"), Collector()
     bus.carry({key: Route("image", key, Direction.OUT, keep=1)})
     relay.cut()
     tracemalloc.start()

@@ -77,7 +77,7 @@ def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, t
 
 @pytest.mark.parametrize("name", ["greeter.py", "poster.py", "listener.mjs"])
 def test_a_wrong_password_is_one_line(broker: RabbitMQ, tmp_path: Path, name: str) -> None:
-    wrong = f"amqp://guest:wrong@127.0.0.1:{broker.port}/"
+    wrong = f"amqp://guest:wrong@{broker.place()}"
     with running(*program(name, tmp_path), url=wrong) as process:
         said, _ = process.communicate(timeout=HANG)
     assert process.returncode == 1

@@ -85,7 +85,7 @@ def test_what_others_send_to_nowhere_is_told_where_a_policy_says_so(
 def test_the_name_and_the_password_come_from_a_file(
     broker: RabbitMQ, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    file, plain = tmp_path / "credentials", f"amqp://127.0.0.1:{broker.port}/"
+    file, plain = tmp_path / "credentials", f"amqp://{broker.place()}"
     monkeypatch.setenv("LUMEN_BUS_CREDENTIALS", str(file))
     with pytest.raises(BusError, match="can't be read"):
         connect(plain)

@@ -1,62 +1,119 @@
-"""Debian's Chromium and its driver, which end with the process that started them."""
+"""Contexts of the run's Chromium (tests/servers.py), each with a driver session of its own."""
 
-import shutil
+import json
 import socket
 from contextlib import suppress
-from pathlib import Path
+from typing import Any
 
 import pytest
-from selenium.common.exceptions import WebDriverException
+import websocket
+from selenium.common.exceptions import InvalidSessionIdException, WebDriverException
 from selenium.webdriver import ChromeOptions, Remote
+from selenium.webdriver.remote.client_config import ClientConfig
 
-from tests.fetched import ROOT, not_provided
 from tests.guarded import DEVNULL, Guarded
+from tests.servers import given, program
 from tests.waiting import HANG, until
 
-UNPACKED = ROOT / ".cache/debian/root"
-"""Where scripts/packages.sh unpacks for who is not root."""
+ENDED = "Chromium has ended while this test used it: it crashed, or was killed"
 
 
 class DrivenBrowser:
-    """A Chromium with these `options`, under a guarded driver; it reads the driver's pipe, and ends with it.
+    """A context of its own, with one window so large [px]: no storage, cookie, cache or worker is shared with others.
 
     The driver keeps what `logs` names: `browser` what pages complain of, `performance` what they ask for, which costs
-    processor time with every message.
+    processor time with every message. The context ends with this process at the latest.
     """
 
-    def __init__(self, options: ChromeOptions, *logs: str) -> None:
-        program, driver = _program("usr/lib/chromium/chromium", "chromium"), _program("usr/bin/chromedriver")
-        port = _free_port()
-        self._process: Guarded[bytes] = Guarded([driver, f"--port={port}"], stdout=DEVNULL, stderr=DEVNULL)
-        until(lambda: _listens(port), HANG)
-        options.binary_location = str(program)
-        options.add_argument("--remote-debugging-pipe")
+    def __init__(self, *logs: str, size: tuple[int, int], page_load_strategy: str = "normal") -> None:
+        chromium, self._size = given("chromium"), size
+        self._browser = _Browser(chromium["address"])
+        self._context = self._browser.ask("Target.createBrowserContext", disposeOnDetach=True)["browserContextId"]
+        options = ChromeOptions()
+        options.debugger_address = f"127.0.0.1:{chromium['port']}"
+        options.page_load_strategy = page_load_strategy
         options.set_capability("goog:loggingPrefs", dict.fromkeys(logs, "ALL"))
-        self.driver = Remote(f"http://127.0.0.1:{port}", options=options)
+        self.driver = _attached(options)
+        self.window()
+
+    def window(self) -> str:
+        """Another window of this context, which the driver looks at from now on."""
+        width, height = self._size
+        where = {"browserContextId": self._context, "newWindow": True, "width": width, "height": height}
+        window = str(self._browser.ask("Target.createTarget", url="about:blank", **where)["targetId"])
+        self.driver.switch_to.window(window)
+        return window
 
     def close(self) -> None:
-        with suppress(WebDriverException):
+        with suppress(WebDriverException, pytest.fail.Exception):
             self.driver.quit()
-        self._process.kill()
-        self._process.wait()
+        self._browser.close()
 
 
-def _program(unpacked: str, name: str = "") -> Path:
-    """The program; leaves the test out where this machine has none and could not be given one."""
-    found = UNPACKED / unpacked if (UNPACKED / unpacked).exists() else shutil.which(name or Path(unpacked).name)
-    if found is None:
-        if "chromium" in (told := not_provided()):
-            pytest.skip(told)
-        pytest.fail("Chromium is not installed: `make setup` installs it", pytrace=False)
-    return Path(found)
+class _Browser:
+    """The developer tools of the browser as a whole, which a driver has no way to."""
+
+    def __init__(self, address: str) -> None:
+        self._socket = websocket.create_connection(address, timeout=HANG, suppress_origin=True)
+        self._number = 0
+
+    def ask(self, method: str, **fields: Any) -> dict[str, Any]:
+        self._number += 1
+        try:
+            self._socket.send(json.dumps({"id": self._number, "method": method, "params": fields}))
+            while (answer := json.loads(self._socket.recv())).get("id") != self._number:
+                pass
+        except (OSError, ValueError, websocket.WebSocketException):
+            pytest.fail(ENDED, pytrace=False)
+        assert "result" in answer, answer
+        return dict(answer["result"])
+
+    def close(self) -> None:
+        with suppress(OSError, websocket.WebSocketException):
+            self._socket.close()
 
 
-def _free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return int(server.getsockname()[1])
+class _Driver(Remote):
+    """Fails the test once Chromium has ended: who waits for a page would wait for nothing."""
+
+    def execute(self, driver_command: str, params: dict[str, Any] | None = None) -> dict[str, Any]:
+        try:
+            return super().execute(driver_command, params)
+        except InvalidSessionIdException:
+            pytest.fail(ENDED, pytrace=False)
 
 
-def _listens(port: int) -> bool:
-    with suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
-        return True
-    return False
+class _Chromedriver:
+    """The program between selenium and Chromium: one for all sessions of this process, begun when first needed."""
+
+    process: Guarded[bytes] | None = None
+    port = 0
+
+    @classmethod
+    def url(cls) -> str:
+        if cls.process is None or cls.process.poll() is not None:
+            with socket.create_server(("127.0.0.1", 0)) as server:
+                cls.port = int(server.getsockname()[1])
+            line = [program("usr/bin/chromedriver"), f"--port={cls.port}"]
+            cls.process = Guarded(line, stdout=DEVNULL, stderr=DEVNULL)
+            until(cls._listens, HANG)
+        return f"http://127.0.0.1:{cls.port}"
+
+    @classmethod
+    def _listens(cls) -> bool:
+        with suppress(OSError), socket.create_connection(("127.0.0.1", cls.port), 1):
+            return True
+        return False
+
+
+def _attached(options: ChromeOptions) -> Remote:
+    """A session of the driver. It begins on any page there is, which another worker may close just then."""
+    url, made = _Chromedriver.url(), list[Remote]()
+
+    def attached() -> bool:
+        with suppress(WebDriverException):
+            made.append(_Driver(url, options=options, client_config=ClientConfig(url, timeout=2 * HANG)))
+        return bool(made)
+
+    until(attached, HANG)
+    return made[0]

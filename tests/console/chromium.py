@@ -1,6 +1,5 @@
-"""Debian's Chromium, without a screen: windows with pages of the console, and what a person sees and does there."""
+"""Windows with pages of the console, and what a person sees and does there."""
 
-import shutil
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
@@ -12,20 +11,8 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
 from tests.console.browser import DrivenBrowser
-from tests.guarded import temporary_folder
 from tests.waiting import HANG, until
 
-SWITCHES = (
-    "headless=new",
-    "no-sandbox",  # root has none
-    "disable-gpu",
-    "disable-dev-shm-usage",
-    "disable-component-update",
-    "no-first-run",
-    "no-proxy-server",
-    "disable-background-networking",
-    "force-prefers-reduced-motion",
-)
 REST = "rest-button[main] button.rest"
 PRESSES = "return document.querySelector('rest-button[main]')?.presses ?? 0"
 SAID = """
@@ -42,31 +29,12 @@ document.activeElement?.blur();
 
 
 class Chromium:
-    """A browser with a profile of its own until `close`; in English, `size` is its windows' [px]."""
+    """Windows of one person, who was never here before, until `close`; in English, `size` is theirs [px]."""
 
-    def __init__(self, *switches: str, size: tuple[int, int] = (1200, 900), language: str = "en") -> None:
-        self.folder = temporary_folder("lumen-chromium-")
-        options = webdriver.ChromeOptions()
-        options.page_load_strategy = "none"
-        own = (f"user-data-dir={self.folder}", f"lang={language}", f"window-size={size[0]},{size[1]}")
-        for switch in (*SWITCHES, *own, *switches):
-            options.add_argument(f"--{switch}")
-        self._browser = DrivenBrowser(options)
+    def __init__(self, size: tuple[int, int] = (1200, 900)) -> None:
+        self._browser = DrivenBrowser(size=size, page_load_strategy="none")
         self.driver = self._browser.driver
-
-    def forget(self) -> None:
-        """Be as somebody who was never here: with one empty window, and nothing kept of any page."""
-        first, *others = self.driver.window_handles
-        for window in others:
-            self.look(window)
-            self.driver.close()
-        self.look(first)
-        self.driver.get("about:blank")
-        for command, fields in (
-            ("Storage.clearDataForOrigin", {"origin": "*", "storageTypes": "all"}),
-            ("Network.clearBrowserCookies", {}),
-        ):
-            self.driver.execute("executeCdpCommand", {"cmd": command, "params": fields})
+        self.driver.set_script_timeout(HANG)
 
     def run(self, script: str, *arguments: Any) -> Any:
         """What a script in the page returns."""
@@ -78,8 +46,7 @@ class Chromium:
 
     def window(self) -> str:
         """Another window, which is looked at from now on."""
-        self.driver.switch_to.new_window("window")
-        return str(self.driver.current_window_handle)
+        return self._browser.window()
 
     def look(self, window: str) -> None:
         self.driver.switch_to.window(window)
@@ -148,4 +115,3 @@ class Chromium:
 
     def close(self) -> None:
         self._browser.close()
-        shutil.rmtree(self.folder, ignore_errors=True)

@@ -17,13 +17,9 @@ from tests.console.pages import Browser, Served
 from tests.console.viewer import Viewer
 from tests.rabbitmq import RabbitMQ
 from tests.tour.conftest import copied, copy, project
-from tests.waiting import HANG, until
+from tests.waiting import until
 
 __all__ = ["copy", "project"]
-
-
-EVIL = "evil.example"
-"""A name that somebody has bound to this machine."""
 
 
 class Hosted:
@@ -122,7 +118,7 @@ def served(shared: Shared, hosted: Hosted) -> Served:
 
 @pytest.fixture(scope="module")
 def viewer() -> Iterator[Viewer]:
-    """A browser of one file of tests."""
+    """A window of one file of tests."""
     one = Viewer()
     yield one
     one.close()
@@ -139,22 +135,15 @@ def house(copy: Path) -> Iterator[House]:
     yield from lived_in(House(copy, speed="4"))
 
 
-@pytest.fixture(scope="session")
-def begun_chromium() -> Iterator[Chromium]:
-    one = Chromium(f"host-resolver-rules=MAP {EVIL} 127.0.0.1")
-    one.driver.set_script_timeout(HANG)
+@pytest.fixture
+def chromium() -> Iterator[Chromium]:
+    """A browser in which nobody was here before."""
+    one = Chromium()
     yield one
     one.close()
 
 
-@pytest.fixture
-def chromium(begun_chromium: Chromium) -> Iterator[Chromium]:
-    """A browser in which nobody was here before."""
-    yield begun_chromium
-    begun_chromium.forget()
-
-
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def begun_broker() -> Iterator[RabbitMQ]:
     rabbitmq = RabbitMQ()
     yield rabbitmq
@@ -170,8 +159,14 @@ def own_broker(begun_broker: RabbitMQ) -> RabbitMQ:
 
 
 @pytest.fixture
-def house_on_a_broker(copy: Path, own_broker: RabbitMQ) -> Iterator[House]:
-    """The same in more processes, on a broker that a test may kill."""
+def house_on_a_broker(copy: Path, broker: RabbitMQ) -> Iterator[House]:
+    """The same in more processes, on the broker of the run."""
+    yield from lived_in(House(copy, broker, speed="4"))
+
+
+@pytest.fixture
+def house_on_its_broker(copy: Path, own_broker: RabbitMQ) -> Iterator[House]:
+    """The same on a broker that a test may kill."""
     yield from lived_in(House(copy, own_broker, speed="4"))
 
 

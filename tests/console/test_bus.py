@@ -89,14 +89,14 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: 
 
 
 @pytest.mark.slow
-def test_a_robot_whose_process_is_gone_is_not_said_to_rest(copy: Path, own_broker: RabbitMQ) -> None:
-    command = [sys.executable, "-m", "lumen", "run", copy, "--bus", own_broker.url, "--robot", "recording", "--only"]
+def test_a_robot_whose_process_is_gone_is_not_said_to_rest(copy: Path, broker: RabbitMQ) -> None:
+    command = [sys.executable, "-m", "lumen", "run", copy, "--bus", broker.url, "--robot", "recording", "--only"]
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     with (
         Guarded([*command, "robot"], stdout=DEVNULL, stdin=PIPE, env=environment) as robot,
         Guarded([*command, "brain"], stdout=DEVNULL, stdin=PIPE, env=environment) as brain,
     ):
-        served = Served(copy, bus=own_broker.url)
+        served = Served(copy, bus=broker.url)
         browser = served.browser
         try:
             until(lambda: any("robot" in p["parts"] for r in browser.robots for p in r["processes"]), 120.0)

@@ -181,23 +181,23 @@ def begin(house: House, operator: Operator) -> None:
 
 @pytest.mark.slow
 def test_whatever_happens_is_seen_on_the_pages_and_mended_from_them(
-    house_on_a_broker: House, chromium: Chromium
+    house_on_its_broker: House, chromium: Chromium
 ) -> None:
-    operator = Operator(house_on_a_broker, chromium)
-    begin(house_on_a_broker, operator)
+    operator = Operator(house_on_its_broker, chromium)
+    begin(house_on_its_broker, operator)
     for scene in SCENES[:-1]:  # a second start of the broker costs as much as all else
-        scene(house_on_a_broker, operator)
+        scene(house_on_its_broker, operator)
     operator.looks_at("/day")
     operator.sees("Visit 1", "Budi")
 
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("rest on a broker")
-def test_half_an_hour_of_it(house_on_a_broker: House, chromium: Chromium) -> None:
-    operator, draw = Operator(house_on_a_broker, chromium), Random(18)
-    begin(house_on_a_broker, operator)
+def test_half_an_hour_of_it(house_on_its_broker: House, chromium: Chromium) -> None:
+    operator, draw = Operator(house_on_its_broker, chromium), Random(18)
+    begin(house_on_its_broker, operator)
     for _ in range(ROUNDS):
         for scene in draw.sample(SCENES, len(SCENES)):
-            scene(house_on_a_broker, operator)
+            scene(house_on_its_broker, operator)
     operator.looks_at("/day")
     operator.sees("Visit 1", "Budi")

@@ -87,6 +87,17 @@ def hall(mine: Hosted, console: str, viewer: Viewer) -> Hosted:
     return mine
 
 
+FLAT = """
+for (const canvas of [HTMLCanvasElement, OffscreenCanvas]) {
+  const before = canvas.prototype.getContext;
+  canvas.prototype.getContext = function (kind, ...more) {
+    return /webgl/.test(kind) ? null : before.call(this, kind, ...more);
+  };
+}
+"""
+"""A browser that draws nothing in three dimensions."""
+
+
 def sign_in(viewer: Viewer, address: str, role: Role, **kept: str) -> None:
     viewer.open(address, "robot/NAO", ready=".notice .strong", **kept)
     viewer.click(".notice .strong")
@@ -220,7 +231,7 @@ def test_every_button_of_a_page_is_reached_by_the_keyboard(
 def test_radio_buttons_are_chosen_by_arrows_and_the_hall_without_webgl_gives_way_to_the_camera(
     console: str,
 ) -> None:
-    flat = Viewer("--disable-3d-apis")
+    flat = Viewer(first=FLAT)
     try:
         sign_in(flat, console, Role.OPERATOR)
         flat.driver.get(f"{console}robot/NAO/see")

@@ -1,6 +1,5 @@
 """The console's pages in Chromium, of a running exhibition: they load, rest the robot, and say so when they can't."""
 
-import json
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
@@ -49,8 +48,7 @@ def rests(hosted: Hosted) -> bool:
 def test_a_page_loads_from_here_alone_and_complains_of_nothing(overhearing: Viewer, served: Served, page: str) -> None:
     viewer, (path, ready) = overhearing, PAGES[page]
     viewer.open(served.console.address, path, ready=ready)
-    messages = [json.loads(entry["message"])["message"] for entry in viewer.log("performance")]
-    asked = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
+    asked = viewer.requests()
     assert any(url.endswith("/pages/rest.js") for url in asked)
     assert [url for url in asked if not url.startswith((served.console.address, "data:", "about:", "chrome"))] == []
     assert viewer.complaints() == []

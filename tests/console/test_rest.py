@@ -176,8 +176,8 @@ def test_rest_at_6_moments_on_the_local_bus(house: House, chromium: Chromium, dr
 
 
 @pytest.mark.slow
-def test_rest_at_6_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
-    pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 6)
+def test_rest_at_6_moments_on_a_broker(house_on_its_broker: House, chromium: Chromium, draw: Random) -> None:
+    pressed(house_on_its_broker, chromium, draw, WITH_BROKER, 6)
 
 
 @pytest.mark.soak
@@ -188,5 +188,5 @@ def test_rest_at_400_moments_on_the_local_bus(house: House, chromium: Chromium, 
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("rest on a broker")
-def test_rest_at_600_moments_on_a_broker(house_on_a_broker: House, chromium: Chromium, draw: Random) -> None:
-    print_times(pressed(house_on_a_broker, chromium, draw, WITH_BROKER, 600))
+def test_rest_at_600_moments_on_a_broker(house_on_its_broker: House, chromium: Chromium, draw: Random) -> None:
+    print_times(pressed(house_on_its_broker, chromium, draw, WITH_BROKER, 600))

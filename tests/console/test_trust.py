@@ -11,8 +11,9 @@ import pytest
 from lumen.console.orders import NEEDS
 from lumen.console.people import Role
 from tests.console.chromium import Chromium
-from tests.console.conftest import EVIL, Hosted
+from tests.console.conftest import Hosted
 from tests.console.pages import JSON, Browser, Served, Stream
+from tests.servers import EVIL
 from tests.waiting import HANG, until
 
 PIN = "0500"

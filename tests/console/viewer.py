@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 from selenium.common.exceptions import WebDriverException
-from selenium.webdriver import ActionChains, ChromeOptions
+from selenium.webdriver import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
@@ -13,33 +13,26 @@ from selenium.webdriver.remote.webelement import WebElement
 from tests.console.browser import DrivenBrowser
 from tests.waiting import HANG, until
 
-ARGUMENTS = (
-    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars", "--lang=en-GB",
-    "--disable-background-networking", "--disable-component-update", "--no-first-run",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-)  # fmt: skip
-"""It reaches nothing but this machine."""
 PRESSES = "return document.querySelector('rest-button[main]').presses"
 
 
 class Viewer:
-    """A browser with these arguments besides; `open` begins a page as somebody who was never here sees it.
+    """A window of the browser; `open` begins a page as somebody who was never here sees it.
 
-    It keeps what pages complain of; an `overhearing` one what they ask for, too, which is dear.
+    It keeps what pages complain of; an `overhearing` one what they ask for, too, which is dear. Before each page the
+    script `first` runs.
     """
 
-    def __init__(self, *more: str, overhearing: bool = False) -> None:
-        options = ChromeOptions()
-        for argument in (*ARGUMENTS, *more):
-            options.add_argument(argument)
-        self._logs = ("browser", "performance") if overhearing else ("browser",)
-        self._browser = DrivenBrowser(options, *self._logs)
+    def __init__(self, *, overhearing: bool = False, first: str = "") -> None:
+        self._logs, self._first, self._address = ["browser", *["performance"] * overhearing], first, ""
+        self._browser = DrivenBrowser(*self._logs, size=(1400, 800))
         self.driver = self._browser.driver
         self.driver.set_script_timeout(HANG)
         self._before = ""
 
     def open(self, address: str, path: str = "", *, ready: str = "main h1", width: int = 1400, **kept: str) -> None:
         """Open a page and wait until it shows `ready`; `kept` is what it remembers from before, as `theme="dark"`."""
+        self._address = address
         self.driver.get("about:blank")  # the page before may still ask its console
         self.size(width)
         where = {"origin": address.rstrip("/"), "storageTypes": "local_storage,session_storage,cookies"}
@@ -47,7 +40,8 @@ class Viewer:
         if self._before:
             self.command("Page.removeScriptToEvaluateOnNewDocument", {"identifier": self._before})
         script = (
-            f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value)"
+            f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value);"
+            + self._first
         )
         self._before = self.command("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
         for kind in self._logs:
@@ -105,10 +99,17 @@ class Viewer:
 
     def complaints(self) -> list[str]:
         """What the page's own console said that is more than information."""
-        return [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+        said = [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+        return [one for one in said if one.startswith(self._address) or not one.startswith("http://127.0.0.1:")]
+
+    def requests(self) -> list[str]:
+        """The addresses that the page has asked for since it was asked last."""
+        said = [json.loads(entry["message"]) for entry in self.log("performance")]
+        own = [one["message"] for one in said if one["webview"] == self.driver.current_window_handle]
+        return [str(m["params"]["request"]["url"]) for m in own if m["method"] == "Network.requestWillBeSent"]
 
     def log(self, kind: str) -> list[dict[str, Any]]:
-        """What it has written since it was asked last."""
+        """What was written since it was asked last: the driver hears pages of other contexts, too."""
         return list(self.driver.execute("getLog", {"type": kind})["value"])
 
     def close(self) -> None:

@@ -57,13 +57,13 @@ def everything() -> object:
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
-        ("starts", "broker"),
-        ("in_a_function_within", "broker"),
+        ("starts", "broker own servers"),
+        ("in_a_function_within", "broker own servers"),
         ("remembered", "physics"),
         ("property_of", "npm"),
         ("Stand", "physics"),
         ("by_name_only", ""),
-        ("everything", "broker npm physics"),
+        ("everything", "broker npm own servers physics"),
     ],
 )
 def test_marks_come_from_what_is_named(name: str, expected: str) -> None:
@@ -78,5 +78,5 @@ def test_and_not_from_strings(name: str, request: pytest.FixtureRequest) -> None
 
 @pytest.mark.xdist_group("one")
 def test_workers_are_told_of_groups(request: pytest.FixtureRequest) -> None:
-    """Or each worker starts every broker: a pytest whose ids plugins can't change does so in silence."""
+    """Or brokers of their own run at the same time: a pytest whose ids plugins can't change does so in silence."""
     assert request.node.nodeid.endswith("@one") == request.config.getoption("loadgroup", False)

@@ -41,7 +41,7 @@ MESSAGES: Mapping[str, Any] = {
 }
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def speaker() -> Iterator[RabbitMQ]:
     """A RabbitMQ that speaks MQTT."""
     rabbitmq = RabbitMQ(speaks_mqtt=True)
