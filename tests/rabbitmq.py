@@ -24,13 +24,14 @@ import pytest
 
 from tests.erlang_modules import link_modules
 from tests.guarded import Guarded, TimeoutExpired, temporary_folder
+from tests.waiting import HANG
 
 UNPACKED = Path(__file__).parents[1] / ".cache/debian"
 """What scripts/packages.sh has unpacked for who is not root; the file beside it says what it could not."""
 ROOTS = (Path("/"), UNPACKED / "root")
 GIVEN = "LUMEN_TEST_BROKER"
 """Where a broker is that tests may use in place of one of their own, those that need no more than one: amqp://…"""
-START_TIMEOUT = 180.0
+START_TIMEOUT = HANG
 """How long a broker may take until it listens, on a crowded machine [s]."""
 STOP_TIMEOUT = 20.0
 """How long it may take to end in order [s]."""

@@ -1,7 +1,7 @@
 """One browser and one broker for a run of pytest, however many workers it has; each test has a part of its own in them.
 
-The process that was called as `pytest` (with xdist: not its workers) listens on a socket in the file system, of which
-its workers learn from the environment. Who asks there for a server gets the one of the run, which is started for the
+The process that was called as `pytest` (with xdist: not its workers) listens on a port, of which its workers learn
+from the environment. Who asks there for a server gets the one of the run, which is started for the
 first who asks. Servers are guarded children of that process: they end with it, however it ends, and the processor time
 of a run includes theirs. A part ends with the worker whose it is: a browser context with its connection, and nobody
 else is given a virtual host that was given once.
@@ -25,8 +25,8 @@ from tests.guarded import STDOUT, Guarded, TimeoutExpired, temporary_folder
 from tests.rabbitmq import GIVEN, VIRTUAL_HOSTS, GivenBroker, LentBroker, RabbitMQ
 from tests.waiting import HANG, until
 
-ADDRESS = "LUMEN_TEST_SERVERS"
-"""The environment's name for the socket."""
+PORT = "LUMEN_TEST_SERVERS"
+"""The environment's name for the port."""
 EVIL = "evil.example"
 """A name that somebody has bound to this machine; any other name is unknown to the browser."""
 SWITCHES = (
@@ -84,18 +84,15 @@ class Chromium:
 
 
 class Servers:
-    """Starts each server for the first who asks for it, and hands out parts; `address` is where it is asked."""
+    """Starts each server for the first who asks for it, and hands out parts; `port` is where it is asked."""
 
     def __init__(self) -> None:
-        self._folder = temporary_folder("lumen-servers-")
-        self.address = str(self._folder / "socket")
         self._broker: RabbitMQ | None = None
         self._chromium: Chromium | None = None
         self._turns = {"broker": threading.Lock(), "chromium": threading.Lock()}
         self._numbers = count()
-        self._listener = socket.socket(socket.AF_UNIX)
-        self._listener.bind(self.address)
-        self._listener.listen()
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = int(self._listener.getsockname()[1])
         threading.Thread(target=self._listen, daemon=True).start()
 
     def close(self) -> None:
@@ -106,7 +103,6 @@ class Servers:
                 server.stop()
             elif server:
                 server.close()
-        shutil.rmtree(self._folder, ignore_errors=True)
 
     def _listen(self) -> None:
         with suppress(OSError):  # it was closed
@@ -162,18 +158,16 @@ def pytest_configure(config: pytest.Config) -> None:
     if hasattr(config, "workerinput"):
         return
     servers = Servers()
-    os.environ[ADDRESS] = servers.address
+    os.environ[PORT] = str(servers.port)
     config.pluginmanager.register(Plugin(servers))
 
 
 def given(name: str) -> Any:
     """Return a part of the run's server of that name; fail or skip the test if there is none."""
-    with socket.socket(socket.AF_UNIX) as asking:
-        asking.settimeout(2 * HANG)
-        asking.connect(os.environ[ADDRESS])
-        with asking.makefile("rw") as lines:
-            print(name, file=lines, flush=True)
-            answer = json.loads(lines.readline())
+    where = ("127.0.0.1", int(os.environ[PORT]))
+    with socket.create_connection(where, 2 * HANG) as asking, asking.makefile("rw") as lines:
+        print(name, file=lines, flush=True)
+        answer = json.loads(lines.readline())
     if "skip" in answer:
         pytest.skip(answer["skip"])
     if "fail" in answer:
