@@ -49,31 +49,20 @@ def test_the_next_has_another() -> None:
 
 @pytest.mark.slow
 @pytest.mark.broker
-def test_servers_are_shared_end_with_a_sentence_and_end_with_their_run(tmp_path: Path) -> None:
-    (tmp_path / "test_one.py").write_text(SHARES)
-    (tmp_path / "test_two.py").write_text(SHARES + ENDS)
-    words = [
-        "-n",
-        "2",
-        "--dist",
-        "loadfile",
-        "-x",
-        "-p",
-        "tests.servers",
-        "-p",
-        "no:cacheprovider",
-        "-c",
-        os.devnull,
-        "--rootdir",
-        ".",
-    ]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
-    line = [sys.executable, "-m", "pytest", *words, "test_one.py", "test_two.py"]
-    session = Guarded(line, cwd=tmp_path, env=environment, stdout=PIPE, text=True)
-    until(lambda: (tmp_path / "started").exists() or session.poll() is not None, 2 * HANG)
+def test_servers_are_shared_end_with_a_sentence_and_end_with_their_run(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    folder = tmp_path_factory.mktemp("s")  # Chromium refuses a long path of its socket
+    (folder / "test_one.py").write_text(SHARES)
+    (folder / "test_two.py").write_text(SHARES + ENDS)
+    words = ["-p", "tests.servers", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", ".", "-x"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(folder)}
+    line = [sys.executable, "-m", "pytest", *words, "-n", "2", "--dist", "loadfile", "test_one.py", "test_two.py"]
+    session = Guarded(line, cwd=folder, env=environment, stdout=PIPE, text=True)
+    until(lambda: (folder / "started").exists() or session.poll() is not None, 2 * HANG)
     if session.poll() is not None:
         pytest.fail(session.communicate()[0])
-    assert any("chromium" in Path(one, "cmdline").read_text() for one in left(tmp_path) if one.startswith("/proc"))
+    assert any("chromium" in Path(one, "cmdline").read_text() for one in left(folder) if one.startswith("/proc"))
     session.kill()
     session.communicate()
-    gone(tmp_path)
+    gone(folder)
