@@ -67,7 +67,11 @@ def plain(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:
     shared = run.cpu - sum(cost for _, cost in rows.values())
     lines = [f"{cost:8.1f} s  {count:6d} tests  {name}" for name, (count, cost) in rows.items()]
     count = sum(count for count, _ in rows.values())
-    return [*lines, f"{shared:8.1f} s  shared: collecting, browser, broker", f"{run.cpu:8.1f} s  {count:6d} tests: {run}"]
+    return [
+        *lines,
+        f"{shared:8.1f} s  shared: collecting, browser, broker",
+        f"{run.cpu:8.1f} s  {count:6d} tests: {run}",
+    ]
 
 
 def markdown(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:

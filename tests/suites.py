@@ -1,7 +1,7 @@
 """The two suites: `--suite test` is what `make test` runs, `--suite rest` all others; without the option all run.
 
-`make test` proves the product and guards each commit: everything deterministic (virtual time, no process, no network, no
-physics), and of what is real a few tests that are marked `once`: one broker, one browser, one physics. A test is in the
+`make test` proves the product and guards each commit. It runs everything deterministic (virtual time, no process, no
+network, no physics), and a few real tests marked `once`: one broker, one browser, one physics. A test is in the
 rest if it uses one of `REAL`, which `tests/marking.py` finds in its code, or if it is marked `rest` by hand because it
 is dear. The mark is checked: in `make test` a test without `once` fails if it starts a process or opens a connection.
 """

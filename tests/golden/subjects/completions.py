@@ -12,7 +12,8 @@ SUITE = "test"
 SHELLS = ("bash", "zsh", "fish")
 BEGUN = (
     "li", "no-such-verb ", "lint ", "lint --st", "lint --strict --st", "lint --format ", "lint --select sp",
-    "run --story v", "run --speed ", "run --robot ", "run --language ", "run --only ", "test shy vis", "play ", "play dance ",
+    "run --story v", "run --speed ", "run --robot ", "run --language ", "run --only ", "test shy vis",
+    "play ", "play dance ",
     "explain unknown-st", "explain sp", "topic p", "diff ", "graph ", "graph --state go", "graph --region ",
     "export ", "export scxml ", "export fll ", "goto ", "say ", "why ", "memory ", "language ", "fleet ", "schema m",
     "new --like ", "completion ", "reload ", "import ", "plot ", "--ve", "run --frobnicate ", "lint -- ",
