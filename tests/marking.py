@@ -115,6 +115,7 @@ def named(thing: Any) -> Iterator[Any]:
         with suppress(AttributeError):
             thing = attrgetter(wrapper)(thing)
     if isinstance(thing, type):
+        yield from thing.__bases__
         for member in vars(thing).values():
             yield from named(getattr(member, "fget", member))
     elif isinstance(thing, FunctionType):

@@ -14,6 +14,7 @@ from tests.scanning import matching
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_a_new_project_is_whole_and_clean(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "mine"
@@ -91,6 +92,7 @@ def test_a_motion_on_the_simulated_robot(capsys: pytest.CaptureFixture[str]) -> 
     assert perfect != usual
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_a_film_of_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "goodbye.mp4"

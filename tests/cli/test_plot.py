@@ -61,6 +61,7 @@ def test_a_sheet_shows_every_variable_and_every_answer(head: Controller) -> None
     assert curve.ys[80] == pytest.approx(head.evaluate({"FaceXLoc": 80, "FaceYLoc": 120})["AngleX"])
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_two_inputs_are_a_surface_and_three_are_slices() -> None:
     sheet = controller_sheet(Controller.from_dict(SEVERAL))

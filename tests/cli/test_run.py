@@ -19,6 +19,7 @@ from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, until
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_a_story_is_told_line_by_line_and_summed_up(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor"]) == 0
@@ -37,6 +38,7 @@ def test_a_story_is_told_line_by_line_and_summed_up(copy: Path, capsys: pytest.C
     assert "trouble" not in told
 
 
+@pytest.mark.process
 def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     story = copy / "behaviors" / "stories" / "short.yaml"
     story.write_text(
@@ -48,6 +50,7 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
     assert "step 2 of `short`: expected within 3 s state `dance`, but active are" in told
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -83,6 +86,7 @@ def test_a_folder_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
     assert "no-such-folder does not exist" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_a_broken_project_is_named_with_its_place(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tour = copy / "behaviors" / "tour.yaml"
     tour.write_text(tour.read_text("utf-8").replace("{play: dance}", "{play: danse}"), "utf-8")
@@ -92,12 +96,14 @@ def test_a_broken_project_is_named_with_its_place(copy: Path, capsys: pytest.Cap
     assert "did you mean `dance`?" in error
 
 
+@pytest.mark.process
 def test_so_much_time_and_no_more(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "5s"]
     assert main(run) == 1
     assert "Ended before the story did: 0:05 of simulated time" in capsys.readouterr().out
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "12s"]

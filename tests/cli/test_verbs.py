@@ -40,6 +40,7 @@ def test_what_is_reported_is_an_object_too_and_its_page_says_which(verb: str) ->
     assert (verb in NO_REPORT) != ("## JSON\n" in page(verb).text)
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("words", "keys"),
     [
@@ -64,6 +65,7 @@ def test_an_object_has_the_keys_that_its_page_names(
     assert all(key in page(words[0]).text for key in keys)
 
 
+@pytest.mark.process
 def test_a_run_tells_on_standard_error_and_says_how_it_ended(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     story = copy / "behaviors/stories/shy.yaml"
     story.write_text(story.read_text().replace("did not hear your name", "never said this", 1))

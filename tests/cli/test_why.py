@@ -116,6 +116,7 @@ def test_it_reads_well(greeted: Exhibition) -> None:
     assert "it would have, had event.data.result been " in text
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_who_runs_is_asked_and_who_does_not_has_a_journal(
     exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]

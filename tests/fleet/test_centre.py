@@ -249,6 +249,7 @@ def test_nothing_but_numbers_hashes_and_words_of_ours_leaves_a_house(hall: Hall)
     assert fingerprint(changed(hall.root)) == hash
 
 
+@pytest.mark.process
 def test_a_centre_without_a_broker_is_told_with_what_helps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fleet", "status", "--project", str(tmp_path), "--bus", "amqp://127.0.0.1:1/"]) == 2
     told = capsys.readouterr().err

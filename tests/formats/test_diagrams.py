@@ -142,6 +142,7 @@ def test_graphviz_gets_the_same_boxes_and_arrows() -> None:
     assert "subgraph cluster_s0 {" in text
 
 
+@pytest.mark.process
 def test_a_program_called_dot_draws_where_there_is_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -142,6 +142,7 @@ kept().clock.advance(1.0)
 '''
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_the_clock_of_an_interpreter_has_its_own_type(tmp_path: Path) -> None:
     from mypy import api

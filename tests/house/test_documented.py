@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from scripts.documented import ROOT, all_pages, available, check, differing
 
 from lumen.cli.intermixed import Intermixed
@@ -49,6 +50,7 @@ def test_every_command_of_a_page_is_one_that_lumen_takes(page: Path) -> None:
     assert [command for command in commands(page) if not can_be_typed(command)] == []
 
 
+@pytest.mark.process
 def test_what_the_tutorial_shows_is_printed() -> None:
     count, wrong, _ = check(ROOT / "docs/change-the-tour.md", available() - {"physics", "broker"})
     assert (count > 0, wrong) == (True, [])

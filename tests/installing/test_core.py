@@ -20,6 +20,7 @@ MAX_SIZE = 100.0
 SIMULATION = ("run --story visitor --speed max", "lint --physics", "play dance", "run --video film.mp4")
 
 
+@pytest.mark.process
 def test_the_core_is_small(core: Path) -> None:
     assert 20 < installing.size(core).files < MAX_SIZE
 

@@ -229,6 +229,7 @@ def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live:
     live.until_told("the story `refuses` does not hold with these files")
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_the_same_in_another_process(copy: Path) -> None:
     one = Live(copy, apart=True)

@@ -62,6 +62,7 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(validation_worker.subprocess, "Popen", refused)
 
 
+@pytest.mark.process
 @pytest.mark.usefixtures("kept")
 def test_the_second_start_needs_no_process(known: Known, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
@@ -71,6 +72,7 @@ def test_the_second_start_needs_no_process(known: Known, monkeypatch: pytest.Mon
     assert again.documents["behaviors/tour.yaml"] == known.project.documents["behaviors/tour.yaml"]
 
 
+@pytest.mark.process
 def test_the_same_files_elsewhere_are_the_same_project_there(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
     found, _ = load_apart(kept, read_files(kept))
@@ -78,6 +80,7 @@ def test_the_same_files_elsewhere_are_the_same_project_there(kept: Path, monkeyp
     assert found.root == str(kept)
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("what", ["a file", "a file of a model that is not read", "the engine"])
 def test_anything_else_is_read(what: str, kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
@@ -92,6 +95,7 @@ def test_anything_else_is_read(what: str, kept: Path, monkeypatch: pytest.Monkey
         load_apart(kept, read_files(kept))
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("trouble", ["half of it", "nonsense", "others may write there"])
 def test_what_is_kept_badly_is_read_again(
     trouble: str, kept: Path, cache: Path, monkeypatch: pytest.MonkeyPatch

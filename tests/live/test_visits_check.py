@@ -211,6 +211,7 @@ validation_process.main()
 """
 
 
+@pytest.mark.process
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("ends", "told"),
@@ -228,6 +229,7 @@ def test_a_check_that_crashes_costs_the_check_only(
     live.show.close()
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_in_the_process_that_judges_it_is_the_same(folder: Path) -> None:
     live = begin(folder, "refuse", apart=True)

@@ -297,6 +297,7 @@ def test_a_revision_is_read_as_far_as_a_folder_would_be(repository: Path, monkey
         files_at(repository, "HEAD")
 
 
+@pytest.mark.process
 def test_outside_of_a_repository(
     tmp_path: Path, copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -176,6 +176,7 @@ def test_an_id_used_twice_is_told(data: st.DataObject, sound: Data) -> None:
     assert "duplicate-id" in {d.code for d in caught.value.diagnostics}
 
 
+@pytest.mark.rest
 @pytest.mark.slow
 def test_ten_thousand_states_at_once_run() -> None:
     regions = {
