@@ -24,7 +24,7 @@ ARITHMETIC = {
 OPERATOR = re.compile(r"\*\*|//|<<|>>|[-+*/%&|]")
 CALLS = {
     "min": "max", "max": "min", "any": "all", "all": "any", "sorted": "list", "reversed": "list", "abs": "float",
-    "startswith": "endswith", "endswith": "startswith", "lower": "upper", "strip": "lower",
+    "startswith": "endswith", "endswith": "startswith", "lower": "upper", "strip": "rstrip",
 }  # fmt: skip
 DECORATORS = {"cache", "lru_cache", "overload", "override", "final", "abstractmethod", "runtime_checkable"}
 """Decorators that only save time, or that only a type checker reads."""

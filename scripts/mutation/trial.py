@@ -111,7 +111,7 @@ class Copy:
             )
         finally:
             original.write_bytes(kept)
-            os.utime(original, (times.st_atime, times.st_mtime))
+            os.utime(original, ns=(times.st_atime_ns, times.st_mtime_ns))
         if done.returncode:
             raise RuntimeError(f"the trial itself failed:\n{done.stdout}{done.stderr}")
         return Ended(*json.loads(done.stdout))
