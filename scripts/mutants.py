@@ -4,13 +4,13 @@
     python scripts/mutants.py --compare BEFORE AFTER                  # what only the first recording executes
     python scripts/mutants.py --draw 400 --seed 1 --recording FOLDER  # try mutants; --help lists more options
 
-A mutant is drawn by its statement, each as likely as any other of engine/lumen, then one kind of change that applies to
-it, then one change. It runs the tests that execute its lines, cheapest first, until one fails: those of `make test`
-first, then the rest, so that one run tells what each of both suites notices. Lines that are executed at import are
-tried with the tests that execute a line which names what they define. A mutant has 60 s of processor time, in all
-processes; one whose test takes many times as long as it did in the recording hangs, and counts as killed. Results are
-kept in .cache/mutants/SEED.jsonl; `--resume` goes on there. Mutants that behave as the original does stand in
-scripts/equivalent_mutants.yaml, each with a proof.
+First a statement of engine/lumen is drawn, then a kind of change that applies to it, then one such change. The mutant
+runs the tests that execute its lines, cheapest first, until one fails: those of `make test`, then the rest, so one run
+measures both suites. For a line that is executed at import, these are the tests that execute a function which uses what
+it defines, or a function of the same file. A mutant has 60 s of processor time in all processes. It hangs, and counts
+as killed, if a test takes many times as long as in the recording. Results are kept in .cache/mutants/SEED.jsonl, from
+which `--resume` continues. Mutants that behave like the original are listed in scripts/equivalent_mutants.yaml, each
+with a proof.
 """
 
 import argparse
