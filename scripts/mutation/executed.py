@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import coverage
 import pytest
-from coverage.numbits import numbits_to_nums, nums_to_numbits
+from coverage.numbits import nums_to_numbits
 
 ENGINE = "engine/lumen"
 OUT, CONTEXT = "LUMEN_RECORDING", "LUMEN_TEST_CONTEXT"
@@ -49,21 +49,21 @@ class Tracer:
         self._coverage = coverage.Coverage(config_file=f"{folder}/rc", data_file=None)
         self._coverage.start()
         self._arcs: dict[str, set[int]] = defaultdict(set)
-        self._tests: dict[str, dict[str, bytes]] = {}
+        self._tests: dict[str, dict[str, bytes]] = defaultdict(dict)
         self._cpu: dict[str, float] = {}
 
-    def _take(self, test: str) -> None:
-        lines = self._tests.setdefault(test, {})
-        for file, found in list(self._coverage._collector.data.items()):  # type: ignore[union-attr]
-            packed = set(found)
-            found.clear()
-            self._arcs[file] |= packed
-            known = numbits_to_nums(lines[file]) if file in lines else []
-            lines[file] = nums_to_numbits({*known, *_lines(map(unpacked, packed))})
+    def _take(self, test: str = "") -> None:
+        """Take what was executed since the last time; it is the given test's."""
+        for file, traced in list(self._coverage._collector.data.items()):  # type: ignore[union-attr]
+            if packed := set(traced):
+                traced.clear()
+                self._arcs[file] |= packed
+                if test:
+                    self._tests[test][file] = nums_to_numbits(_lines(map(unpacked, packed)))
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, bool, bool]:
-        self._take("")
+        self._take()
         os.environ[CONTEXT] = item.nodeid
         began = sum(os.times()[:4])
         result = yield
@@ -73,8 +73,8 @@ class Tracer:
 
     def pytest_sessionfinish(self) -> None:
         self._coverage.stop()
-        self._take("")
-        content = pickle.dumps((dict(self._arcs), self._tests, self._cpu))
+        self._take()
+        content = pickle.dumps((dict(self._arcs), dict(self._tests), self._cpu))
         Path(self._folder, f"traced-{uuid.uuid4().hex}.pickle").write_bytes(content)
 
 
@@ -97,10 +97,10 @@ class Recording(NamedTuple):
         wanted = int.from_bytes(nums_to_numbits(lines), "little") if (lines := set(lines)) else 0
         groups = self.lines.get(file, {}).items()
         found = {test for bits, tests in groups if int.from_bytes(bits, "little") & wanted for test in tests}
-        return {self.tests[number] for number in found if self.tests[number]}
+        return {self.tests[number] for number in found}
 
     def executed(self, file: str) -> set[int]:
-        return {line for bits in self.lines.get(file, ()) for line in numbits_to_nums(bits)}
+        return _lines(self.arcs.get(file, ()))
 
 
 def prepare(folder: Path, engine: Path) -> dict[str, str]:
@@ -128,15 +128,16 @@ def _joined(folder: Path, engine: Path | None) -> Recording:
         cpu |= {_id(test): time for test, time in times.items()}
         for file, packed in found.items():
             arcs[_relative(file)].update(map(unpacked, packed))
-        for test, files in tests.items():
-            number = numbers.setdefault(_id(test) if test in times else "", len(numbers))
-            for file, bits in files.items():
+        for test in tests.keys() & times.keys():
+            number = numbers.setdefault(_id(test), len(numbers))
+            for file, bits in tests[test].items():
                 lines[_relative(file)][bits if isinstance(bits, bytes) else nums_to_numbits(bits)].add(number)
     for child in sorted(folder.glob("child.*")):
         for test, file, pairs in _child(child):
-            number = numbers.setdefault(_id(test) if _id(test) in cpu else "", len(numbers))
-            lines[_relative(file)][nums_to_numbits(_lines(pairs))].add(number)
             arcs[_relative(file)].update(pairs)
+            if _id(test) in cpu:
+                number = numbers.setdefault(_id(test), len(numbers))
+                lines[_relative(file)][nums_to_numbits(_lines(pairs))].add(number)
     root = engine or Path(next(file for file in found if f"/{ENGINE}/" in file).partition(f"/{ENGINE}/")[0], ENGINE)
     sources = {f"{ENGINE}/{file.relative_to(root)}": file.read_text() for file in sorted(root.rglob("*.py"))}
     return Recording(list(numbers), cpu, {f: dict(by) for f, by in lines.items()}, dict(arcs), sources)
