@@ -22,7 +22,7 @@ import sys
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cached_property
 from pathlib import Path
 from queue import SimpleQueue
@@ -188,6 +188,10 @@ class Trials:
         self._located, self._engine, self._suites = located, engine, suites
         self._cpu = located.recording.cpu
 
+    def end(self) -> None:
+        """Begin no more trials."""
+        self._workers.shutdown(cancel_futures=True)
+
     def settle(self, mutants: Sequence[Mutant], kept: Path) -> None:
         """Try mutants, and try again those that were killed by a test which fails on the engine as it is."""
         if self._failing({min(self._cpu, key=lambda test: self._cpu[test])}):
@@ -204,7 +208,8 @@ class Trials:
 
     def _all(self, mutants: Iterable[Mutant], kept: Path, but: frozenset[str]) -> None:
         with kept.open("a") as file:
-            for result in self._workers.map(lambda mutant: self._one(mutant, but), mutants):
+            for done in as_completed([self._workers.submit(self._one, mutant, but) for mutant in mutants]):
+                result = done.result()
                 print(json.dumps(result), file=file, flush=True)
                 print(f"{result['outcome']:12} {result['cpu']:5.1f} s  {result['name']}  {result['test']}", flush=True)
 
@@ -322,7 +327,10 @@ def draw(options: argparse.Namespace) -> int:
         copies = [Copy(Path(folder, str(number))) for number in range(options.workers)]
         first = {"test": first_tests(options.first)}
         trials = Trials(copies, located, engine, first if options.suite == "test" else first | {"rest": None})
-        trials.settle(mutants, kept)
+        try:
+            trials.settle(mutants, kept)
+        finally:
+            trials.end()
     found = [result for name, result in results(kept).items() if name in {mutant.name for mutant in mutants}]
     equivalent = {(e["file"], e["in"], e["change"]) for e in yaml.safe_load(EQUIVALENT.read_text()) or ()}
     for result in found:
