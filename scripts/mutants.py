@@ -284,7 +284,7 @@ def record(folder: Path, suite: str, words: Sequence[str]) -> int:
         "--dist",
         "loadgroup",
     ]
-    chosen = ["--suite", suite] if (ROOT / "tests/suites.py").exists() else ["-m", "not soak"]
+    chosen = ["-m", "not soak", *(["--suite", suite] if (ROOT / "tests/suites.py").exists() else [])]
     command += ["--no-loadscope-reorder", *(words or chosen)]
     code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
     recording = read(folder, engine)
