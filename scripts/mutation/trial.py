@@ -15,7 +15,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -24,7 +25,7 @@ ROOT = Path(__file__).parents[2]
 LINKED = (".git", ".cache")
 LEFT_OUT = (*LINKED, ".venv", ".pytest_cache", ".mypy_cache", ".ruff_cache", ".import_linter_cache", "build", ".lumen")
 PR_SET_CHILD_SUBREAPER = 36
-LOOK = 0.2
+LOOK = 0.5
 """How often the processes are looked at [s]."""
 MEMORY = 6 << 30
 """How much one process may hold [bytes]."""
@@ -133,7 +134,8 @@ def watch(job: Path) -> Ended:
     seen, changed, began, test, how = "", time.monotonic(), 0.0, "", ""
     while not how:
         time.sleep(LOOK)
-        cpu = _used()
+        tree = _descendants()
+        cpu = _used(tree)
         if (text := progress.read_text()) != seen:
             seen, changed = text, time.monotonic()
             latest = seen.splitlines()[-1].removeprefix("FAILED ")
@@ -144,17 +146,17 @@ def watch(job: Path) -> Ended:
             how = "processor time"
         elif time.monotonic() - changed > limits["idle"]:
             how = "time"
-        elif any(_stat(pid).memory > MEMORY for pid in _descendants()):
+        elif any(stat.memory > MEMORY for stat in tree.values()):
             how = "memory"
-        _reap(tests.pid)
-    while left := list(_descendants()):
-        for pid in left:
+        _reap(tree, but=tests.pid)
+    while tree := _descendants():
+        for pid in tree:
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
         time.sleep(0.01)
-        _reap()
+        _reap(tree)
     failed = [line.removeprefix("FAILED ") for line in progress.read_text().splitlines() if line.startswith("FAILED ")]
-    total = _used()
+    total = _used({})
     return Ended(how, failed[0] if failed else test, total - began, total, failed)
 
 
@@ -172,26 +174,30 @@ def _stat(pid: int) -> Stat:
     return Stat(int(fields[1]), sum(map(int, fields[11:15])), int(fields[21]) * os.sysconf("SC_PAGE_SIZE"))
 
 
-def _descendants() -> Iterator[int]:
-    parents = {int(name): _stat(int(name)).parent for name in os.listdir("/proc") if name.isdecimal()}
+def _descendants() -> dict[int, Stat]:
+    """All processes that this one has started or adopted."""
+    children: dict[int, dict[int, Stat]] = defaultdict(dict)
+    for pid in [int(name) for name in os.listdir("/proc") if name.isdecimal()]:
+        stat = _stat(pid)
+        children[stat.parent][pid] = stat
+    found: dict[int, Stat] = {}
     left = [os.getpid()]
     while left:
-        parent = left.pop()
-        children = [pid for pid, of in parents.items() if of == parent]
-        left += children
-        yield from children
+        below = children[left.pop()]
+        found |= below
+        left += below
+    return found
 
 
-def _used() -> float:
-    """The processor time of all processes that this one has started [s]."""
-    running = sum(_stat(pid).ticks for pid in _descendants()) / os.sysconf("SC_CLK_TCK")
-    return running + sum(os.times()[2:4])
+def _used(tree: Mapping[int, Stat]) -> float:
+    """The processor time of these processes and of those that have ended [s]."""
+    return sum(stat.ticks for stat in tree.values()) / os.sysconf("SC_CLK_TCK") + sum(os.times()[2:4])
 
 
-def _reap(but: int = 0) -> None:
+def _reap(tree: Mapping[int, Stat], but: int = 0) -> None:
     """Wait for adopted processes that have ended."""
-    for pid in list(_descendants()):
-        if pid != but and _stat(pid).parent == os.getpid():
+    for pid, stat in tree.items():
+        if pid != but and stat.parent == os.getpid():
             with suppress(ChildProcessError):
                 os.waitpid(pid, os.WNOHANG)
 
