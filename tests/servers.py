@@ -65,15 +65,19 @@ class Chromium:
         line = [program("usr/lib/chromium/chromium", "chromium"), *(f"--{one}" for one in switches), "about:blank"]
         with log.open("wb") as file:
             self._process: Guarded[bytes] = Guarded(line, stdout=file, stderr=STDOUT)
-        until(lambda: not self.runs or (told.exists() and told.read_text().count("\n")), HANG)
-        if not self.runs:
+        ended = self._process.poll
+        until(lambda: ended() is not None or (told.exists() and told.read_text().count("\n")), HANG)
+        if ended() is not None:
             pytest.fail(f"Chromium did not start; it printed:\n{log.read_text(errors='replace')[-2000:]}")
         port, path = told.read_text().split()
         self.port, self.address = int(port), f"ws://127.0.0.1:{port}{path}"
 
     @property
     def runs(self) -> bool:
-        return self._process.poll() is None
+        """Whether it is there and listens: one that crashes is there for a while."""
+        with suppress(OSError), socket.create_connection(("127.0.0.1", self.port), HANG):
+            return self._process.poll() is None
+        return False
 
     def close(self) -> None:
         with suppress(ProcessLookupError):

@@ -26,11 +26,11 @@ class DrivenBrowser:
     """
 
     def __init__(self, *logs: str, size: tuple[int, int], page_load_strategy: str = "normal") -> None:
-        chromium, self._size = given("chromium"), size
-        self._browser = _Browser(chromium["address"])
+        self._browser, port = _connected()
+        self._size = size
         self._context = self._browser.ask("Target.createBrowserContext", disposeOnDetach=True)["browserContextId"]
         options = ChromeOptions()
-        options.debugger_address = f"127.0.0.1:{chromium['port']}"
+        options.debugger_address = f"127.0.0.1:{port}"
         options.page_load_strategy = page_load_strategy
         options.set_capability("goog:loggingPrefs", dict.fromkeys(logs, "ALL"))
         self.driver = _attached(options)
@@ -54,6 +54,7 @@ class _Browser:
     """The developer tools of the browser as a whole, which a driver has no way to."""
 
     def __init__(self, address: str) -> None:
+        """Connect. Raises OSError or WebSocketException."""
         self._socket = websocket.create_connection(address, timeout=HANG, suppress_origin=True)
         self._number = 0
 
@@ -71,6 +72,20 @@ class _Browser:
     def close(self) -> None:
         with suppress(OSError, websocket.WebSocketException):
             self._socket.close()
+
+
+def _connected() -> tuple[_Browser, int]:
+    """The run's Chromium, and its port; another one if the one before is just crashing."""
+    found: list[tuple[_Browser, int]] = []
+
+    def connected() -> bool:
+        chromium = given("chromium")
+        with suppress(OSError, websocket.WebSocketException):
+            found.append((_Browser(chromium["address"]), chromium["port"]))
+        return bool(found)
+
+    until(connected, HANG)
+    return found[0]
 
 
 class _Driver(Remote):
