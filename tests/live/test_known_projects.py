@@ -16,6 +16,8 @@ from lumen.upkeep import cache_folder
 from tests.live.conftest import trimmed
 from tests.tour.conftest import copied
 
+pytestmark = pytest.mark.process
+
 MAIN = "lumen.yaml"
 
 
@@ -29,7 +31,7 @@ class Known(NamedTuple):
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> Known:
-    """Judged once for all tests; nobody changes its files or its cache."""
+    """Judged once for all tests; do not change its files or its cache."""
     folder, home = trimmed(copied(tmp_path_factory.mktemp("project"))), tmp_path_factory.mktemp("home")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(home))
@@ -62,7 +64,6 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(validation_worker.subprocess, "Popen", refused)
 
 
-@pytest.mark.process
 @pytest.mark.usefixtures("kept")
 def test_the_second_start_needs_no_process(known: Known, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
@@ -72,7 +73,6 @@ def test_the_second_start_needs_no_process(known: Known, monkeypatch: pytest.Mon
     assert again.documents["behaviors/tour.yaml"] == known.project.documents["behaviors/tour.yaml"]
 
 
-@pytest.mark.process
 def test_the_same_files_elsewhere_are_the_same_project_there(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
     found, _ = load_apart(kept, read_files(kept))
@@ -80,7 +80,6 @@ def test_the_same_files_elsewhere_are_the_same_project_there(kept: Path, monkeyp
     assert found.root == str(kept)
 
 
-@pytest.mark.process
 @pytest.mark.parametrize("what", ["a file", "a file of a model that is not read", "the engine"])
 def test_anything_else_is_read(what: str, kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     alone(monkeypatch)
@@ -95,7 +94,6 @@ def test_anything_else_is_read(what: str, kept: Path, monkeypatch: pytest.Monkey
         load_apart(kept, read_files(kept))
 
 
-@pytest.mark.process
 @pytest.mark.parametrize("trouble", ["half of it", "nonsense", "others may write there"])
 def test_what_is_kept_badly_is_read_again(
     trouble: str, kept: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
