@@ -7,13 +7,17 @@ processes and places are left out.
 """
 
 import json
+import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tests.golden.exhibitions import TOLD, plain, small
 from tests.golden.mishaps import MISHAPS
-from tests.golden.warm import Done, Warm
+from tests.golden.served import HANG
+from tests.golden.warm import ROOT, Done, Warm, environment
+from tests.guarded import DEVNULL, Guarded
+from tests.waiting import until
 
 SUITE = "rest"
 NOWHERE = "amqp://guest:guest@127.0.0.1:1/"
@@ -64,6 +68,7 @@ def record(folder: Path) -> None:
             _write(folder / f"{name}.txt", table.mishap(name))
         _write(folder / "options.txt", table.refused())
         _write(folder / "after-a-good-run.txt", table.after_a_good_run())
+        _write(folder / "while-one-runs.txt", table.while_one_runs())
 
 
 class _Table:
@@ -100,6 +105,19 @@ class _Table:
                     MISHAPS[name](project)
                     told = " ".join(("then", name, *more))
                     yield f"# {_words(robots)}, whole, {told}\n\n{self._outcome(project, (*LINES['whole'], *more))}"
+
+    def while_one_runs(self) -> Iterator[str]:
+        """A second start beside the first, whose folder it leaves alone."""
+        for robots in (1, 2):
+            project = self._project(robots)
+            home = project / ".lumen" / ("" if robots == 1 else "robots/ben")
+            first = [sys.executable, "-m", "lumen", "run", project, "--robot", "recording", "--bus", "memory://"]
+            env = environment(self._place)
+            with Guarded(first, cwd=ROOT, env=env, stdin=DEVNULL, stdout=DEVNULL, stderr=DEVNULL) as process:
+                until(lambda home=home: process.poll() is not None or (home / "door.json").exists(), HANG)
+                done = self._warm.run(["run", project, *LINES["whole"]], self._place)
+                process.kill()
+            yield "\n".join([f"# {_words(robots)}, whole", "", *_printed(done, project), *_alerts(project), ""])
 
     def _project(self, robots: int) -> Path:
         self._count += 1
