@@ -1,7 +1,7 @@
 """How the goldens of running exhibitions see inside: all that is no public name is reached here and nowhere else.
 
-Who renames or moves something changes the right place here, and no recording: `NAMES` maps what a class is called now
-to what it was called when the goldens were recorded.
+After a rename or a move, change it here and re-record nothing: `NAMES` maps the new name of a class to the recorded
+one.
 """
 
 import sys
@@ -74,9 +74,14 @@ SERVICES = {
     "ValidatedBus": "bus",
     "Watcher": "watcher of files",
 }
-"""What a part may reach that others reach, too."""
+"""Services that several parts share."""
+PROGRAMS = {
+    "lumen.app.reload.validation_process": "(the process that judges files)",
+    "lumen.console.job": "(the console's job)",
+}
+"""Modules that run as programs."""
 DEPTH = 4
-"""How far a callable is looked into for what it reaches."""
+"""Depth of the search through callables and their closures."""
 
 
 def project_of(root: Path, robot: str = "") -> Project:
@@ -104,7 +109,7 @@ def nao() -> type:
 
 
 def described(node: Node) -> dict[str, Any]:
-    """What a node is made of."""
+    """Return the parts, observers and hooks of a node."""
     return {
         "claims": list(node.presence.parts) if node.presence else None,
         "parts": [_part(node, part) for part in node.parts],
@@ -148,7 +153,7 @@ def looked_at(ticked: Callable[[Node], None]) -> Iterator["Traces"]:
 
 
 class Traces:
-    """What was subscribed to and which threads were started meanwhile, in order."""
+    """Subscriptions and started threads, in order."""
 
     def __init__(self) -> None:
         self.subscribed: list[str] = []
@@ -185,7 +190,7 @@ def _word(one: object, words: dict[str, str]) -> str:
 
 
 def _callable(one: Any) -> str:
-    """Whose method a callable is, by words that stay."""
+    """Return the owner and the name of a method, in the words of the tables."""
     if isinstance(one, partial):
         return _callable(one.func)
     if isinstance(one, MethodType):

@@ -1,4 +1,4 @@
-"""Exhibitions to be started: the frozen small one, with one robot or two, and who is told of trouble."""
+"""The frozen small exhibition, with one robot or two, and with a program that receives its alerts."""
 
 import re
 import shutil
@@ -18,7 +18,7 @@ PROGRAM = f'#!/bin/sh\nread -r line\necho "$line" >> {TOLD}\n'
 
 
 def small(folder: Path, *, robots: int = 1, more: str = "") -> Path:
-    """The small exhibition in a new folder; `more` stands at the end of its lumen.yaml."""
+    """The small exhibition in a new folder; `more` is appended to its lumen.yaml."""
     shutil.copytree(PROJECTS / "minimal", folder)
     main = folder / "lumen.yaml"
     text = main.read_text("utf-8")
@@ -32,7 +32,7 @@ def small(folder: Path, *, robots: int = 1, more: str = "") -> Path:
 
 @contextmanager
 def broker() -> Iterator[str]:
-    """A broker of our own, with nobody else on it."""
+    """Start a broker that nothing else uses, and yield its address."""
     rabbitmq = RabbitMQ()
     try:
         rabbitmq.start()

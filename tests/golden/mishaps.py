@@ -1,4 +1,4 @@
-"""What may be wrong with a small exhibition when it is started: each breaks the copy that it is given."""
+"""Faults of a small exhibition: each function breaks a copy of it."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -73,4 +73,4 @@ MISHAPS: Mapping[str, Mishap] = {
     "story-broken": _replaced(STORY, "visitor: arrives", "visiter: arrives"),
     "run-folder-a-file": _written(".lumen", b"no folder"),
 }
-"""By the name of what is wrong. None needs rights that only some users have."""
+"""Faults by name. None depends on the rights of the user."""

@@ -15,7 +15,7 @@ from tests.rabbitmq import _free_ports
 from tests.waiting import until
 
 HANG = 300.0
-"""How long anything may take here [s]: only what hangs takes so long."""
+"""A bound that only a hang reaches [s]."""
 JSON = {"Content-Type": "application/json"}
 
 

@@ -1,4 +1,4 @@
-"""What a module offers to other people's code, as text: names, signatures, fields and kinship, and no module paths."""
+"""Public names of a module as text: signatures, fields and base classes, without module paths."""
 
 import enum
 import inspect
@@ -16,10 +16,10 @@ FUNCTION = re.compile(r"<function (?:[\w<>]+\.)*(\w+) at 0x[0-9a-f]+>")
 """A function as a default: only that there is one is promised."""
 WORD = re.compile(r"\b[A-Za-z_]\w*")
 UNSHOWN = {"__init__", "__call__", "__enter__", "__exit__", "__iter__", "__len__", "__getitem__", "__str__", "_build"}
-"""Methods that somebody calls who never names them; `_build` takes what an Entity of dm_control is made with."""
+"""Special methods that are part of an interface; `_build` has the arguments of a dm_control Entity."""
 FOREIGN = {"object", "Protocol", "Generic", "BaseException"}
 MADE_BY_LUMEN = {"Exhibition"}
-"""Classes that only functions of Lumen call: what they are made of is nobody else's."""
+"""Classes that only Lumen itself constructs: their arguments are internal."""
 
 
 def offered(module: ModuleType) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What a start is made of, as text that people can read and compare."""
+"""The parts of a start as text that people can read and compare."""
 
 from pathlib import Path
 from typing import Any

@@ -16,7 +16,7 @@ from tests.rabbitmq import _free_ports
 from tests.waiting import until
 
 HANG = 300.0
-"""How long anything may take here [s]: only what hangs takes so long."""
+"""A bound that only a hang reaches [s]."""
 CONSOLE = "console: {{port: {port}}}\n"
 pytestmark = pytest.mark.rest
 
@@ -69,7 +69,7 @@ def _any_is(child: str, processes: dict[int, str]) -> bool:
 
 
 def _left(begun: dict[int, str]) -> list[int]:
-    """Those that are still there; a number that was given to another process since is none, nor is a zombie."""
+    """Return those that still run: no zombies, and no new process with an old number."""
     return [pid for pid, began in begun.items() if began and _began(pid) == began and _state(pid) != "Z"]
 
 

@@ -3,8 +3,8 @@
     with Warm() as warm:
         done = warm.run(["run", "minimal", "--only", "brain"], folder)
 
-What a command prints, its exit code, and, where it is looked at, what its nodes are made of. The process is a program
-of its own: signals, standard streams and the working folder are those of a terminal.
+The result has the output, the exit code and, on request, the parts of its nodes. The process is a separate program:
+signals, standard streams and the working folder are those of a terminal.
 """
 
 import json
@@ -32,12 +32,12 @@ PLAIN = {
     "TERM": "dumb",
     "TZ": "UTC",
 }
-"""What of the environment a command may print or go by."""
-DROPPED = ("LUMEN_", "PYTEST_", "COV_", "XDG_")
+"""Variables that may change the output of a command."""
+DROPPED = ("LUMEN_", "PYTEST_", "PYTHON", "COV_", "XDG_")
 OPEN = "open"
-"""In place of a verb: `lumen.open` with what is told as JSON, until it is ended."""
+"""In place of a verb: call `lumen.open` with arguments in JSON, and tick until it is over."""
 END_TIMEOUT = 60.0
-"""How long a thread of a command that has ended may take to end [s]."""
+"""Bound for the end of a command's threads [s]."""
 
 
 class Done(NamedTuple):
@@ -131,7 +131,7 @@ def _run(asked: dict[str, Any], home: Path) -> Done:
 
 
 def looked_at(do: Callable[[], int | None], nodes: int, *, ends: bool = True) -> Done:
-    """Do something and look at the nodes that it makes, so many; what it prints goes where it goes."""
+    """Call `do` and look at that many of its nodes."""
     look = _Look(nodes, ends=ends)
     with adapters_running.looked_at(look) as traces:
         look.traces = traces

@@ -1,8 +1,8 @@
-"""What the console answers: how a robot is, what happens, and each command, for a visit that a program makes.
+"""Answers of the console in a scripted visit: the state of a robot, its events, and each command.
 
 An exhibition and its console run as processes of their own, in real time. The behaviour waits for events alone, and
 each step of the visit for the one before, so that only times differ: those, ages, numbers of processes, ports, random
-names, and readings of the robot's senses are left out. What the two say at the same time stands in order by itself.
+names, and readings of the robot's senses are left out. Entries and commands have a file each: their order is not fixed.
 """
 
 import json
@@ -47,7 +47,7 @@ LAST = "nothing.takes.this"
 """The last event of the visit."""
 PINS = {"LUMEN_PIN_SHOW": "show-1234", "LUMEN_PIN_OPERATOR": "operator-1234", "LUMEN_PIN_AUTHOR": "author-1234"}
 HEADERS = ("cache-control", "content-type", "lumen-state", "retry-after")
-"""Headers that a page or a proxy goes by."""
+"""Headers that a page or a proxy reads."""
 GUARDS = (
     "content-security-policy",
     "x-frame-options",
@@ -169,7 +169,7 @@ ASKED: dict[str, tuple[str, str, Any, dict[str, str]]] = {
 
 
 def _second(served: Served, here: Path) -> str:
-    """What one more console says on the port of the first, and how it ends."""
+    """Start one more console on the port of the first; return its output and exit code."""
     line = [sys.executable, "-m", "lumen", "console", served.project, "--port", served.port]
     done = run_guarded(line, cwd=ROOT, env=environment(here / "visit"), stdout=PIPE, stderr=STDOUT, text=True)
     return f"exit code {done.returncode}\n{done.stdout}".replace(str(served.port), "<port>")
@@ -180,7 +180,7 @@ def _roles(here: Path, folder: Path) -> None:
     project = _exhibition(here / "roles" / "small", f"console: {{port: 8080, pins: {{{pins}}}}}\n")
     with Served(project, here / "roles", "--speed", "4", pins=PINS) as served:
         pages = _Pages(project)
-        pages.add("now, for who has no role", served.ask("GET", "/api/now"))
+        pages.add("now, without a role", served.ask("GET", "/api/now"))
         for role, pin in {"nobody": "", **{name.rpartition("_")[2].lower(): pin for name, pin in PINS.items()}}.items():
             named = {"Authorization": f"Bearer {pin}"} if pin else {}
             for number, (command, fields) in enumerate(ALLOWED.items()):
@@ -205,7 +205,7 @@ ALLOWED: dict[str, dict[str, Any]] = {
 
 
 class _Pages:
-    """Answers by what was asked, in order."""
+    """Answers in order, each under a title."""
 
     def __init__(self, project: Path) -> None:
         self._project, self._blocks = project, list[str]()

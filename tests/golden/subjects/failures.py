@@ -1,7 +1,7 @@
 """Starts that fail, or may: what is printed, who is told, the exit code, and what is in `.lumen/` afterwards.
 
 Each mishap meets one robot or two, and the roles that differ: all of it, a robot, a brain, and a module, which may be a
-guest in the folder of others; where nothing is wrong, all roles. There is no broker: files that are well end with that.
+guest in the folder of others; all roles if nothing is wrong. There is no broker: files that are well end with that.
 Roles with the same outcome stand together. Times, ports, numbers of
 processes and places are left out.
 """
@@ -21,7 +21,7 @@ from tests.waiting import until
 
 SUITE = "rest"
 NOWHERE = "amqp://guest:guest@127.0.0.1:1/"
-"""Where no broker is: nobody may listen on port 1 but root."""
+"""An address without a broker: only root may listen on port 1."""
 SHORT = ("--robot", "recording", "--speed", "max", "--for", "1s")
 ROLES = ("robot", "brain", "motion", "visitor", "memory")
 LINES = {
@@ -31,7 +31,7 @@ LINES = {
 }
 SOME = {1: ("whole", "robot", "brain", "memory"), 2: ("whole", "robot", "brain")}
 ALONE = ("a story of no robot",)
-"""What only one robot is tried with: two go on for ever."""
+"""Options that are tried with one robot only: two robots run on without an end."""
 REFUSED: dict[str, tuple[str, ...]] = {
     "unknown robot": ("--robot", "nao"),
     "unknown name of a robot": ("--robot-name", "carl"),
@@ -58,7 +58,7 @@ REFUSED: dict[str, tuple[str, ...]] = {
     "nobody at a real robot's address": ("--robot", "naoqi", "--robot-url", "tcp://127.0.0.1:1"),
     "a broker that is not there": ("--robot", "recording", "--bus", NOWHERE),
 }
-"""Options that do not go, or go with what is not there."""
+"""Options that are refused, or that name something that does not exist."""
 
 
 def record(folder: Path) -> None:
@@ -76,7 +76,7 @@ class _Table:
         self._place, self._warm, self._count = place, warm, 0
 
     def mishap(self, name: str) -> Iterator[str]:
-        """What becomes of each role of one robot and of two."""
+        """The outcome of each role, for one robot and for two."""
         found: dict[str, list[str]] = {}
         for robots in (1, 2):
             for role in LINES if name == "nothing" else SOME[robots]:
@@ -87,7 +87,7 @@ class _Table:
             yield f"# {'; '.join(cases)}\n\n{outcome}"
 
     def refused(self) -> Iterator[str]:
-        """What options do that do not go."""
+        """The outcome of options that are refused."""
         for name, line in REFUSED.items():
             found: dict[str, list[str]] = {}
             for robots in (1,) if name in ALONE else (1, 2):
@@ -149,7 +149,7 @@ def _alerts(project: Path) -> Iterator[str]:
 
 
 def _kept(project: Path) -> Iterator[str]:
-    """The files of `.lumen/`; what is JSON there with what it says."""
+    """The files of `.lumen/`, with the text of those in JSON."""
     home = project / ".lumen"
     if not home.is_dir():
         yield f"no folder .lumen{' but a file' if home.exists() else ''}"

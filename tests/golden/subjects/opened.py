@@ -1,4 +1,4 @@
-"""What `lumen.open` and a rehearsal are made of, in this process: no other process, no network, no physics.
+"""The parts of `lumen.open` and of a rehearsal, in this process: no other process, no network, no physics.
 
 Time is that of the recording robot but for `none`, whose five ticks are real ones.
 """
@@ -58,7 +58,7 @@ def _look(folder: Path, name: str, title: str, project: Path, do: Callable[[], N
 
 
 class _Statue:
-    """A robot of somebody's own, which does nothing."""
+    """A robot from outside Lumen, which does nothing."""
 
     def start(self, id: str, command: Any) -> None:
         """It is never done."""

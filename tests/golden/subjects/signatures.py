@@ -1,4 +1,4 @@
-"""What the public modules offer: names, signatures, fields, kinship. Module paths are left out, for they may move."""
+"""Names, signatures, fields and base classes of the public modules. Module paths are left out, for they may move."""
 
 import inspect
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""What the NAO for dm_control offers besides what dm_control's own walkers do."""
+"""The NAO for dm_control: its own methods, besides those of dm_control's walkers."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from tests.golden.signatures import described
 
 SUITE = "rest"
 KIN = ("Walker", "Entity")
-"""What of dm_control it promises to be."""
+"""Base classes from dm_control that are promised."""
 
 
 def record(folder: Path) -> None:

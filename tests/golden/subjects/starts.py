@@ -1,4 +1,4 @@
-"""What each way to start is made of: parts and their order, who watches the steps, keys, threads, what a part reaches.
+"""Each way to start: parts in order, observers of steps, subscribed keys, threads, and the services of each part.
 
 Real time, a broker and the simulation are in it. Each node is looked at after a few ticks, when all its parts that can
 begin have begun. Threads are those that were started until then; timers are left out, for how many there are depends on
@@ -66,7 +66,7 @@ OPENED = {
     "open-simulation": {"robot": "simulation"},
     "open-broker": {"robot": "recording", "speed": "1"},
 }
-"""What `lumen.open` is given; the rest of it is in the subject `opened`."""
+"""Arguments of `lumen.open`; more of it is in the subject `opened`."""
 NAOQI = Start("run-naoqi", ("--robot", "naoqi"))
 
 
