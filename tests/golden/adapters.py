@@ -1,4 +1,4 @@
-"""What goldens use of the engine besides its public modules: if those move, only this module changes."""
+"""The internals of the engine that goldens use: if they move, only this module changes."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -84,7 +84,7 @@ def told_to_robots(tell: Callable[[float, str, str, Any], None]) -> Iterator[Non
 
 
 def robot_commands(project: lumen.Project, story: str) -> list[tuple[float, str, str, Any]]:
-    """What the robot is told in a story, which is rehearsed; the last one says when it ended, and how."""
+    """The commands to the robot in a story, which is rehearsed; the last entry is when it ended, and how."""
     told: list[tuple[float, str, str, Any]] = []
     with told_to_robots(lambda *command: told.append(command)):
         played = rehearse(project, project.stories[story])
@@ -92,7 +92,7 @@ def robot_commands(project: lumen.Project, story: str) -> list[tuple[float, str,
 
 
 def alive(project: lumen.Project, style: str, seconds: float) -> Iterator[dict[str, float]]:
-    """How far life moves each joint [rad] at 50 Hz, while the robot hears, speaks and is led as in a visit."""
+    """The offset of each joint by life [rad] at 50 Hz, while the robot hears, speaks and is led as in a visit."""
     layer, body = LifeLayer(project.body, seed=7), project.body
     layer.live(Live(project.life[style], merged(project.gestures)))
     free = frozenset(WHOLE_BODY)
@@ -114,7 +114,7 @@ def alive(project: lumen.Project, style: str, seconds: float) -> Iterator[dict[s
 class Replayed(NamedTuple):
     """An entry of a journal, taken again: the entry as JSON data, what came of it, and the snapshot after it.
 
-    `differs` has what was and what is, if that is not the same; `unknown` says why it could not be taken.
+    `differs` has the outcome of then and that of now if they differ; `unknown` is the reason if no step was possible.
     """
 
     position: int
@@ -174,7 +174,7 @@ def reloaded_to(file: Path, bundles: KeptBundles) -> lumen.Project:
 def forked(
     file: Path, position: int, bundles: KeptBundles, event: lumen.Event | None, saved: lumen.Project | None
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]], str]:
-    """What was from a position of a journal on, what would have been, and what ended that early."""
+    """The entries from a position of a journal on, those that would have been, and the trouble that ended these."""
     found = fork(read_journal(file).entries, position, bundles.project, takes, event=event, saved=saved)
     return list(found.was), list(found.would), found.trouble
 
@@ -182,13 +182,13 @@ def forked(
 def continued(
     old: lumen.Project, new: lumen.Project, frozen: dict[str, Any], away: float, unchanged: float
 ) -> list[str]:
-    """How a start goes on with a snapshot, after the engine was away [s]: sentences, or why it does not."""
+    """How a start continues from a snapshot, after the engine was away [s]: sentences, or why it does not."""
     found = resume(old, new, deserialize(old.machine, frozen), away, ("head", "gone"), unchanged)
     return _how(found, new)
 
 
 def recovered(root: Path, project: lumen.Project, now: float) -> list[str]:
-    """What a start at `now` [s since 1970] makes of the home of a run that ended before."""
+    """How a start at `now` [s since 1970] continues from the home of a run that ended before."""
     home = Home(root / ".lumen")
     assert home.hold()
     records = RunRecords(home)
@@ -207,7 +207,7 @@ def _how(found: Any, project: lumen.Project) -> list[str]:
             return [f"  begins anew: {why or 'without a word'}; rests: {rests}, crashed: {crashed}"]
         case Resumption():
             return [
-                f"  goes on after {found.away:.3f} s, told to end: {found.told}",
+                f"  continues after {found.away:.3f} s, told to end: {found.told}",
                 *_standing(serialize(project.machine, found.snapshot)),
                 *(f"  command {in_one_line(command_text(command))}" for command in found.commands),
                 f"  lost {' '.join(found.lost)}",

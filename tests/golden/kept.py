@@ -14,7 +14,7 @@ _FOLDER = TemporaryDirectory()
 
 
 @cache
-def bundles(robot: str = "") -> KeptBundles:
+def bundles(robot: str) -> KeptBundles:
     """All recorded bundles, in the home of a project that has nothing else; each is loaded once."""
     root = Path(_FOLDER.name) / (robot or "one")
     shutil.copytree(BUNDLES, root / ".lumen" / "robots" / robot if robot else root / ".lumen")

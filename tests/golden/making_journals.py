@@ -134,7 +134,7 @@ def goto(folder: Path) -> Path:
 
 
 def forgotten(folder: Path) -> Path:
-    """A visitor is forgotten while they stand there, and another one comes."""
+    """A visitor is forgotten during their visit, and another one comes."""
     root = copied("tour", folder)
     with lumen.open(root) as exhibition:
         for name in ("Budi", "Dewi"):
@@ -153,9 +153,9 @@ def forgotten(folder: Path) -> Path:
 
 
 def killed(folder: Path) -> Path:
-    """A run that is killed in a visit, the next run, which goes on with it, and a journal that is cut in a frame.
+    """A run that is killed in a visit, the next run, which resumes it, and a journal that is cut in a frame.
 
-    What the first one left is kept whole, but for its socket and what keeps Git from seeing it.
+    The home that the first one left is kept, except its socket and its .gitignore.
     """
     root = copied("tour", folder)
     kill(root)

@@ -1,4 +1,4 @@
-"""What subjects write: lines of text, JSON in one line, and numbers that each machine writes alike."""
+"""Lines of text, JSON in one line, and numbers in a form that is the same on each machine."""
 
 import json
 import math
@@ -49,7 +49,7 @@ def arithmetic() -> str:
 def snapped(lines: list[str], recorded: Path, tolerance: float, pattern: str) -> list[str]:
     """The lines, with the recorded number in place of each that is no farther from it than the tolerance.
 
-    Another processor may compute another last bit. `pattern` matches a number; whatever is not one has to be equal.
+    Another processor may compute another last bit. `pattern` matches a number; all other text must be equal.
     """
     before = recorded.read_text("utf-8").splitlines() if recorded.exists() else []
     if len(before) != len(lines):

@@ -1,4 +1,4 @@
-"""What each controller of the frozen projects puts out on a grid of its inputs, as hexadecimal floats.
+"""The outputs of each controller of the frozen projects on a grid of its inputs, as hexadecimal floats.
 
 Where the processor's arithmetic is another than that of the recording (`texts.arithmetic`), its last bits may differ:
 there an output may be as far as `TOLERANCE` from the recorded one.
@@ -14,7 +14,7 @@ from tests.golden.texts import ARITHMETIC, arithmetic, snapped, write
 
 SUITE = "test"
 STEPS = 12
-"""How many intervals the range of each input is divided into; one more point is outside at either end."""
+"""The number of intervals in the range of each input; one more point is outside at either end."""
 TOLERANCE = 1e-9
 NUMBER = r"-?0x[0-9a-f.]+p[+-]\d+"
 

@@ -1,4 +1,4 @@
-"""What the recording robot is told in one visit of each frozen project: a part of `robot_commands` that is quick."""
+"""The commands to the recording robot in one visit of each frozen project: a quick part of `robot_commands`."""
 
 from pathlib import Path
 

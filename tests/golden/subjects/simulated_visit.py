@@ -1,8 +1,7 @@
-"""A visit in the simulated hall, with physics: the angle of each joint and where the robot is, twice a second.
+"""A visit in the simulated hall, with physics: the angle of each joint and the position, twice a second.
 
-The same physics on another processor may differ in the last bits, and contacts make more of a difference: so an angle
-may be as far as `TOLERANCE` from the recorded one, and then the recorded one is written. What the robot is told, and
-when, has to be the same. Two further hinges of the tolerance: MuJoCo's version is pinned, and no noise is random.
+MuJoCo on another processor may differ in the last bits, and contacts amplify the difference. So no bits are compared: a
+number within `TOLERANCE` of the recorded one is written as it was recorded. Commands and their times must be equal.
 """
 
 import shutil
@@ -26,7 +25,7 @@ NUMBER = r"-?\d+\.\d{3}\b"
 
 
 def record(folder: Path) -> None:
-    """Write what the robot is told and how it stands, for two projects."""
+    """Write commands and angles, for two projects."""
     for name in ("minimal", "tour"):
         with TemporaryDirectory() as temporary:
             lines = list(visit(Path(shutil.copytree(PROJECTS / name, Path(temporary) / name))))
