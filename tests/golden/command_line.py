@@ -3,8 +3,8 @@
 import io
 import logging
 import os
-import shutil
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.golden.adapters_language import lumen_main
-from tests.guarded import temporary_folder
 
 COLUMNS = 100
 CHECKOUT = Path(__file__).parents[2]
@@ -34,12 +33,10 @@ class Outcome(NamedTuple):
 @contextmanager
 def workplace() -> Iterator[Path]:
     """Yield an empty folder to call `lumen` in, below no project; what calls keep at home goes with it."""
-    place = temporary_folder("lumen-golden-")
-    try:
-        (place / "folder").mkdir()
-        yield place / "folder"
-    finally:
-        shutil.rmtree(place)
+    with tempfile.TemporaryDirectory(prefix="lumen-golden-") as place:
+        folder = Path(place).resolve() / "folder"
+        folder.mkdir()
+        yield folder
 
 
 def environment(home: Path) -> dict[str, str]:
