@@ -3,13 +3,14 @@
 A subject is a module of `tests/golden/subjects` with
 
 - `SUITE`: "test" if it is deterministic, without a process, network or physics; else "rest";
-- `record(folder)`: writes its files into an empty folder, the same bytes on each machine and at each run.
+- `record(folder)`: writes its files into an empty folder, the same bytes on each machine and at each run;
+- if it can say more than a difference does, `explain(recorded, now)`: yields sentences for a failure.
 
 `python scripts/golden.py SUBJECT …` records; `tests/golden/test_golden.py` compares.
 """
 
 import pkgutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from difflib import unified_diff
 from importlib import import_module
 from pathlib import Path
@@ -51,6 +52,12 @@ def record(name: str, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     make: Callable[[Path], None] = subject(name).record
     make(folder)
+
+
+def explanations(name: str, recorded: Path, now: Path) -> list[str]:
+    """Return what a subject itself says of a difference."""
+    explain: Callable[[Path, Path], Iterable[str]] = getattr(subject(name), "explain", lambda *_: ())
+    return list(explain(recorded, now))
 
 
 def _files(folder: Path) -> dict[str, Path]:

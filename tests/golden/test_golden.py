@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.golden.golden import RECORDED, differences, names, record, subject
+from tests.golden.golden import RECORDED, differences, explanations, names, record, subject
 
 DO = "Change the code, or record it anew in a commit of its own."
 
@@ -18,4 +18,5 @@ def test_is_as_recorded(name: str, tmp_path: Path) -> None:
     record(name, tmp_path)
     assert (RECORDED / name).is_dir(), f"nothing is recorded of {name}: python scripts/golden.py {name}"
     found = differences(RECORDED / name, tmp_path)
+    found = [*explanations(name, RECORDED / name, tmp_path), *found] if found else []
     assert not found, "\n".join((f"{name} is not what it was at d475a3ac.", *found, DO))
