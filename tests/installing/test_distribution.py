@@ -13,6 +13,7 @@ import package_metadata
 import pytest
 from trove_classifiers import classifiers
 
+from tests.golden.subjects.distribution import files
 from tests.guarded import run_guarded
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
@@ -80,6 +81,14 @@ def test_the_source_archive_holds_what_the_wheel_is_built_from_and_no_more(
     command = [*installing.PIP, "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", tmp_path, unpacked]
     run_guarded(command, check=True)
     assert names(next(tmp_path.glob("*.whl"))) == names(wheel)
+
+
+def test_the_file_lists_that_are_recorded_are_those_of_what_is_built(sdist: Path, wheel: Path) -> None:
+    assert [name for name in names(wheel) if ".dist-info/" not in name] == files("wheel")
+    with tarfile.open(sdist) as archive:
+        built = {name.partition("/")[2] for name in archive.getnames()}
+    assert built - {"PKG-INFO"} >= set(files("sdist"))
+    assert built - set(files("sdist")) <= {"PKG-INFO", "pyproject.toml", ".gitignore"}
 
 
 def names(wheel: Path) -> list[str]:
