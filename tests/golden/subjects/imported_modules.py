@@ -3,7 +3,7 @@
 The engine's own modules are not listed, since they move; neither is what Python imports before it runs anything.
 """
 
-import re
+import json
 import shutil
 import sys
 import time
@@ -19,13 +19,31 @@ from tests.guarded import run_guarded, temporary_folder
 from tests.waiting import until
 
 SUITE = "rest"
-BEGIN = "--- the command begins"
+BEGIN = "--- imported"
 CODE = f"""
-import sys
-print({BEGIN!r}, file=sys.stderr, flush=True)
+import atexit, json, sys
+
+class Watch:
+    importers = {{}}
+
+    @classmethod
+    def find_spec(cls, name, path=None, target=None):
+        frame, chain = sys._getframe(1), []
+        while frame:
+            module = frame.f_globals.get("__name__", "")
+            if not module.startswith("importlib") and module not in chain:
+                chain.append(module)
+            if module.startswith("lumen."):
+                break
+            frame = frame.f_back
+        cls.importers.setdefault(name.partition(".")[0], chain[::-1])
+
+sys.meta_path.insert(0, Watch)
+atexit.register(lambda: print({BEGIN!r}, json.dumps(Watch.importers), file=sys.stderr))
 from lumen.cli.main import main
 sys.exit(main(sys.argv[1:]))
 """
+"""Runs a command, and prints which packages were looked for: by whom, up to the engine's module that began it."""
 DEAR = frozenset((
     "asyncio", "concurrent", "ctypes", "decimal", "email", "http", "inspect", "multiprocessing", "sqlite3", "ssl",
     "subprocess", "tomllib", "unittest", "urllib", "xml", "zipfile",
@@ -40,7 +58,6 @@ COMMANDS = {
     "lint-kept": ("lint",),
     "run-recording": ("run", "--robot", "recording", "--speed", "max", "--story", "visitor"),
 }
-LINE = re.compile(r"import time: +\d+ \| +\d+ \|( +)([\w.]+)")
 
 
 def record(folder: Path) -> None:
@@ -61,7 +78,7 @@ def explain(recorded: Path, now: Path) -> Iterator[str]:
 
 @cache
 def imported() -> MappingProxyType[str, dict[str, str]]:
-    """Return, for each command, its packages and what led to them, from the engine on."""
+    """Return, for each command, its packages and which modules led to them."""
     work = temporary_folder("lumen-imports-")
     project = work / "minimal"
     shutil.copytree(PROJECTS / "minimal", project)
@@ -69,34 +86,20 @@ def imported() -> MappingProxyType[str, dict[str, str]]:
     variables = {**environment(work), "PYTHONPATH": str(CHECKOUT / "engine")}
     found = {}
     for command, words in COMMANDS.items():
-        call = [sys.executable, "-X", "importtime", "-c", CODE, *words]
+        call = [sys.executable, "-c", CODE, *words]
         done = run_guarded(call, cwd=project, env=variables, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, f"lumen {' '.join(words)} ended with {done.returncode}: {done.stderr[-2000:]}"
         assert BEGIN in done.stderr, done.stderr[-2000:]
-        found[command] = _packages(done.stderr.split(BEGIN, 1)[1])
+        found[command] = _packages(done.stderr.rpartition(BEGIN)[2])
     shutil.rmtree(work)
     return MappingProxyType(found)
 
 
 def _packages(report: str) -> dict[str, str]:
-    """Return the packages that count, with the chain of imports that led to each, of a report of `-X importtime`.
-
-    It lists a module after those that it imports, which are indented by two more.
-    """
-    rows = [(len(found[1]), found[2]) for found in LINE.finditer(report)]
-    assert any(name == ENGINE for _, name in rows), report[-2000:]
-    found: dict[str, str] = {}
-    above: list[tuple[int, str]] = []
-    for depth, name in reversed(rows):
-        while above and above[-1][0] >= depth:
-            above.pop()
-        package = name.partition(".")[0]
-        if _counts(package):
-            chain = [one for _, one in above]
-            ours = max((i for i, one in enumerate(chain) if one.partition(".")[0] == ENGINE), default=0)
-            found[package] = " imports ".join([*chain[ours:], name]) if chain else f"the command imports {name}"
-        above.append((depth, name))
-    return found
+    """Return the packages that count, with the modules that led to each."""
+    importers: dict[str, list[str]] = json.loads(report)
+    assert ENGINE in importers, report
+    return {name: " imports ".join([*chain, name]) for name, chain in importers.items() if _counts(name)}
 
 
 @cache
