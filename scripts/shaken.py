@@ -41,7 +41,7 @@ PERIOD, QUOTA = 100_000, 50_000
 """Half a core: so many microseconds of each period."""
 ENDING = 60.0
 """The time that an interrupted pytest has for ending its fixtures, before it is killed [s]."""
-LINGERING = 5.0
+LINGERING = 60.0
 """The time that processes of tests have for ending by themselves after pytest [s]."""
 USUAL = {"quiet": 8, "crowded": 8, "half": 4}
 REAL = {"quiet": 0, "crowded": 0, "half": 30}
@@ -133,6 +133,7 @@ def main(words: Sequence[str] | None = None) -> int:
     counts = {name: getattr(arguments, name) for name in USUAL}
     plans = planned({name: usual(arguments)[name] if n is None else n for name, n in counts.items()}, arguments.seed)
     LOGS.mkdir(parents=True, exist_ok=True)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ended in order, as by Ctrl-C
     print(
         f"{len(plans)} runs, the first with --seed {arguments.seed}: {' '.join(selection(arguments)) or 'all'}",
         flush=True,

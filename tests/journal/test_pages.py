@@ -21,7 +21,7 @@ from lumen.runtime.inputs.journal_tail import JournalTail
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from tests.journal.test_writing import MACHINE, PROJECT, Disk, steps, tell
 from tests.tour.conftest import copy
-from tests.waiting import Collector, until
+from tests.waiting import HANG, Collector, until
 
 __all__ = ["copy"]
 
@@ -70,7 +70,7 @@ def from_files(disk: Disk) -> list[dict[str, Any]]:
 def test_the_last_entries_need_no_file(disk: Disk) -> None:
     writer = begun(disk)
     tell(writer, steps(60))
-    assert writer.flush()
+    assert writer.flush(HANG)
     kept = from_files(disk)
     for file in disk.files():
         file.unlink()
@@ -84,7 +84,7 @@ def test_older_ones_come_from_the_files_and_each_comes_once(disk: Disk, monkeypa
     writer = begun(disk, JournalTail(10))
     for at in range(0, 60, 6):
         tell(writer, steps(60)[at : at + 6])
-        assert writer.flush()
+        assert writer.flush(HANG)
     assert len(disk.files()) > 2
     assert writer.tail.first == writer.tail.next - 10
     assert whole(writer) == from_files(disk)
@@ -98,7 +98,7 @@ def test_what_the_disk_refuses_is_told_and_keeps_its_position(disk: Disk, monkey
     for full, at in ((False, 0), (True, 30), (False, 60)):
         disk.full = full
         tell(writer, made[at : at + 30])
-        assert writer.flush()
+        assert writer.flush(HANG)
     assert writer.lost
     told = whole(writer)
     assert [entry["position"] for entry in told[-40:]] == list(range(writer.tail.first, writer.tail.next))
@@ -108,7 +108,7 @@ def test_what_the_disk_refuses_is_told_and_keeps_its_position(disk: Disk, monkey
 
 def test_who_went_on_further_than_the_disk_is_led_back(disk: Disk) -> None:
     writer = begun(disk)
-    assert writer.flush()
+    assert writer.flush(HANG)
     assert journal_page(writer, 10_000) == {
         "entries": [], "next": writer.tail.next, "run": writer.run, "epoch": None
     }  # fmt: skip
@@ -126,7 +126,7 @@ def begun_after(disk: Disk) -> JournalWriter:
 def test_without_a_journal_the_last_of_it_is_in_memory(tmp_path: Path) -> None:
     writer = begun(None, JournalTail(10))
     tell(writer, steps(60))
-    assert writer.flush()
+    assert writer.flush(HANG)
     assert not writer.lost
     told = whole(writer)
     assert [entry["position"] for entry in told] == list(range(writer.tail.next - 10, writer.tail.next))
@@ -150,7 +150,7 @@ def test_a_page_is_bounded_by_its_bytes() -> None:
     for event in big:
         told.append(step(MACHINE, told[-1].snapshot, event))
     tell(writer, told[1:])
-    assert writer.flush()
+    assert writer.flush(HANG)
     assert len(str(journal_page(writer, 1))) < MAX_PAGE_BYTES + 10_000
     assert len(whole(writer)) == 1 + len(big)
     writer.close()
@@ -162,7 +162,7 @@ def test_who_is_forgotten_is_in_no_page(disk: Disk) -> None:
         tell(writer, named("Budi", "Ada"))
         writer.forget(PersonName("budi"))
         tell(writer, named("Eko"))
-        assert writer.flush()
+        assert writer.flush(HANG)
         told = whole(writer)
         assert "Budi" not in str(told)
         assert "Ada" in str(told)
@@ -174,10 +174,10 @@ def test_who_is_forgotten_is_in_no_page(disk: Disk) -> None:
 def test_what_a_name_can_be_tried_against_is_forgotten_too() -> None:
     writer = begun(None, JournalTail(4))
     tell(writer, named("Budi", "Ada"))
-    assert writer.flush()
+    assert writer.flush(HANG)
     assert [entry["digest"] for entry in whole(writer) if "digest" in entry]
     writer.forget(PersonName("budi"))  # who was named before the first entry that is in memory
-    assert writer.flush()
+    assert writer.flush(HANG)
     assert not [entry for entry in whole(writer) if "digest" in entry]
     writer.close()
 
@@ -185,7 +185,7 @@ def test_what_a_name_can_be_tried_against_is_forgotten_too() -> None:
 def journal_of(exhibition: Exhibition) -> JournalWriter:
     writer = exhibition.node.loop.runtime.recorder
     assert isinstance(writer, JournalWriter)
-    assert writer.flush()
+    assert writer.flush(HANG)
     return writer
 
 

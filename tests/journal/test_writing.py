@@ -95,7 +95,7 @@ def test_a_slow_disk_keeps_nobody_waiting_and_what_does_not_fit_is_a_gap(
     writer, made = begun(disk), steps(200)
     tell(writer, made[:150])  # returns, though nothing can be written
     disk.free.set()
-    assert writer.flush()
+    assert writer.flush(HANG)
     tell(writer, made[150:])
     writer.close()
     (gap,) = [entry for entry in read(disk) if isinstance(entry, JournalJump) and entry.kind == "gap"]
@@ -112,11 +112,11 @@ def test_a_full_disk_is_told_once_and_costs_entries(
     monkeypatch.setattr(journal_writer, "RETRY_PERIOD", 0.0)
     writer, made = begun(disk), steps(30)
     tell(writer, made[:10])
-    assert writer.flush()
+    assert writer.flush(HANG)
     disk.full = True
     for at in (10, 15):
         tell(writer, made[at : at + 5])
-        assert writer.flush()
+        assert writer.flush(HANG)
     disk.full = False
     tell(writer, made[20:])
     writer.close()
@@ -134,7 +134,7 @@ def test_a_folder_that_can_not_be_made_costs_the_journal_and_nothing_else(tmp_pa
     (tmp_path / "file").write_text("")
     writer = begun(Disk(tmp_path / "file" / "journal"))
     tell(writer, steps(5))
-    assert writer.flush()
+    assert writer.flush(HANG)
     writer.close()
     assert writer.trouble.startswith("the journal can't be written: ")
     assert writer.lost >= 5
