@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, settings
 
-pytest_plugins = ["tests.suites", "tests.marking", "tests.servers", "tests.cpu_time", "tests.garbage"]
+pytest_plugins = ["tests.suites", "tests.marking", "tests.servers", "tests.cpu_time", "tests.garbage", "tests.progress"]
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
     signal.signal(signal.SIGINT, signal.default_int_handler)
