@@ -71,7 +71,7 @@ docs: .venv/docs
 	@echo "open build/docs/index.html"
 
 packages:
-	@(cat packages.txt; command -v npm >/dev/null || echo npm) | sh scripts/packages.sh /dev/stdin
+	@sh scripts/packages.sh packages.txt
 
 .venv/run: requirements-core.txt requirements.txt requirements-no-deps.txt pyproject.toml
 	@echo "setting up .venv (once, a minute or two) …"

@@ -15,7 +15,11 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 CACHE = ROOT / ".cache"
 MISSING = CACHE / "debian.missing"
-"""What scripts/packages.sh could not provide, in a line."""
+"""What scripts/packages.sh could not provide: a line for each package, with the reason."""
+
+
+SIZE = "about 15 MB"
+"""What all of them are to download."""
 
 
 class Package(NamedTuple):
@@ -37,7 +41,8 @@ def main() -> str | None:
     wanted = tuple(sys.argv[1:]) or (".cache/",)
     rows = [line.split() for line in (ROOT / "scripts/fetched.txt").read_text().splitlines()]
     packages = [Package(*row) for row in rows if row and row[0].startswith(wanted)]
-    if not sys.argv[1:] and not shutil.which("npm") and "npm" in (MISSING.read_text() if MISSING.exists() else ""):
+    missing = MISSING.read_text().splitlines() if MISSING.exists() else []
+    if not sys.argv[1:] and not shutil.which("npm") and any(line.startswith("npm ") for line in missing):
         return None  # scripts/packages.sh has said so, and the tests that need it are left out
     if all(package.stamp.exists() for package in packages):
         return None
@@ -53,11 +58,14 @@ def fetch(packages: list[Package]) -> str | None:
         return None
     if not shutil.which("npm"):
         return "npm is not installed, with which the tests fetch what they ask others with: `make setup` installs it"
+    print(f"fetching {len(packages)} packages of npm into .cache, {SIZE}, for the tests (once) …", flush=True)
     with tempfile.TemporaryDirectory(dir=CACHE) as folder:
         names = [f"{package.name}@{package.version}" for package in packages]
-        done = subprocess.run(["npm", "pack", "--silent", *names], cwd=folder, stdout=subprocess.DEVNULL, check=False)
+        command = ["npm", "pack", "--silent", "--cache", str(CACHE / "npm"), *names]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
-            return f"npm could not download {', '.join(names)}"
+            said = "\n".join((done.stderr or done.stdout).strip().splitlines()[-5:])
+            return f"npm could not download {', '.join(names)}: is there a network?\n{said}"
         archives = {hashlib.sha256(archive.read_bytes()).hexdigest(): archive for archive in Path(folder).iterdir()}
         for package in packages:
             if package.sum not in archives:

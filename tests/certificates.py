@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from tests.guarded import run_guarded
+from tests.provided import program
 
 KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
 
@@ -19,4 +20,4 @@ def certify(folder: Path, name: str, days: int = 2) -> Path:
 
 
 def _openssl(folder: Path, *arguments: str) -> None:
-    run_guarded(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
+    run_guarded([program("openssl"), *arguments], cwd=folder, check=True, capture_output=True)

@@ -7,14 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.guarded import run_guarded
-
-ROOT = Path(__file__).parents[1]
-
-
-def not_provided() -> str:
-    """What scripts/packages.sh says that this machine lacks, empty where it lacks nothing."""
-    told = ROOT / ".cache/debian.missing"
-    return told.read_text().strip() if told.exists() else ""
+from tests.provided import ROOT, not_provided
 
 
 @cache
@@ -26,7 +19,7 @@ def fetched(name: str) -> Path:
     folder = f".cache/{name}"
     done = run_guarded([sys.executable, ROOT / "scripts/fetch.py", folder], capture_output=True, text=True)
     if done.returncode:
-        if "npm is not installed" in done.stderr and "npm" in (told := not_provided()):
+        if "npm is not installed" in done.stderr and (told := not_provided("npm")):
             pytest.skip(told)
         pytest.fail(done.stderr, pytrace=False)
     return ROOT / folder

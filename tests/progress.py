@@ -30,7 +30,9 @@ PAUSE, REDRAW = 5.0, 0.2
 REASONS = 12
 """How many reasons for skipping are listed."""
 TOOK = "lumen/took"
-"""Where pytest's cache keeps how long runs took: by the number of their tests [s]."""
+"""Where pytest's cache keeps the number of tests of the last runs, and how long they took [s]: by what was asked for."""
+KEPT = 20
+"""How many runs it keeps."""
 REFERENCE = 0.054
 """What `calibration` returned on the machine whose figures are in CONTRIBUTING.md [s]."""
 
@@ -166,16 +168,19 @@ class Progress:
             self._write(f"{tests:,} tests{beside}: takes about {duration(self._expected)}")
 
     def _expectation(self) -> float | None:
-        """Return how long this run will take [s]: as the last one of about as many tests, else by its CPU time."""
-        took = {int(tests): seconds for tests, seconds in self._took().items()}
-        near = min(took, key=lambda tests: abs(tests - self._tests), default=0)
-        if near and abs(near - self._tests) <= 0.1 * self._tests:
-            return float(took[near] * self._tests / near)
+        """Return how long this run will take [s]: as the last one of the same words, else by its CPU time."""
+        if last := self._took().get(self._words()):
+            tests, seconds = last
+            return seconds * self._tests / tests
         if (cpu := self._config.getoption("expect_cpu")) is None:
             return None
         return float(cpu * calibration() / REFERENCE / min(self._workers, os.cpu_count() or 1))
 
-    def _took(self) -> dict[str, float]:
+    def _words(self) -> str:
+        option = self._config.option
+        return f"{self._workers} {option.markexpr} {option.keyword} {' '.join(self._config.args)}"
+
+    def _took(self) -> dict[str, tuple[int, float]]:
         cache = getattr(self._config, "cache", None)
         return dict(cache.get(TOOK, {})) if cache else {}
 
@@ -231,9 +236,9 @@ class Progress:
         cache = getattr(self._config, "cache", None)
         if cache and self._tests and self._done == self._tests:
             took = self._took()
-            took.pop(str(self._tests), None)
-            kept = dict([*took.items(), (str(self._tests), round(time.monotonic() - self._began, 1))][-20:])
-            cache.set(TOOK, kept)
+            took.pop(self._words(), None)
+            took[self._words()] = self._tests, round(time.monotonic() - self._began, 1)
+            cache.set(TOOK, dict(list(took.items())[-KEPT:]))
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         skipped = Counter(reason(report) for report in terminalreporter.stats.get("skipped", ()))

@@ -24,10 +24,11 @@ import pytest
 
 from tests.erlang_modules import link_modules
 from tests.guarded import Guarded, TimeoutExpired, temporary_folder
+from tests.provided import ROOT, lack
 from tests.waiting import HANG
 
-UNPACKED = Path(__file__).parents[1] / ".cache/debian"
-"""What scripts/packages.sh has unpacked for who is not root; the file beside it says what it could not."""
+UNPACKED = ROOT / ".cache/debian"
+"""What scripts/packages.sh has unpacked for who is not root."""
 ROOTS = (Path("/"), UNPACKED / "root")
 GIVEN = "LUMEN_TEST_BROKER"
 """Where a broker is that tests may use in place of one of their own, those that need no more than one: amqp://…"""
@@ -291,12 +292,7 @@ def _installed() -> tuple[Path, str]:
     for root in ROOTS:
         if found := sorted(root.glob("usr/lib/rabbitmq/lib/rabbitmq_server-*/sbin/rabbitmq-server")):
             return root, str(found[-1])
-    told = UNPACKED.with_suffix(".missing")
-    if told.exists() and "rabbitmq" in told.read_text():
-        pytest.skip(told.read_text().strip())
-    pytest.fail(
-        "RabbitMQ is not installed: `make packages` installs it, or unpacks it where you are not root", pytrace=False
-    )
+    lack("rabbitmq-server")
 
 
 def _free_ports(count: int) -> list[int]:

@@ -15,13 +15,12 @@ import socket
 import threading
 from contextlib import suppress
 from itertools import count
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.fetched import ROOT, not_provided
 from tests.guarded import STDOUT, Guarded, TimeoutExpired, temporary_folder
+from tests.provided import ROOT, program
 from tests.rabbitmq import GIVEN, VIRTUAL_HOSTS, GivenBroker, LentBroker, RabbitMQ
 from tests.waiting import HANG, until
 
@@ -51,8 +50,8 @@ SWITCHES = (
 )
 STOP_TIMEOUT = 20.0
 """How long Chromium may take to end in order; then it is killed [s]."""
-UNPACKED = ROOT / ".cache/debian/root"
-"""The folder in which scripts/packages.sh unpacks for a user who is not root."""
+UNPACKED = ROOT / ".cache/debian/root/usr/lib/chromium/chromium"
+"""Chromium as scripts/packages.sh unpacks it; the script of that name on the PATH starts one in /usr only."""
 
 
 class Chromium:
@@ -62,7 +61,11 @@ class Chromium:
         self._folder = temporary_folder("lumen-chromium-")
         told, log = self._folder / "DevToolsActivePort", self._folder / "log"
         switches = (*SWITCHES, f"user-data-dir={self._folder}")
-        line = [program("usr/lib/chromium/chromium", "chromium"), *(f"--{one}" for one in switches), "about:blank"]
+        line = [
+            UNPACKED if UNPACKED.exists() else program("chromium"),
+            *(f"--{one}" for one in switches),
+            "about:blank",
+        ]
         with log.open("wb") as file:
             self._process: Guarded[bytes] = Guarded(line, stdout=file, stderr=STDOUT)
         ended = self._process.poll
@@ -179,16 +182,6 @@ def given(name: str) -> Any:
     if "fail" in answer:
         pytest.fail(answer["fail"], pytrace=False)
     return answer["given"]
-
-
-def program(unpacked: str, name: str = "") -> Path:
-    """The program; skips the test if this machine has none and could not be given one."""
-    found = UNPACKED / unpacked if (UNPACKED / unpacked).exists() else shutil.which(name or Path(unpacked).name)
-    if found is None:
-        if "chromium" in (told := not_provided()):
-            pytest.skip(told)
-        pytest.fail("Chromium is not installed: `make setup` installs it", pytrace=False)
-    return Path(found)
 
 
 @pytest.fixture(scope="module")

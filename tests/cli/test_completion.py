@@ -10,10 +10,13 @@ import pytest
 
 from lumen.cli.main import VERBS, main
 from tests.guarded import Guarded, run_guarded
+from tests.provided import program
 from tests.tables import for_each
 from tests.waiting import HANG, until
 
 ROOT = Path(__file__).parents[2]
+LIBRARIES = {name: value for name, value in os.environ.items() if name == "LD_LIBRARY_PATH"}
+"""The path of libraries for shells that scripts/packages.sh has unpacked."""
 
 
 def completed(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
@@ -85,11 +88,12 @@ def path(tmp_path: Path) -> str:
 )
 def test_a_shell_completes_what_is_typed(shell: list[str], begin: str, path: str, tmp_path: Path) -> None:
     """On a terminal of its own: the verb, the option, and the story are each written by one press of Tab."""
+    shell = [str(program(shell[0])), *shell[1:]]
     master, slave = pty.openpty()
-    environment = {"PATH": path, "HOME": str(tmp_path), "TERM": "dumb", "PS1": "$ "}
+    environment = {**LIBRARIES, "PATH": path, "HOME": str(tmp_path), "TERM": "dumb", "PS1": "$ "}
     with Guarded(shell, stdin=slave, stdout=slave, stderr=slave, env=environment, cwd=ROOT) as process:
         os.close(slave)
-        os.write(master, f"{begin}; echo rea''dy\n".encode())
+        os.write(master, f"{unpacked(shell[0])}{begin}; echo rea''dy\n".encode())
         assert "ready" in shown_until(master, "ready\r\n")
         os.write(master, b"lumen li\t")
         assert "lint" in shown_until(master, "lint")
@@ -99,6 +103,14 @@ def test_a_shell_completes_what_is_typed(shell: list[str], begin: str, path: str
         assert "visitor" in shown_until(master, "visitor")
         process.kill()
     os.close(master)
+
+
+def unpacked(shell: str) -> str:
+    """Return the settings of a zsh that scripts/packages.sh unpacked, which looks for its files in /usr."""
+    root = Path(shell).parents[1]
+    if not root.is_relative_to(ROOT) or Path(shell).name != "zsh":
+        return ""
+    return f"module_path=({root}/usr/lib/*/zsh/*); fpath=({root}/usr/share/zsh/functions/**/); setopt zle; "
 
 
 def shown_until(terminal: int, wanted: str) -> str:
@@ -119,8 +131,8 @@ def test_fish_completes_with_what_it_means(path: str, tmp_path: Path) -> None:
     asked = (
         "lumen completion fish | source; complete -C 'lumen li'; complete -C 'lumen lint --stri'; complete -C 'lumen '"
     )
-    environment = {"PATH": path, "HOME": str(tmp_path), "TERM": "dumb"}
-    command = ["fish", "--no-config", "-c", asked]
+    environment = {**LIBRARIES, "PATH": path, "HOME": str(tmp_path), "TERM": "dumb"}
+    command = [program("fish"), "--no-config", "-c", asked]
     done = run_guarded(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     lines = done.stdout.splitlines()
     assert lines[:2] == ["lint\tsay what is wrong in a project, and where", "--strict\tcount warnings as errors"]

@@ -12,7 +12,8 @@ from selenium.webdriver import ChromeOptions, Remote
 from selenium.webdriver.remote.client_config import ClientConfig
 
 from tests.guarded import DEVNULL, Guarded
-from tests.servers import given, program
+from tests.provided import program
+from tests.servers import given
 from tests.waiting import HANG, until
 
 ENDED = "Chromium has ended while this test used it: it crashed, or was killed"
@@ -109,7 +110,7 @@ class _Chromedriver:
         if cls.process is None or cls.process.poll() is not None:
             with socket.create_server(("127.0.0.1", 0)) as server:
                 cls.port = int(server.getsockname()[1])
-            line = [program("usr/bin/chromedriver"), f"--port={cls.port}"]
+            line = [program("chromedriver", "chromium-driver"), f"--port={cls.port}"]
             cls.process = Guarded(line, stdout=DEVNULL, stderr=DEVNULL)
             until(cls._listens, HANG)
         return f"http://127.0.0.1:{cls.port}"

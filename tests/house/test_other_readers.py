@@ -1,7 +1,6 @@
 """The shipped YAML as JavaScript's tools read it, with the npm package `yaml`; PyYAML reads it in `make check`."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -9,6 +8,7 @@ import pytest
 from lumen.loading.files import PROJECT_FOLDERS
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.provided import program
 from tests.scanning import matching
 
 ROOT = Path(__file__).parents[2]
@@ -28,8 +28,7 @@ console.log(JSON.stringify(wrong));
 
 @pytest.mark.npm
 def test_the_package_of_npm_reads_them_all() -> None:
-    node = shutil.which("node")
-    assert node, "install Node"
     package = fetched("yaml") / "node_modules" / "yaml"
+    node = program("node", "npm")
     done = run_guarded([node, "-e", READ, str(package), *map(str, FILES)], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout) == []

@@ -8,6 +8,7 @@ from scripts import shape
 from scripts.shape import Floor, Size, When
 
 from tests.guarded import run_guarded
+from tests.provided import program
 from tests.waiting import HANG
 
 ORDER = """
@@ -180,7 +181,7 @@ def test_all_of_it_is_data_too(root, capsys):
 
 
 def test_a_commit_tells_the_files_that_it_touched(root, capsys):
-    git = ["git", "-c", "user.name=a", "-c", "user.email=a@b.c", "-C", str(root)]
+    git = [program("git"), "-c", "user.name=a", "-c", "user.email=a@b.c", "-C", str(root)]
     for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "Builds"]):
         run_guarded([*git, *command], check=True, timeout=HANG)
     shape.main(["--root", str(root), "--commit", "HEAD"])

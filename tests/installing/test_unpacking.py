@@ -1,4 +1,4 @@
-"""Debian's packages without root: unpacked, or told in one line what is missing; a broker that is given."""
+"""Debian's packages without root: unpacked, or listed with what is skipped for lack of them; a broker that is given."""
 
 import os
 import shutil
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import rabbitmq
+from tests import provided, rabbitmq
 from tests.guarded import run_guarded
 from tests.waiting import HANG
 
@@ -21,6 +21,8 @@ Status: deinstall ok config-files
 APT = """#!/bin/sh
 echo "$@" >> "$UNPACKED.asked"
 case "$*" in
+*nosuch*) echo "E: Unable to locate package nosuch" >&2; exit 100 ;;
+*--print-uris*) echo "'http://debian/a.deb' a.deb 7000000 SHA:a"; echo "'http://debian/b.deb' b.deb 4500000 SHA:b" ;;
 *" install "*) echo "Inst erlang-base (1 Debian [amd64])"; echo "Inst rabbitmq-server (3 Debian [all])" ;;
 *" download "*) touch erlang-base.deb rabbitmq-server.deb ;;
 esac
@@ -69,27 +71,42 @@ def test_what_is_installed_is_not_asked_for(tmp_path: Path) -> None:
     assert Machine(tmp_path).provide("openssl") == ""
 
 
-def test_where_there_is_no_apt_one_line_says_what_is_missing_and_tests_of_it_are_left_out(
+def test_what_serves_in_the_place_of_a_package_is_enough(tmp_path: Path) -> None:
+    machine = Machine(tmp_path, fish="#!/bin/sh\n")
+    assert machine.provide("fish  fish  completion in fish") == ""
+    said = machine.provide("fish  -  completion in fish", "zsh zsh  completion in zsh # soon").splitlines()
+    assert said[1:] == ["  fish             completion in fish", "  zsh              completion in zsh"]
+
+
+def test_where_there_is_no_apt_it_lists_what_is_missing_and_tests_of_it_are_skipped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     machine = Machine(tmp_path)
-    (said,) = machine.provide("openssl", "rabbitmq-server", "libegl1").splitlines()
-    assert said.startswith(
-        "not on this machine, so tests that need it are left out: rabbitmq-server libegl1 (there is no"
-    )
+    said = machine.provide("openssl", "rabbitmq-server - a broker", "# for pictures", "libegl1 - pictures").splitlines()
+    reason = "there is no apt-get, so install it with your system's packages"
+    assert said == [
+        f"Tests of these are skipped, since this machine lacks them ({reason}):",
+        "  rabbitmq-server  a broker",
+        "  libegl1          pictures",
+    ]
     monkeypatch.setattr(rabbitmq, "ROOTS", (tmp_path / "none",))
-    monkeypatch.setattr(rabbitmq, "UNPACKED", machine.unpacked)
+    monkeypatch.setattr(provided, "MISSING", machine.unpacked.with_suffix(".missing"))
     with pytest.raises(pytest.skip.Exception) as skipped:
         rabbitmq.RabbitMQ()
-    assert str(skipped.value) == said
+    assert str(skipped.value) == f"rabbitmq-server is not on this machine: {reason}"
     machine.unpacked.with_suffix(".missing").unlink()
-    with pytest.raises(pytest.fail.Exception, match="RabbitMQ is not installed: `make packages`"):
+    with pytest.raises(pytest.fail.Exception, match="rabbitmq-server is not on this machine: `make setup`"):
         rabbitmq.RabbitMQ()
 
 
 def test_where_there_is_apt_what_is_missing_is_unpacked_once(tmp_path: Path) -> None:
     machine = Machine(tmp_path, apt_get=APT, dpkg=DPKG)
-    assert "unpacking rabbitmq-server into .cache/debian, without root" in machine.provide("openssl", "rabbitmq-server")
+    said = machine.provide("openssl", "rabbitmq-server  -  a broker").splitlines()
+    assert said == [
+        "asking apt-get for rabbitmq-server …",
+        "Unpacking Debian packages into .cache/debian, without root, 12 MB to download (once):",
+        "  rabbitmq-server  a broker",
+    ]
     erl = machine.unpacked / "root/usr/lib/erlang/bin/erl"
     assert erl.read_text() == f"    ROOTDIR={machine.unpacked}/root/usr/lib/erlang\n"
     assert not list((machine.unpacked / "archives").glob("*.deb"))
@@ -99,9 +116,29 @@ def test_where_there_is_apt_what_is_missing_is_unpacked_once(tmp_path: Path) -> 
     assert Path(f"{machine.unpacked}.asked").read_text() == asked
 
 
-def test_what_apt_says_stands_in_the_line(tmp_path: Path) -> None:
-    machine = Machine(tmp_path, apt_get="#!/bin/sh\necho 'E: no route' >&2\nexit 100\n", dpkg=DPKG)
-    assert "rabbitmq-server (apt-get could not fetch it: E: no route)" in machine.provide("rabbitmq-server")
+def test_what_apt_does_not_know_is_left_out_and_the_rest_is_provided(tmp_path: Path) -> None:
+    machine = Machine(tmp_path, apt_get=APT, dpkg=DPKG)
+    said = machine.provide("nosuch - none", "rabbitmq-server - a broker").splitlines()
+    reason = "apt-get does not find it: Unable to locate package nosuch"
+    assert said[1] == f"Tests of these are skipped, since this machine lacks them ({reason}):"
+    assert said[-1] == "  rabbitmq-server  a broker"
+    assert (machine.unpacked / "rabbitmq-server").exists()
+    assert machine.unpacked.with_suffix(".missing").read_text() == f"nosuch is not on this machine: {reason}\n"
+
+
+@pytest.mark.parametrize(
+    ("failing", "said"),
+    [
+        ("", "apt-get does not find it: no route"),
+        ('case "$*" in *" download "*) ;; *) echo Inst a; exit 0 ;; esac', "apt-get could not fetch it: no route"),
+    ],
+    ids=["looking", "fetching"],
+)
+def test_what_apt_complains_of_is_the_reason(tmp_path: Path, failing: str, said: str) -> None:
+    machine = Machine(tmp_path, apt_get=f"#!/bin/sh\n{failing}\necho 'E: no route' >&2\nexit 100\n", dpkg=DPKG)
+    machine.provide("rabbitmq-server")
+    missing = machine.unpacked.with_suffix(".missing").read_text()
+    assert missing == f"rabbitmq-server is not on this machine: {said}\n"
 
 
 def test_a_broker_that_is_given_is_used_for_what_needs_no_more() -> None:

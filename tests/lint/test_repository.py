@@ -13,6 +13,7 @@ import yaml
 
 from lumen.loading.files import read_files
 from tests.guarded import CompletedProcess, run_guarded
+from tests.provided import program
 from tests.waiting import HANG
 
 ROOT = Path(__file__).parents[2]
@@ -45,7 +46,7 @@ def made(home: Path, *projects: str) -> Path:
 
 def git(folder: Path, *words: str) -> str:
     who = ("-c", "user.name=Ada", "-c", "user.email=ada@example.org")
-    done = run_guarded(["git", *who, *words], cwd=folder, check=True, capture_output=True, text=True)
+    done = run_guarded([program("git"), *who, *words], cwd=folder, check=True, capture_output=True, text=True)
     return str(done.stdout).strip()
 
 

@@ -11,6 +11,7 @@ from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.runtime.home import Home
 from lumen.upkeep.private_folder import private_folder
 from tests.guarded import run_guarded
+from tests.provided import program
 from tests.scanning import matching
 
 ENGINE = Path(__file__).parents[2] / "engine" / "lumen"
@@ -32,7 +33,7 @@ MAKERS = {
 
 def staged(folder: Path) -> str:
     """What `git add -A` takes of a folder."""
-    run_guarded(["git", "init", "-q", folder], check=True)
+    run_guarded([program("git"), "init", "-q", folder], check=True)
     run_guarded(["git", "add", "-A"], cwd=folder, check=True)
     return str(run_guarded(["git", "ls-files"], cwd=folder, check=True, capture_output=True, text=True).stdout)
 

@@ -9,6 +9,7 @@ import pytest
 from lumen.loading.files import PROJECT_FOLDERS
 from tests.fetched import fetched
 from tests.lsp.client import Client
+from tests.provided import program
 
 ROOT = Path(__file__).parents[2]
 SERVER = "node_modules/yaml-language-server/bin/yaml-language-server"
@@ -54,9 +55,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def server(root: Path) -> Client:
-    node = shutil.which("node")
-    assert node, "install Node"
-    return Client(root, [node, str(fetched("yaml") / SERVER), "--stdio"])
+    return Client(root, [str(program("node", "npm")), str(fetched("yaml") / SERVER), "--stdio"])
 
 
 @pytest.fixture(scope="module")

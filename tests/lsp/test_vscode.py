@@ -13,6 +13,7 @@ from lumen.app.exhibition import Exhibition
 from tests.cli.conftest import bus, copy, exhibition, project
 from tests.fetched import fetched
 from tests.guarded import run_guarded
+from tests.provided import program
 from tests.scanning import matching
 from tests.waiting import HANG
 
@@ -39,8 +40,8 @@ def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def hosted(extension: Path, root: Path, file: str, *more: str) -> dict[str, Any]:
     """What the extension did in an editor that has this file open."""
-    words = ["node", ROOT / "tests/lsp/vscode_host.js", extension, root, json.dumps(COMMAND), root / file, *more]
-    done = run_guarded(words, capture_output=True, text=True, timeout=HANG)
+    words = [ROOT / "tests/lsp/vscode_host.js", extension, root, json.dumps(COMMAND), root / file, *more]
+    done = run_guarded([program("node", "npm"), *words], capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
     return dict(json.loads(done.stdout))
 
@@ -78,7 +79,8 @@ def test_it_marks_where_a_running_exhibition_is_and_lists_transitions(
 def test_no_name_of_a_file_is_a_command_of_a_shell() -> None:
     script = "console.log(require(process.argv[1]).commandLine(['a b/lumen'], 'test', process.argv[2]))"
     terminal = ROOT / "editors/vscode/terminal.js"
-    good = run_guarded(["node", "-e", script, terminal, "visitor"], capture_output=True, text=True)
+    node = program("node", "npm")
+    good = run_guarded([node, "-e", script, terminal, "visitor"], capture_output=True, text=True)
     assert good.stdout == '"a b/lumen" test visitor\n'
-    bad = run_guarded(["node", "-e", script, terminal, "visitor; rm"], capture_output=True, text=True)
+    bad = run_guarded([node, "-e", script, terminal, "visitor; rm"], capture_output=True, text=True)
     assert "is no name of a story or motion" in bad.stderr

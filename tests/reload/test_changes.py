@@ -21,6 +21,7 @@ from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 from tests.guarded import run_guarded
+from tests.provided import program
 from tests.tables import for_each
 from tests.tour.names import ROOT
 
@@ -195,7 +196,7 @@ def repository(copy: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch
     states = "idle: {on: {touched: talk}}, talk: {states: {ask: {on: {released: dance}}, dance: }}"
     (root / TOUR).write_text(f"id: tour\nstates: {{{states}}}\n", "utf-8")
     for command in ("init -q", "add ours", "-c user.name=x -c user.email=x@x commit -qm one"):
-        run_guarded(["git", "-C", str(root.parent), *command.split()], check=True)
+        run_guarded([program("git"), "-C", str(root.parent), *command.split()], check=True)
     monkeypatch.chdir(root)
     return root
 
@@ -301,6 +302,7 @@ def test_a_revision_is_read_as_far_as_a_folder_would_be(repository: Path, monkey
 def test_outside_of_a_repository(
     tmp_path: Path, copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    program("git")
     monkeypatch.chdir(copy)
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(copy.parent))
     assert main(["diff", "HEAD"]) == 2

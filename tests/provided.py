@@ -1,0 +1,33 @@
+"""Programs that tests use of the machine: where they are, and why a test is skipped if one could not be provided."""
+
+import shutil
+from pathlib import Path
+from typing import NoReturn
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+MISSING = ROOT / ".cache/debian.missing"
+"""What scripts/packages.sh could not provide: a line for each package, with the reason."""
+
+
+def program(name: str, package: str = "") -> Path:
+    """Return a program of a Debian package, called the same if no `package` is given.
+
+    Without it the test is skipped if scripts/packages.sh could not provide the package, and fails otherwise.
+    """
+    found = shutil.which(name)
+    return Path(found) if found else lack(package or name)
+
+
+def lack(package: str) -> NoReturn:
+    """Skip the test if the package could not be provided, with the reason; else fail it."""
+    if told := not_provided(package):
+        pytest.skip(told)
+    pytest.fail(f"{package} is not on this machine: `make setup` installs it", pytrace=False)
+
+
+def not_provided(package: str) -> str:
+    """Return why scripts/packages.sh could not provide a package; empty if it could."""
+    lines = MISSING.read_text().splitlines() if MISSING.exists() else []
+    return next((line for line in lines if line.partition(" ")[0] == package), "")
