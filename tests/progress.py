@@ -30,7 +30,7 @@ PAUSE, REDRAW = 5.0, 0.2
 REASONS = 12
 """How many reasons for skipping are listed."""
 TOOK = "lumen/took"
-"""Where pytest's cache keeps the number of tests of the last runs, and how long they took [s]: by what was asked for."""
+"""Where the cache keeps the number of tests of the last runs, and how long they took [s]: by what was asked for."""
 KEPT = 20
 """How many runs it keeps."""
 REFERENCE = 0.054
@@ -201,7 +201,7 @@ class Progress:
         if self._terminal.isatty:
             if now - self._drawn >= REDRAW:
                 self._draw(self._state(), now)
-        elif now - self._drawn >= PAUSE and self._share() * 100 >= self._percent + STEP:
+        elif self._done < self._tests and now - self._drawn >= PAUSE and self._share() * 100 >= self._percent + STEP:
             self._percent = int(self._share() * 100) // STEP * STEP
             self._drawn = now
             self._write(self._state())
