@@ -1,0 +1,25 @@
+#!/bin/sh
+# Check style, types and floors: a line if all is well, otherwise everything that the failing checks printed.
+set -u
+cd "$(dirname "$0")/.."
+bin=.venv/bin
+failed=
+
+check() {  # what it is about, and the command
+    name=$1
+    shift
+    if printed=$("$@" 2>&1); then return; fi
+    failed="$failed $name"
+    echo "--- $name: $*"
+    printf '%s\n' "$printed"
+}
+
+check style $bin/ruff check .
+check format $bin/ruff format --check .
+check types $bin/mypy
+check floors $bin/lint-imports --no-logo
+if [ -n "$failed" ]; then
+    echo "not well:$failed"
+    exit 1
+fi
+echo "style, types and floors: well"
