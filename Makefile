@@ -74,22 +74,13 @@ packages:
 	@sh scripts/packages.sh packages.txt
 
 .venv/run: requirements-core.txt requirements.txt requirements-no-deps.txt pyproject.toml
-	@echo "setting up .venv (once, a minute or two) …"
-	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.txt
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes -r requirements-no-deps.txt
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
-	@touch $@
+	@PYTHON="$(PYTHON)" sh scripts/set_up.sh run
 
 .venv/test: .venv/run requirements-test.txt
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes \
-		-r requirements-test.txt
-	@touch $@
+	@sh scripts/set_up.sh test
 
 .venv/docs: .venv/test requirements-docs.txt
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes \
-		-r requirements-docs.txt
-	@touch $@
+	@sh scripts/set_up.sh docs
 
 clean:
 	rm -rf .venv .cache build .lumen .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
