@@ -60,10 +60,7 @@ broker: .venv/test
 	@$(WITH) $(BIN)/python -m tests.rabbitmq
 
 check: .venv/test
-	@$(BIN)/ruff check .
-	@$(BIN)/ruff format --check -q .
-	@$(BIN)/mypy
-	@$(BIN)/lint-imports --no-logo
+	@sh scripts/check.sh
 
 docs: .venv/docs
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
