@@ -7,6 +7,7 @@ is a test that was changed itself or has a changed file in its folder, then one 
 that imports an importer of it, and so on.
 """
 
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping
@@ -37,6 +38,9 @@ def changed() -> list[Path]:
 
 
 def git(*words: str) -> list[str]:
+    """Return the lines that git prints; none if there is no git, or no repository, as in an archive of the sources."""
+    if not shutil.which("git"):
+        return []
     done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
     return done.stdout.splitlines()
 

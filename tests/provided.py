@@ -21,9 +21,9 @@ def program(name: str, package: str = "") -> Path:
 
 
 def lack(package: str) -> NoReturn:
-    """Skip the test if the package could not be provided, with the reason; else fail it."""
+    """Skip the test if the package could not be provided, with the reason; else fail it. At import: skip the file."""
     if told := not_provided(package):
-        pytest.skip(told)
+        pytest.skip(told, allow_module_level=True)
     pytest.fail(f"{package} is not on this machine: `make setup` installs it", pytrace=False)
 
 
