@@ -15,11 +15,11 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 CACHE = ROOT / ".cache"
 MISSING = CACHE / "debian.missing"
-"""What scripts/packages.sh could not provide: a line for each package, with the reason."""
+"""The packages that scripts/packages.sh could not provide: a line for each, with the reason."""
 
 
 SIZE = "about 15 MB"
-"""What all of them are to download."""
+"""The size of all archives together."""
 
 
 class Package(NamedTuple):

@@ -70,7 +70,7 @@ on Linux. pip printed: $error ($log)"
 case $stage in
 run)
     make_environment
-    announce "the engine and the simulated robot" "$(packages requirements-core.txt requirements.txt)" 330\ MB 900\ MB 2\ minutes
+    announce "the engine and the simulated robot" "$(packages requirements-core.txt requirements.txt)" 270\ MB 850\ MB 2\ minutes
     : >"$log"
     install --require-hashes -r requirements.txt
     install --no-deps --require-hashes -r requirements-no-deps.txt

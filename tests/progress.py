@@ -1,7 +1,6 @@
-"""What a run prints: how long it takes, how far it is, why tests were skipped, and for a failure what was expected.
+"""Short output for a run of pytest: the time it takes, its progress, the reasons for skipping, and a failed promise.
 
-With `-v` pytest prints what it always does, except that a failure still begins with what was expected. The closing line
-is pytest's own.
+With `-v` the usual output of pytest returns, but a failure still begins with the promise. The closing line is pytest's.
 """
 
 import os
@@ -22,19 +21,19 @@ import pytest
 EXPECTED, NAME = "expected", "name"
 """Properties of a report: what a failed test expected, and a test's name without the group that xdist appends to it."""
 LINES, CHARACTERS = 5, 600
-"""How much of what was found is repeated above the traceback."""
+"""The longest finding above a traceback."""
 STEP = 10
 """Without a terminal there is a line each time that so many percent more are done [%]."""
 PAUSE, REDRAW = 5.0, 0.2
 """The least time between two of these lines, and between two drawings of the one on a terminal [s]."""
 REASONS = 12
-"""How many reasons for skipping are listed."""
+"""The most reasons for skipping that are listed."""
 TOOK = "lumen/took"
-"""Where the cache keeps the number of tests of the last runs, and how long they took [s]: by what was asked for."""
+"""The key in pytest's cache for the last runs: number of tests and duration [s], by their command line."""
 KEPT = 20
-"""How many runs it keeps."""
+"""The number of runs in that cache."""
 REFERENCE = 0.054
-"""What `calibration` returned on the machine whose figures are in CONTRIBUTING.md [s]."""
+"""The result of `calibration` on the machine of the figures in CONTRIBUTING.md [s]."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

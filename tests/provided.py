@@ -1,4 +1,4 @@
-"""Programs that tests use of the machine: where they are, and why a test is skipped if one could not be provided."""
+"""Programs of the machine that tests use; a test is skipped if scripts/packages.sh could not provide its program."""
 
 import shutil
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 MISSING = ROOT / ".cache/debian.missing"
-"""What scripts/packages.sh could not provide: a line for each package, with the reason."""
+"""The packages that scripts/packages.sh could not provide: a line for each, with the reason."""
 
 
 def program(name: str, package: str = "") -> Path:

@@ -28,7 +28,7 @@ from tests.provided import ROOT, lack
 from tests.waiting import HANG
 
 UNPACKED = ROOT / ".cache/debian"
-"""What scripts/packages.sh has unpacked for who is not root."""
+"""The folder into which scripts/packages.sh unpacks packages without root."""
 ROOTS = (Path("/"), UNPACKED / "root")
 GIVEN = "LUMEN_TEST_BROKER"
 """Where a broker is that tests may use in place of one of their own, those that need no more than one: amqp://…"""

@@ -1,4 +1,4 @@
-"""What a run of pytest prints: little when all is well, and a sentence above the traceback of a failure."""
+"""The output of a run: few lines when all is well, and a sentence above the traceback of a failure."""
 
 import os
 import sys
@@ -73,7 +73,7 @@ def test_a_failure_begins_with_what_was_expected(tmp_path: Path, workers: tuple[
 
 
 def test_a_run_that_is_well_prints_few_lines_and_each_reason_for_skipping_once(tmp_path: Path) -> None:
-    """How long it takes comes first, by its CPU time and then as it has taken."""
+    """The first line estimates the time: from `--expect-cpu`, or from the last run."""
     for more in (("--expect-cpu", "100"), ()):
         lines = run(tmp_path, SKIPPING, *more)
         assert lines[0].startswith("300 tests: takes about ")

@@ -1,4 +1,4 @@
-"""What `make` prints while it sets itself up and checks: a line if all is well, a sentence if something is missing."""
+"""The output of set-up and checks: one line if all is well, one sentence if something is missing."""
 
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""Debian's packages without root: unpacked, or listed with what is skipped for lack of them; a broker that is given."""
+"""Debian packages without root are unpacked, or listed as missing; a broker may be given by its address."""
 
 import os
 import shutil
