@@ -6,7 +6,15 @@ from pathlib import Path
 
 from hypothesis import HealthCheck, settings
 
-pytest_plugins = ["tests.suites", "tests.marking", "tests.servers", "tests.cpu_time", "tests.garbage", "tests.progress"]
+pytest_plugins = [
+    "tests.suites",
+    "tests.marking",
+    "tests.servers",
+    "tests.cpu_time",
+    "tests.garbage",
+    "tests.progress",
+    "tests.provided",
+]
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
     signal.signal(signal.SIGINT, signal.default_int_handler)

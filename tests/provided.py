@@ -11,6 +11,14 @@ MISSING = ROOT / ".cache/debian.missing"
 """The packages that scripts/packages.sh could not provide: a line for each, with the reason."""
 
 
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test that draws pictures if OpenGL's libraries could not be provided."""
+    if item.get_closest_marker("pictures"):
+        for package in ("libegl1", "libgl1"):
+            if told := not_provided(package):
+                pytest.skip(told)
+
+
 def program(name: str, package: str = "") -> Path:
     """Return a program of a Debian package, called the same if no `package` is given.
 

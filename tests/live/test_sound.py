@@ -72,6 +72,7 @@ def loudness(samples: Any, rate: int = RATE, window: float = 0.02) -> Any:
     return np.abs(parts @ turn) / size
 
 
+@pytest.mark.pictures
 @pytest.mark.physics
 def test_a_film_has_the_sounds_of_the_run_at_their_times(project: Path, tmp_path: Path) -> None:
     film = tmp_path / "film.mp4"

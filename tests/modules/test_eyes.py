@@ -80,6 +80,7 @@ def eyes(stand: Make) -> Callable[..., Stand]:
     return make
 
 
+@pytest.mark.pictures
 def test_finds_the_drawn_face_where_it_is(eyes: Make, project: Project, drawn: Mapping[Any, Any]) -> None:
     """Its head is larger than people's are."""
     here = eyes(with_options(project, "eyes", face_width=0.25))
@@ -117,6 +118,7 @@ def test_finds_nobody_where_nobody_is(eyes: Make) -> None:
     assert seen.bodies == []
 
 
+@pytest.mark.pictures
 def test_sees_that_there_are_people(eyes: Make, drawn: Mapping[Any, Any]) -> None:
     pixels, (x, _) = drawn[1.2, 0.3]
     here = eyes()
@@ -138,6 +140,7 @@ def test_who_shows_their_face_is_a_person(photographed: Pixels) -> None:
     assert finder.people(grey, []) == []
 
 
+@pytest.mark.pictures
 def test_learns_who_somebody_is_and_tells_them_from_others(
     eyes: Make, tmp_path: Path, photographed: Pixels, drawn: Mapping[Any, Any]
 ) -> None:
@@ -239,6 +242,7 @@ def test_a_video_file(stand: Make, project: Project, photographed: Pixels, tmp_p
         Eyes(with_options(project, "eyes", camera=str(tmp_path / "none.avi")), here.bus, here.told.append, None)
 
 
+@pytest.mark.pictures
 def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -> None:
     """Rendered camera, JPEG, bus, detector, fuzzy controller, head: the whole way through pixels."""
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)

@@ -44,6 +44,7 @@ def test_two_links_of_it_that_press_on_each_other_are_named() -> None:
     assert any("left" in " ".join(pair) for pair in robot.strain().touching)
 
 
+@pytest.mark.pictures
 @pytest.mark.slow
 def test_it_is_filmed(body: Body, tmp_path: Path) -> None:
     robot = standing(body.mjcf.removesuffix(".xml"))
@@ -65,6 +66,7 @@ def test_its_links_are_where_its_joints_say(body: Body) -> None:
     assert frames[body.roles.torso].position[2] == pytest.approx(height, abs=0.01)
 
 
+@pytest.mark.pictures
 @pytest.mark.slow
 def test_it_sees(body: Body) -> None:
     image = standing(body.mjcf.removesuffix(".xml")).read(Sense.IMAGE)

@@ -113,6 +113,7 @@ def test_an_eye_looks_at_its_target() -> None:
     assert distance == pytest.approx(dist(*place))
 
 
+@pytest.mark.pictures
 def test_a_film_shows_what_is_said_and_who_says_it(robot: SimulatedRobot, tmp_path: Path) -> None:
     path = tmp_path / "film.mp4"
     film = Film(path, robot, size=(320, 180))

@@ -44,6 +44,7 @@ def test_it_is_a_walker_of_tasks_that_others_wrote(walking: composer.Environment
     assert (nao.prev_action == nao.action_of("Stand")).all()
 
 
+@pytest.mark.pictures
 def test_it_feels_what_the_robot_does_in_the_robots_order(walking: composer.Environment) -> None:
     walking.reset()
     nao, physics = walking.task._walker, walking.physics

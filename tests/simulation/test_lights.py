@@ -86,6 +86,7 @@ def test_a_resting_robot_looks_as_it_was_switched_on(robot: SimulatedRobot, do: 
     assert colour(robot, "head") != before
 
 
+@pytest.mark.pictures
 def test_what_is_set_is_drawn_and_nothing_else(robot: SimulatedRobot, do: Do) -> None:
     def portrait() -> NDArray[np.int64]:
         state = RenderState.of(robot.world.model, robot.world.data)

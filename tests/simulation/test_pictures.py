@@ -34,6 +34,7 @@ def image(robot: SimulatedRobot) -> Image:
     return reading
 
 
+@pytest.mark.pictures
 def test_the_camera_sees_the_visitor_s_face_where_it_is_said_to_be(robot: SimulatedRobot, do: Do, body: Body) -> None:
     robot.place(Visitor())
     look_at_face(robot, do, body)
@@ -47,6 +48,7 @@ def test_the_camera_sees_the_visitor_s_face_where_it_is_said_to_be(robot: Simula
     assert not changed[:, :60].any()
 
 
+@pytest.mark.pictures
 def test_an_image_is_as_large_as_is_asked_for_and_shows_the_same(robot: SimulatedRobot) -> None:
     robot.place(Visitor())
     robot.advance(0.1)
@@ -57,6 +59,7 @@ def test_an_image_is_as_large_as_is_asked_for_and_shows_the_same(robot: Simulate
     assert np.abs(shrunk - small).mean() < 4
 
 
+@pytest.mark.pictures
 @pytest.mark.parametrize(("yaw", "pitch"), [(0.0, 0.0), (-0.4, 0.5), (1.5, -0.6)])
 def test_what_a_camera_can_t_see_is_not_drawn_and_nobody_sees_that(
     robot: SimulatedRobot, do: Do, yaw: float, pitch: float
@@ -74,6 +77,7 @@ def test_what_a_camera_can_t_see_is_not_drawn_and_nobody_sees_that(
     renderer.close()
 
 
+@pytest.mark.pictures
 def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -> None:
     robot.place(Visitor())
     robot.advance(0.1)
@@ -88,6 +92,7 @@ def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -
     assert (drawn[0] == before).all()
 
 
+@pytest.mark.pictures
 def test_a_film_has_a_frame_for_every_twenty_fifth_of_a_second(robot: SimulatedRobot, tmp_path: Path) -> None:
     path = tmp_path / "film.mp4"
     film = Film(path, robot, "observer", size=(320, 240))
@@ -101,6 +106,7 @@ def test_a_film_has_a_frame_for_every_twenty_fifth_of_a_second(robot: SimulatedR
     assert seconds * FILM_RATE == frames
 
 
+@pytest.mark.pictures
 def test_a_hall_without_that_camera_is_not_filmed(robot: SimulatedRobot, tmp_path: Path) -> None:
     with pytest.raises(RobotError, match="the hall has no camera `ceiling`"):
         Film(tmp_path / "film.mp4", robot, "ceiling")
