@@ -77,7 +77,7 @@ run)
     install --no-deps --no-build-isolation -e .
     ;;
 test)
-    announce "the tests" "$(packages requirements-test.txt)" 330\ MB 800\ MB 2\ minutes
+    announce "the tests" "$(packages requirements-test.txt)" 310\ MB 800\ MB 2\ minutes
     : >"$log"
     install --no-deps --require-hashes -r requirements-test.txt
     ;;

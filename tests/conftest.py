@@ -7,13 +7,13 @@ from pathlib import Path
 from hypothesis import HealthCheck, settings
 
 pytest_plugins = [
+    "tests.provided",  # first, since others import it
     "tests.suites",
     "tests.marking",
     "tests.servers",
     "tests.cpu_time",
     "tests.garbage",
     "tests.progress",
-    "tests.provided",
 ]
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
