@@ -7,6 +7,8 @@ WITH := sh scripts/with_packages.sh
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
+# What the tests of `make test` take of the processor, to print how long they will take [s].
+CPU := 400
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 PYTEST = $(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder
 LEFT_OUT := soak or slow or broker or physics or npm
@@ -45,7 +47,7 @@ test: setup
 
 tested:
 	@$(BIN)/lumen lint --strict
-	@$(PYTEST) -m "not soak" --suite test
+	@$(PYTEST) -m "not soak" --suite test --expect-cpu $(CPU)
 
 test-all: test rest
 

@@ -65,9 +65,8 @@ def the_core_needs_no_simulation() -> Iterator[Looked]:
 
 
 def set_up_checks_the_hashes() -> Iterator[Looked]:
-    rows = (ROOT / "Makefile").read_text(encoding="utf-8").replace("\\\n", " ").splitlines()
-    for row in rows:
-        if "pip install" in row:
+    for row in (ROOT / "scripts/set_up.sh").read_text(encoding="utf-8").splitlines():
+        if row.strip().startswith("install -"):
             checked = "--require-hashes" in row or "--no-deps --no-build-isolation" in row
             yield row.strip(), "" if checked else "install with --require-hashes"
 

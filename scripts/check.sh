@@ -1,5 +1,5 @@
 #!/bin/sh
-# Check style, types and floors: a line if all is well, otherwise everything that the failing checks printed.
+# Check style, types, floors, the repository's order and goldens: a line if all is well, otherwise everything that the failing checks printed.
 set -u
 cd "$(dirname "$0")/.."
 bin=.venv/bin
@@ -18,8 +18,10 @@ check style $bin/ruff check .
 check format $bin/ruff format --check .
 check types $bin/mypy
 check floors $bin/lint-imports --no-logo
+check order $bin/python scripts/check.py
+check goldens $bin/python scripts/golden_guard.py
 if [ -n "$failed" ]; then
     echo "not well:$failed"
     exit 1
 fi
-echo "style, types and floors: well"
+echo "style, types, floors and order: well"
