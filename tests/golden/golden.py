@@ -22,6 +22,8 @@ HERE = Path(__file__).parent
 RECORDED = HERE / "recorded"
 PROJECTS = HERE / "projects"
 """Copies of tour, museum and minimal as they were at d475a3ac; they never change."""
+SHIPPED = ("minimal", "museum", "tour")
+"""Those of them that come with Lumen."""
 MOST_LINES = 40
 """How much of a difference a failure shows, for each file."""
 

@@ -14,7 +14,7 @@ from typing import Any
 from tests.golden.adapters_language import options, table, verbs
 from tests.golden.command_line import Outcome, lumen, workplace
 from tests.golden.found import write_json
-from tests.golden.golden import HERE, PROJECTS
+from tests.golden.golden import HERE, PROJECTS, SHIPPED
 
 SUITE = "test"
 TOOK = re.compile(r'("took": |time=")[0-9.e-]+|\b[0-9.]+ s(?= of this machine)|(?<=in )[0-9.]+ s\b')
@@ -64,7 +64,8 @@ def _record_calls(folder: Path, work: Path, calls: Mapping[str, Iterable[Mapping
 
 def _prepare(work: Path) -> None:
     """Make the folder in which calls are typed."""
-    shutil.copytree(PROJECTS, work, dirs_exist_ok=True)
+    for name in SHIPPED:
+        shutil.copytree(PROJECTS / name, work / name)
     shutil.copytree(PROJECTS / "minimal", work / "broken")
     for name, edits in BROKEN.items():
         file = work / "broken" / name

@@ -6,7 +6,7 @@ from typing import Any
 
 from tests.golden.adapters_language import project_files, table
 from tests.golden.found import write_findings
-from tests.golden.golden import HERE, PROJECTS
+from tests.golden.golden import HERE, PROJECTS, SHIPPED
 
 SUITE = "test"
 CASES = HERE / "lint_cases"
@@ -23,8 +23,8 @@ def inputs() -> Iterator[tuple[str, Path, Mapping[str, bytes]]]:
     for file in sorted(CASES.glob("*.yaml")):
         for name, case in table(file).items():
             yield f"{file.stem}: {name}", CASES / "base", changed(base, case)
-    for project in sorted(PROJECTS.iterdir()):
-        yield f"project {project.name}", project, project_files(project)
+    for name in SHIPPED:
+        yield f"project {name}", PROJECTS / name, project_files(PROJECTS / name)
 
 
 def changed(base: Mapping[str, bytes], case: Mapping[str, Any]) -> dict[str, bytes]:
