@@ -152,6 +152,7 @@ def test_a_program_gets_json_and_its_words_as_they_are(tmp_path: Path) -> None:
     assert json.loads(body)["kind"] == "fallen"
 
 
+@pytest.mark.process
 def test_a_program_of_the_project(tmp_path: Path) -> None:
     file = tmp_path / "page.sh"
     file.write_text("#!/bin/sh\ncat > got\n")
@@ -160,6 +161,7 @@ def test_a_program_of_the_project(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "got").read_text())["kind"] == "fallen"
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ("command", "said", "final"),
     [
@@ -173,6 +175,7 @@ def test_a_program_that_can_not(tmp_path: Path, command: list[str], said: str, f
     assert (str(error), error.final) == (said, final)
 
 
+@pytest.mark.process
 def test_a_program_that_does_not_end_is_ended_with_its_children(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

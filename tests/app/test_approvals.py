@@ -167,6 +167,7 @@ def test_who_raises_an_event_hears_that_it_waits(ask: Asker) -> None:
     assert answer == {"verdict": "done", "taken": False, "waiting": "a1"}
 
 
+@pytest.mark.process
 def test_a_reload_keeps_what_waits_as_far_as_it_is_marked(folder: Path, bus: Bus) -> None:
     with lumen.open(folder, bus=bus) as exhibition:
         ask = asker(exhibition, bus)

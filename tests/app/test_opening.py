@@ -87,6 +87,7 @@ def test_a_story_runs_to_its_end() -> None:
     assert lived > 1.0
 
 
+@pytest.mark.process
 def test_files_are_taken_refused_and_named(copy: Path) -> None:
     file = copy / "behaviors" / "tour.yaml"
     text = file.read_text("utf-8")

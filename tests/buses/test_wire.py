@@ -67,6 +67,7 @@ def marshalled(channel: int, method: Any, said: Mapping[str, Any], body: bytes) 
     return b"".join(one.marshal() for one in frames)
 
 
+@pytest.mark.network
 def test_a_message_is_written_as_pika_writes_it() -> None:
     draw = Random(98)
     for _ in range(100):
@@ -78,6 +79,7 @@ def test_a_message_is_written_as_pika_writes_it() -> None:
         assert wire.written == marshalled(channel, method, said, body)
 
 
+@pytest.mark.network
 @pytest.mark.parametrize(("text", "why"), [("x" * 256, "range"), ("\ud800", "surrogates")])
 def test_what_is_no_short_text_is_refused_before_anything_is_written(text: str, why: str) -> None:
     wire = Wire()
@@ -88,6 +90,7 @@ def test_what_is_no_short_text_is_refused_before_anything_is_written(text: str, 
     assert not wire.written
 
 
+@pytest.mark.network
 def test_what_comes_is_read_wherever_it_is_cut() -> None:
     draw, wire = Random(98), Wire()
     sent, had, rest, data = list[Seen](), list[tuple[int, bool]](), list[str](), b""
@@ -121,12 +124,14 @@ def test_what_comes_is_read_wherever_it_is_cut() -> None:
     assert wire.bytes_received == len(data), "by which pika knows that the broker lives"
 
 
+@pytest.mark.network
 def test_a_message_that_nobody_takes_goes_back() -> None:
     wire = Wire()
     wire.hear(marshalled(1, spec.Basic.Deliver("ctag2", 7, False, "amq.topic", "lumen.a"), {}, b"body"))
     assert (wire.seen, wire.dropped) == ([], [7])
 
 
+@pytest.mark.network
 def test_a_frame_without_its_end_is_no_frame() -> None:
     data = frame.Method(1, spec.Basic.Ack(1)).marshal()
     with pytest.raises(InvalidFrameError):

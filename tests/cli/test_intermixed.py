@@ -22,6 +22,7 @@ def test_what_is_wrong_ends_with_two(words: list[str], capsys: pytest.CaptureFix
     assert "usage: lumen" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_what_stands_behind_two_dashes_is_no_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["diff", "--", "--x"]) == 2
     assert "`--x` is no folder" in capsys.readouterr().err

@@ -27,6 +27,7 @@ def without(copy: Path) -> None:
     file.write_text(file.read_text("utf-8").replace(ANSWERS, ""), "utf-8")
 
 
+@pytest.mark.network
 def test_it_is_silenced_by_who_says_so_and_speaks_again(
     exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -39,6 +40,7 @@ def test_it_is_silenced_by_who_says_so_and_speaks_again(
     assert questions.silenced == ""
 
 
+@pytest.mark.network
 @pytest.mark.usefixtures("without")
 def test_where_there_is_none_it_says_so(exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["model", "off", str(copy)]) == 1

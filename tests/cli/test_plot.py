@@ -16,6 +16,8 @@ from lumen.fuzzy import Controller
 from lumen.motion import Motion
 from tests.tables import for_each
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 HEAD = "fuzzy/head.yaml"
 SEVERAL = {
     "inputs": {

@@ -48,6 +48,7 @@ def test_the_object_says_how_the_exhibition_is(copy: Path) -> None:
         assert later["since"] > status["since"]
 
 
+@pytest.mark.network
 @pytest.mark.slow
 def test_it_is_printed_for_people_and_programs(
     exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]
@@ -66,6 +67,7 @@ def test_it_is_printed_for_people_and_programs(
     assert said.endswith(f"{person()} stopped the robot: it moves only after `lumen resume`\n")
 
 
+@pytest.mark.network
 @pytest.mark.slow
 def test_it_goes_where_a_person_wants_it(
     exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

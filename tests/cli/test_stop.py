@@ -41,6 +41,7 @@ def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
     until(lambda: "watching" in exhibition.configuration)
 
 
+@pytest.mark.network
 def test_where_no_robot_answers_it_says_what_is_left(
     bus: Bus, copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -84,6 +84,7 @@ def run(exhibition: Exhibition, capsys: pytest.CaptureFixture[str]) -> Run:
     return command
 
 
+@pytest.mark.network
 @pytest.mark.slow
 def test_echo_prints_messages_and_nothing_that_a_terminal_obeys(run: Run) -> None:
     code, out, _ = run("topic", "echo", "sonar", "--count", "2")
@@ -98,6 +99,7 @@ def test_echo_prints_messages_and_nothing_that_a_terminal_obeys(run: Run) -> Non
     }
 
 
+@pytest.mark.network
 @pytest.mark.slow
 def test_list_hz_and_bw_measure(run: Run) -> None:
     listed: dict[str, dict[str, Any]] = {}
@@ -129,6 +131,7 @@ def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
     return list(json.loads(out)["topics"])
 
 
+@pytest.mark.network
 @pytest.mark.slow
 def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
     rest = '{"type": "motion", "method": "rest"}'
@@ -165,6 +168,7 @@ def test_what_can_t_be_is_one_line(capsys: pytest.CaptureFixture[str], words: li
     assert err.count("\n") == 1
 
 
+@pytest.mark.network
 def test_the_doctor_finds_what_is_silent(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.4)
     code, out, _ = run("doctor")

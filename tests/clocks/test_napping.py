@@ -98,6 +98,7 @@ def test_a_message_wakes_it(sleeper: Exhibition, long: None) -> None:
     hear.join()
 
 
+@pytest.mark.process
 def test_a_saved_file_wakes_it(sleeper: Exhibition, long: None) -> None:
     lived_until(sleeper, "dreaming")
     behavior = Path(sleeper.project.root) / "behaviors/sleeper.yaml"

@@ -44,6 +44,7 @@ def reasons(found: list[Any]) -> list[tuple[int, str]]:
     return [(one.status, one.reason) for one in found]
 
 
+@pytest.mark.process
 @pytest.mark.usefixtures("gone_wrong")
 def test_what_ends_a_job_is_said() -> None:
     [(status, killed), refused, (_, large)] = reasons(done("killed", "refused", "too large"))
@@ -52,6 +53,7 @@ def test_what_ends_a_job_is_said() -> None:
     assert "memory" in large
 
 
+@pytest.mark.process
 @pytest.mark.usefixtures("gone_wrong")
 def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "JOB_TIME", 0.5)
@@ -61,6 +63,7 @@ def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytes
     assert "ask again in a moment" in told[-1][1]
 
 
+@pytest.mark.process
 @pytest.mark.usefixtures("gone_wrong")
 def test_what_tells_a_job_may_fail() -> None:
     async def told() -> AsyncIterator[bytes]:
@@ -70,6 +73,7 @@ def test_what_tells_a_job_may_fail() -> None:
     assert [str(one) for one in done("echo", told=told())] == ["nobody answers"]
 
 
+@pytest.mark.process
 def test_entries_that_are_told_make_the_same_day(copy: Path) -> None:
     async def told() -> AsyncIterator[bytes]:
         yield json.dumps([{"position": 3, "at": 1.0, "heard": "heard", "data": {"result": "dance"}}]).encode()

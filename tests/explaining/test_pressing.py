@@ -3,6 +3,7 @@
 from collections import Counter
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 
 from lumen.interpreters.explaining.pressing import pressed, shown_buttons, takes
@@ -11,6 +12,8 @@ from lumen.language.events import Event
 from lumen.statechart import Machine
 from tests.explaining.running import inputs, live, timed
 from tests.statechart.oracle.generating import EVENTS, Data, machine_data
+
+pytestmark = pytest.mark.rest  # dear, and in real time
 
 NEXT, STOP = {"label": {"en": "Next", "de": "Weiter"}, "event": "next", "key": "n"}, {"label": "Stop", "event": "stop"}
 TOUR: dict[str, Any] = {

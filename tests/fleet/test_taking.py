@@ -19,6 +19,7 @@ from tests.fleet.houses import ROBOT, changed, ordered, project
 from tests.waiting import Collector, until
 
 
+@pytest.mark.process
 def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -111,6 +111,7 @@ def test_on_main_the_last_commit_is_looked_at(repository: Path) -> None:
     assert golden_guard.main(repository) == 0
 
 
+@pytest.mark.process
 def test_without_a_repository_that_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert golden_guard.main(tmp_path) == 0
     assert "no git repository" in capsys.readouterr().err

@@ -37,6 +37,7 @@ def duet(kind: str) -> tuple[House, dict[str, Exhibition]]:
     return House({name: show.node for name, show in shows.items()}, together=True), shows
 
 
+@pytest.mark.process
 def test_they_speak_in_turns(capsys: pytest.CaptureFixture[str]) -> None:
     assert check(DUET) == []
     assert main(["run", str(DUET), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0

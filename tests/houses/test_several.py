@@ -95,6 +95,7 @@ def test_a_lost_robot_ends_alone(two: Path, monkeypatch: pytest.MonkeyPatch) -> 
         assert shows["ben"].now == pytest.approx(1.0)
 
 
+@pytest.mark.process
 def test_each_has_its_folder_and_its_journal(two: Path) -> None:
     homes = {}
     for name in NAMES:
@@ -107,6 +108,7 @@ def test_each_has_its_folder_and_its_journal(two: Path) -> None:
     assert homes == {name: two / ".lumen/robots" / name for name in NAMES}
 
 
+@pytest.mark.network
 def test_the_command_line_runs_all_of_them(two: Path, capsys: pytest.CaptureFixture[str]) -> None:
     flags = ["--robot", "recording", "--story", "visitor", "--speed", "max"]
     assert main(["run", str(two), *flags]) == 0

@@ -36,6 +36,7 @@ def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return next(folder.glob("*.tar.gz"))
 
 
+@pytest.mark.process
 def test_what_an_index_asks_is_said(metadata: email.message.Message) -> None:
     named = metadata.get_all("Classifier", [])
     assert len(named) > 8

@@ -17,6 +17,8 @@ from lumen.runtime.causes import caused
 from tests.tables import for_each
 from tests.waiting import Collector
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 
 @pytest.fixture
 def bus() -> Iterator[Bus]:

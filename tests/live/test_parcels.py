@@ -47,6 +47,7 @@ def test_a_project_travels_after_its_stories_were_played(copy: Path) -> None:
     assert DeltaDecoder().unpack(DeltaEncoder().pack(project)) == project
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_the_same_process_judges_again_and_again(copy: Path) -> None:
     jury = ValidationWorker(copy)

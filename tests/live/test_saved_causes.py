@@ -14,6 +14,8 @@ from tests.live.shows import Live
 from tests.tour.names import ROOT
 from tests.waiting import Collector
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 HELLO = "behaviors/hello.yaml"
 
 

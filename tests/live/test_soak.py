@@ -13,6 +13,7 @@ def holds(found: Outcome) -> None:
     assert found.handles[1] <= found.handles[0]
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_fifteen_edits_under_load() -> None:
     holds(soak(15, quiet=0.12))

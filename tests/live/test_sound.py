@@ -109,6 +109,7 @@ def test_a_track_mixes_what_overlaps_and_ends_what_was_cut() -> None:
     assert loud[76:].max() == 0.0
 
 
+@pytest.mark.process
 def test_it_is_played_by_the_player_of_this_machine(
     project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -19,6 +19,8 @@ from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
 from tests.live.shows import Live
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 ROUTE = "routes:\n  load: {key: lumen.load, direction: in, event: load}\n"
 REGION = """
   load:

@@ -13,6 +13,8 @@ from lumen.language.projects import Project
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 VISITORS = {"Ana": "visitor", "Ben": "indonesian"}
 
 

@@ -329,6 +329,7 @@ def _moved(sender: SimpleUDPClient, moved: Collector) -> bool:
     return bool(moved.messages)
 
 
+@pytest.mark.network
 def test_a_lamp_by_dmx(museum: Callable[..., Project], stand: Make) -> None:
     link = DmxLink(7, "127.0.0.1", {"lamp": {"level": 1, "on": 512}})
     came, ended = list[Any](), list[str]()
@@ -373,6 +374,7 @@ def test_dmx_is_kept_alive_and_darkens_nothing_before_its_first_message(
     assert {packet[126] for packet in packets} == {255}
 
 
+@pytest.mark.network
 def test_a_saved_file_connects_anew(desk: tuple[int, list[Any]], museum: Callable[..., Project], stand: Make) -> None:
     port, came = desk
     here = stand(museum(osc=OscLink("127.0.0.1", port, routes={"mood": AddressMapping("/before")})))

@@ -6,6 +6,8 @@ import pytest
 
 from tests.mutation.__main__ import WELL, survey, table
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 SEED = 20_000
 
 

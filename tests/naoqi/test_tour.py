@@ -9,6 +9,8 @@ from lumen.robots.recording import RecordingRobot
 from tests.naoqi.lockstep import Lockstep
 from tests.tour.playing import Run, play
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 
 def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:
     return play(project, project.stories["visitor"], robot)

@@ -35,6 +35,7 @@ def tour(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.network
 def test_a_visit_is_recorded_with_the_robot_s_links(tour: Path) -> None:
     found = dict(bodies(tour))
     frames = form_class("FrameTransforms").FromString(found["avatar.NAO.data.joint.frames"])

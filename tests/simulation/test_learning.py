@@ -15,6 +15,8 @@ from gymnasium.utils.env_checker import check_env
 import lumen
 from lumen.robots.simulation.entity import Nao
 
+pytestmark = pytest.mark.rest  # dear, and in real time
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -37,6 +37,7 @@ def test_pepper_is_guided_through_by_the_recording_robot(monkeypatch: pytest.Mon
     assert not rehearsal.failed
 
 
+@pytest.mark.process
 def test_a_body_without_a_model_is_not_simulated(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

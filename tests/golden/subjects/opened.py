@@ -3,6 +3,7 @@
 Time is that of the recording robot but for `none`, whose five ticks are real ones.
 """
 
+import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -23,6 +24,7 @@ TICKS = 8
 def record(folder: Path) -> None:
     with tempfile.TemporaryDirectory() as place:
         one, two = small(Path(place, "one")), small(Path(place, "two"), robots=2)
+        tour = Path(shutil.copytree(PROJECTS / "tour", Path(place, "tour")))
         modules = small(Path(place, "modules"), more="modules: {memory: {here: true}, social: {here: true}}\n")
 
         def opened(name: str, project: Path, **options: Any) -> None:
@@ -37,8 +39,8 @@ def record(folder: Path) -> None:
         opened("recording-two-robots", two)
         opened("recording-modules", modules)
         opened("none", one, robot="none")
-        opened("tour", PROJECTS / "tour")
-        for name, project, story in (("small", one, "visitor"), ("tour", PROJECTS / "tour", "visitor")):
+        opened("tour", tour)
+        for name, project, story in (("small", one, "visitor"), ("tour", tour, "visitor")):
             loaded = lumen.load(project)
 
             def rehearse(loaded: Any = loaded, story: str = story) -> None:

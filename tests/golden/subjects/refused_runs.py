@@ -24,6 +24,5 @@ def record(folder: Path) -> None:
             shutil.copytree(PROJECTS / "minimal", work / name)
         file = work / "broken/lumen.yaml"
         file.write_text(file.read_text("utf-8").replace("story: visitor", "story: visiter"), "utf-8")
-        for words in CALLS:
-            texts.append(f"$ lumen run {' '.join(words)}\n{lumen(work, 'run', *words)}")
+        texts.extend(f"$ lumen run {' '.join(words)}\n{lumen(work, 'run', *words)}" for words in CALLS)
     (folder / "calls.txt").write_text("\n".join(texts), "utf-8")
