@@ -16,7 +16,7 @@ from lumen.fuzzy import Controller
 from lumen.motion import Motion
 from tests.tables import for_each
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 HEAD = "fuzzy/head.yaml"
 SEVERAL = {

@@ -13,7 +13,7 @@ from lumen.statechart import Machine
 from tests.explaining.running import inputs, live, timed
 from tests.statechart.oracle.generating import EVENTS, Data, machine_data
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 NEXT, STOP = {"label": {"en": "Next", "de": "Weiter"}, "event": "next", "key": "n"}, {"label": "Stop", "event": "stop"}
 TOUR: dict[str, Any] = {

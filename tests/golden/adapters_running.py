@@ -237,7 +237,7 @@ def _empty(cell: Any) -> bool:
 
 def main(arguments: list[str]) -> int:
     """The command line, in this process."""
-    from lumen.cli.main import main as lumen
+    from lumen.cli.main import main
 
     sys.argv = ["lumen", *arguments]
-    return lumen(arguments)
+    return main(arguments)

@@ -47,6 +47,7 @@ def test_what_an_index_asks_is_said(metadata: email.message.Message) -> None:
     assert metadata["Keywords"]
 
 
+@pytest.mark.process
 def test_without_an_address_nothing_leads_nowhere(metadata: email.message.Message) -> None:
     assert metadata.get_all("Project-URL") is None
     text = str(metadata.get_payload())

@@ -18,7 +18,7 @@ from lumen.runtime.home import Home, home_of
 from lumen.runtime.journal import Journal
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 TOUR = "behaviors/tour.yaml"
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"

@@ -17,7 +17,7 @@ from lumen.runtime.causes import caused
 from tests.tables import for_each
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 
 @pytest.fixture

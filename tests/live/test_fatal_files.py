@@ -18,7 +18,7 @@ from lumen.loading import kept_contents
 from lumen.loading.files import fingerprint, read_files
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 SORRY, FATAL, PARDON = "en: I am sorry, I did not understand that.", "en: FATAL", "en: Come again, please?"
 READER = """

@@ -12,7 +12,7 @@ from lumen.app.reload.validation_worker import COMMAND, ValidationWorker, load_a
 from lumen.loading.files import read_files
 from tests.waiting import until
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 TOUR = "behaviors/tour.yaml"
 SORRY = b"en: I am sorry, I did not understand that."

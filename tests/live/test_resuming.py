@@ -26,7 +26,7 @@ from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
 

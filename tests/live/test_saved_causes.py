@@ -14,7 +14,7 @@ from tests.live.shows import Live
 from tests.tour.names import ROOT
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 HELLO = "behaviors/hello.yaml"
 

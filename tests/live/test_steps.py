@@ -19,7 +19,7 @@ from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
 from tests.live.shows import Live
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 ROUTE = "routes:\n  load: {key: lumen.load, direction: in, event: load}\n"
 REGION = """

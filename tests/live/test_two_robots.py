@@ -13,7 +13,7 @@ from lumen.language.projects import Project
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 VISITORS = {"Ana": "visitor", "Ben": "indonesian"}
 

@@ -24,7 +24,7 @@ from lumen.runtime.inputs.redaction import redact
 from tests.live.shows import Live
 from tests.tour.names import ROOT
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 HELLO = "behaviors/hello.yaml"
 VISITS = 3

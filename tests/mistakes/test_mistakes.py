@@ -10,6 +10,8 @@ from tests.mistakes.rows import PROJECTS, Row, rows, shipped
 from tests.mistakes.scores import Judged, judge, score
 from tests.tables import for_each
 
+pytestmark = pytest.mark.rest  # dear
+
 
 @cache
 def judged() -> tuple[Judged, ...]:

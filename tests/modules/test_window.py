@@ -21,7 +21,7 @@ from tests.modules.conftest import Stand, with_options
 from tests.modules.test_eyes import body, photographed
 from tests.waiting import HANG, until
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 __all__ = ["photographed"]
 

@@ -6,7 +6,7 @@ import pytest
 
 from tests.mutation.__main__ import WELL, survey, table
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 SEED = 20_000
 

@@ -9,7 +9,7 @@ from lumen.robots.recording import RecordingRobot
 from tests.naoqi.lockstep import Lockstep
 from tests.tour.playing import Run, play
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 
 def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:

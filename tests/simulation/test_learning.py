@@ -15,7 +15,7 @@ from gymnasium.utils.env_checker import check_env
 import lumen
 from lumen.robots.simulation.entity import Nao
 
-pytestmark = pytest.mark.rest  # dear, and in real time
+pytestmark = pytest.mark.rest  # dear
 
 ROOT = Path(__file__).parents[2]
 

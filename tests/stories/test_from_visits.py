@@ -27,6 +27,8 @@ from lumen.loading.files import PROJECT_FOLDERS, read_files
 from lumen.rules import check_files
 from lumen.runtime.inputs.redaction import redact
 
+pytestmark = pytest.mark.rest  # dear
+
 ROOT = Path(__file__).parents[2]
 EXAMPLES = {"tour": ROOT, "museum": ROOT / "examples" / "museum", "minimal": ROOT / "examples" / "minimal"}
 LONG = {

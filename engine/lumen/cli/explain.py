@@ -86,4 +86,11 @@ def _sheet(sheet: Example, on: bool) -> Iterator[str]:
             yield f"  {paint('   |', 'dim', on=on)} {' ' * (sheet.mark.first - 1)}{paint('^' * width, 'red', on=on)}"
 
 
-_NOTES = {"latin-1": "saved as Latin-1", "folder": "a folder of that name", "none": "not there", "before": "as it runs"}
+_NOTES = {
+    "latin-1": "saved as Latin-1",
+    "folder": "a folder of that name",
+    "none": "not there",
+    "before": "as it runs",
+    "physics": "found with --physics",
+    "whole": "the whole file",
+}
