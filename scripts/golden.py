@@ -1,6 +1,6 @@
-"""Record goldens: `python scripts/golden.py [SUBJECT …]`, all of them if none is named.
+"""Record goldens: `python scripts/golden.py [SUBJECT …]`, all of them by default.
 
-A recording changes only in a commit of its own, with a record in docs/decisions/ that says why.
+A recording changes only in a commit of its own, with its reason in docs/decisions/.
 `tests` is no subject: it makes the number of tests of now the floor that `scripts/collected.py` compares with.
 """
 
@@ -19,7 +19,7 @@ COUNTED = "tests"
 
 
 def main(wanted: list[str]) -> int:
-    """Record the subjects and print what changed; 2 for a name that is none."""
+    """Record the subjects and print what changed; 2 for an unknown name."""
     if unknown := sorted(set(wanted) - {*names(), COUNTED}):
         print(f"unknown {', '.join(unknown)}: choose from {', '.join([*names(), COUNTED])}", file=sys.stderr)
         return 2

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 RECORDED = "tests/golden/recorded/"
 FLOORS = f"{RECORDED}collected/floors.json"
-"""How many tests there are at least, by folder: tests/golden/collected.py."""
+"""The least number of tests, by folder: tests/golden/collected.py."""
 DECISIONS = "docs/decisions/"
 ENGINE = "engine/"
 MOST_LINES = 50

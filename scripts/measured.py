@@ -1,4 +1,4 @@
-"""How much time a command takes, on the wall and of the processor: `python scripts/measured.py COMMAND …`.
+"""Measure a command, on the wall and in processor time: `python scripts/measured.py COMMAND …`.
 
 The processor time is that of all processes that it starts.
 """

@@ -39,11 +39,11 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.yaml")
 BUDGET = 60.0
 """Processor time of a mutant [s]."""
 IDLE = 600.0
-"""How long a test may neither end nor reach the limit in processor time [s]."""
+"""The limit on the wall for a test that does not end [s]."""
 HANGS = (10.0, 10.0)
 """A test hangs if it takes longer than this [s] and so many times as long as in the recording."""
 OVERHEAD = 0.005
-"""What pytest itself adds to each test [s]."""
+"""The time that pytest itself adds to each test [s]."""
 BATCHES = (0.5, 4.0, 20.0)
 """After how much recorded time the next tests are collected [s]: most mutants die before."""
 CLASSES = (0.05, 0.5, 5.0)
@@ -68,7 +68,7 @@ class Mutant(NamedTuple):
         return f"{self.file}:{self.line} {self.before} -> {self.after}"
 
     def described(self) -> dict[str, Any]:
-        """What is kept of it; `file`, `in` and `change` find it again among the equivalent ones."""
+        """The row that is kept of it; `file`, `in` and `change` find it again among the equivalent ones."""
         inner = self.file.removeprefix(f"{ENGINE}/")
         folder = inner.partition("/")[0] if "/" in inner else "."
         change = f"{self.before} -> {self.after}"
@@ -167,7 +167,7 @@ def batches(tests: Iterable[str], cpu: Mapping[str, float]) -> list[list[str]]:
 
 
 def outcome(ended: Ended, cpu: Mapping[str, float]) -> str:
-    """What became of a mutant whose tests ended so; out of time though no test was slow, it survived."""
+    """Return the outcome of a mutant by how its tests ended; it survives a time-out without a slow test."""
     usual = cpu.get(ended.test, 1.0)
     if ended.how == "failed":
         return "killed"

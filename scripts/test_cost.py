@@ -46,7 +46,7 @@ def main() -> int:
 
 
 def read(report: Path) -> dict[str, float]:
-    """The processor time of each test in a report of pytest [s]."""
+    """Return the processor time of each test in a report of pytest [s]."""
     found: dict[str, float] = {}
     for case in ElementTree.parse(report).iter("testcase"):
         for entry in case.iter("property"):
@@ -56,7 +56,7 @@ def read(report: Path) -> dict[str, float]:
 
 
 def folders(costs: dict[str, float]) -> dict[str, tuple[int, float]]:
-    """How many tests each folder has, and what they cost [s], the dearest first."""
+    """Return the number of tests and their cost [s] by folder, the dearest first."""
     found: dict[str, list[float]] = defaultdict(list)
     for name, cost in costs.items():
         found[name.split(".")[1].split("::")[0]].append(cost)

@@ -156,7 +156,7 @@ def _child(data: Path) -> Iterator[tuple[str, str, list[Arc]]]:
 
 
 def unpacked(arc: int) -> Arc:
-    """The two lines of an arc as coverage.py's tracer packs it; a negative one stands for an entry or an exit."""
+    """The two lines of an arc as coverage.py's tracer packs it; a negative line is an entry or an exit."""
     start, end = arc & 0xFFFFF, arc >> 20 & 0xFFFFF
     return -start if arc & 1 << 40 else start, -end if arc & 1 << 41 else end
 
@@ -181,7 +181,7 @@ def moved(before: str, after: str) -> dict[int, int]:
 
 
 class Lost(NamedTuple):
-    """What one run executed of a file and another did not, in the lines of the later one."""
+    """Return the lines of a file that one run executed and another did not, as numbered in the later one."""
 
     lines: list[int]
     branches: list[Arc]

@@ -26,9 +26,9 @@ LINKED = (".git", ".cache")
 LEFT_OUT = (*LINKED, ".venv", ".pytest_cache", ".mypy_cache", ".ruff_cache", ".import_linter_cache", "build", ".lumen")
 PR_SET_CHILD_SUBREAPER = 36
 LOOK = 0.5
-"""How often the processes are looked at [s]."""
+"""The pause between two looks at the processes [s]."""
 MEMORY = 6 << 30
-"""How much one process may hold [bytes]."""
+"""The memory limit of one process [bytes]."""
 PASSED = (0, 5)
 """How pytest ends if no test failed, or none was left to run."""
 

@@ -17,7 +17,7 @@ PRESSES = "return document.querySelector('rest-button[main]').presses"
 
 
 class Viewer:
-    """A window of the browser; `open` begins a page as somebody who was never here sees it.
+    """A window of the browser; `open` begins a page as a first visitor sees it.
 
     It keeps what pages complain of; an `overhearing` one what they ask for, too, which is dear. Before each page the
     script `first` runs.
@@ -109,7 +109,7 @@ class Viewer:
         return [str(m["params"]["request"]["url"]) for m in own if m["method"] == "Network.requestWillBeSent"]
 
     def log(self, kind: str) -> list[dict[str, Any]]:
-        """What was written since it was asked last: the driver hears pages of other contexts, too."""
+        """Return the entries since the last call: the driver receives those of other contexts, too."""
         return list(self.driver.execute("getLog", {"type": kind})["value"])
 
     def close(self) -> None:

@@ -1,1 +1,1 @@
-"""What Lumen did at d475a3ac, kept to the byte, so that code can move without changing what it does."""
+"""Recordings of Lumen at d475a3ac, to the byte: code can move without changing its behaviour unnoticed."""

@@ -1,4 +1,4 @@
-"""How many tests pytest collects, by folder of tests/, so that a file that is silently left out is noticed.
+"""The number of tests that pytest collects, by folder of tests/: a file that is silently left out is noticed.
 
 Two things are compared. Each function `test_…` that is written in a file of tests/ must be collected: this needs no
 record, and finds a file with a wrong name, a class that pytest does not collect, and a name that is used twice. And
@@ -93,6 +93,6 @@ def raise_floors(names: list[str]) -> None:
 
 
 def _folder(name: str) -> str:
-    """Return the folder of tests/ that a file or test is in, `tests` for what is in none."""
+    """Return the folder of tests/ that a file or test is in, `tests` if it is in none."""
     parts = name.partition("::")[0].split("/")
     return "/".join(parts[:2]) if len(parts) > 2 else "tests"

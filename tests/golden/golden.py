@@ -25,7 +25,7 @@ PROJECTS = HERE / "projects"
 SHIPPED = ("minimal", "museum", "tour")
 """Those of them that come with Lumen."""
 MOST_LINES = 40
-"""How much of a difference a failure shows, for each file."""
+"""The number of lines of a difference that a failure shows, for each file."""
 
 
 def names() -> list[str]:
@@ -57,7 +57,7 @@ def record(name: str, folder: Path) -> None:
 
 
 def explanations(name: str, recorded: Path, now: Path) -> list[str]:
-    """Return what a subject itself says of a difference."""
+    """Return a subject's own explanations of a difference."""
     explain: Callable[[Path, Path], Iterable[str]] = getattr(subject(name), "explain", lambda *_: ())
     return list(explain(recorded, now))
 

@@ -18,7 +18,7 @@ BEGUN = (
     "export ", "export scxml ", "export fll ", "goto ", "say ", "why ", "memory ", "language ", "fleet ", "schema m",
     "new --like ", "completion ", "reload ", "import ", "plot ", "--ve", "run --frobnicate ", "lint -- ",
 )  # fmt: skip
-"""What is typed behind `lumen` in the tour when Tab is pressed; besides each verb alone, and `--` behind it."""
+"""The words typed after `lumen` in the tour when Tab is pressed; besides each verb alone, and `--` behind it."""
 
 
 def record(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""What `lumen explain` tells of each code of lint: its meaning, and examples with the marks of their findings."""
+"""The output of `lumen explain` for each code of lint: its meaning, and examples with the marks of their findings."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What `lumen export` writes of the frozen projects: SCXML, XState, diagrams, controllers, and AsyncAPI documents."""
+"""The output of `lumen export` for the frozen projects: charts, diagrams, controllers and AsyncAPI."""
 
 import json
 import shutil
@@ -10,7 +10,7 @@ from tests.golden.golden import PROJECTS, SHIPPED
 
 SUITE = "test"
 FORMATS = {"scxml": "scxml", "xstate": "json", "mermaid": "mmd", "dot": "dot"}
-"""What a behaviour is written as, and the ending of such a file."""
+"""The formats of a behaviour, and the ending of such a file."""
 
 
 def record(folder: Path) -> None:

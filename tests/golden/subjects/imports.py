@@ -1,4 +1,4 @@
-"""What `lumen import` makes of files of other tools, and what it reports: the inputs of tests/formats, and robots."""
+"""The output and the findings of `lumen import` for files of other tools: the inputs of tests/formats, and robots."""
 
 import json
 import shutil
