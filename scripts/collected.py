@@ -1,6 +1,6 @@
 """Say which tests are silently not collected: `python scripts/collected.py`, a part of `make check`.
 
-It compares the collected tests with those in the files, and with the floors that `python scripts/golden.py tests` raises.
+It compares the tests that pytest collects with those that are written, and with the floors (`scripts/golden.py tests`).
 """
 
 import sys
