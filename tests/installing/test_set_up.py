@@ -124,10 +124,10 @@ def test_whatever_else_pip_fails_of_is_printed(tmp_path: Path) -> None:
 
 def test_checks_that_are_well_print_a_line_and_one_that_fails_all_that_it_printed(tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
-    for tool in ("ruff", "mypy", "lint-imports"):
+    for tool in ("ruff", "mypy", "lint-imports", "python"):
         checkout.write(tmp_path / ".venv/bin" / tool, "echo Success: 1 file")
     done = checkout.run("scripts/check.sh")
-    assert (done.returncode, done.stdout) == (0, "style, types and floors: well\n")
+    assert (done.returncode, done.stdout) == (0, "style, types, floors and order: well\n")
     checkout.write(tmp_path / ".venv/bin/mypy", "echo a.py: error; echo and a hint >&2; exit 1")
     done = checkout.run("scripts/check.sh")
     assert done.returncode == 1

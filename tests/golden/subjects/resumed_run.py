@@ -54,7 +54,7 @@ def started(root: Path, *options: str) -> Iterator[str]:
     words = ["run", str(root), "--robot", "recording", "--speed", "max", "--for", "45s", "--reload", "off", *options]
     with (
         patch("time.time", lambda: now),
-        patch.dict(os.environ, TZ="Etc/UTC"),
+        patch.dict(os.environ, TZ="Etc/UTC", COLUMNS="120"),
         patch.object(sys, "stdin", None),
         redirect_stdout(out),
         redirect_stderr(errors),

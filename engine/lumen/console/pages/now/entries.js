@@ -1,5 +1,5 @@
 // The latest of what happened; each opens its why.
-import { get, live } from "../live.js";
+import { JOB, get, live } from "../live.js";
 import { Dialog, Part, Place, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
 import { isTrouble } from "./troubles.js";
 
