@@ -62,7 +62,7 @@ broker: .venv/test
 	@$(WITH) $(BIN)/python -m tests.rabbitmq
 
 check: .venv/test
-	@sh scripts/check.sh
+	@$(WITH) sh scripts/check.sh
 
 docs: .venv/docs
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict

@@ -10,6 +10,7 @@ A first recording needs no record, and neither does a floor of the counted tests
 """
 
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -116,7 +117,9 @@ def _length(file: Path) -> int:
 
 
 def _git(root: Path, *words: str) -> list[str]:
-    """Return the lines that git prints, none if it fails."""
+    """Return the lines that git prints; none if it fails, or if there is no git."""
+    if not shutil.which("git"):
+        return []
     command = ["git", "-c", "core.quotePath=false", *words]
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
     return done.stdout.splitlines() if done.returncode == 0 else []

@@ -3,15 +3,21 @@
 The processor time is that of all processes that it starts.
 """
 
+from __future__ import annotations
+
 import ctypes
 import os
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
+PATIENCE = 60.0
+"""How long what a command leaves behind may take to end by itself [s]."""
 
 
 class Measured(NamedTuple):
@@ -26,7 +32,7 @@ class Measured(NamedTuple):
 
 
 def measured(command: Sequence[str], environment: Mapping[str, str] | None = None) -> Measured:
-    """Run a command until all its processes have ended, those that outlive their parents included.
+    """Run a command until all its processes have ended; kill and name those that do not end.
 
     On Linux, orphans become children of this process, which waits for them: a browser or a broker that was killed
     counts. Elsewhere they do not.
@@ -34,12 +40,37 @@ def measured(command: Sequence[str], environment: Mapping[str, str] | None = Non
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     wall, cpu = time.monotonic(), _children()
-    code = subprocess.run(command, env=environment, check=False).returncode
-    try:
-        while True:
+    process = subprocess.Popen(command, env=environment)
+    code = process.wait()
+    left = _left(time.monotonic() + PATIENCE)
+    if left:
+        print(f"left behind by {' '.join(command)}: {', '.join(left)}", file=sys.stderr)
+    return Measured(code, time.monotonic() - wall, _children() - cpu)
+
+
+def _left(deadline: float) -> list[str]:
+    """Wait for the orphans; kill and return those that are there after the deadline."""
+    killed: list[str] = []
+    while True:
+        try:
+            pid, _ = os.waitpid(-1, os.WNOHANG)
+        except ChildProcessError:
+            return killed
+        if pid == 0 and time.monotonic() > deadline:
+            for child in _own_children():
+                killed.append(f"{child} {_name(child)}")
+                os.kill(child, signal.SIGKILL)
             os.wait()
-    except ChildProcessError:
-        return Measured(code, time.monotonic() - wall, _children() - cpu)
+        elif pid == 0:
+            time.sleep(0.1)
+
+
+def _own_children() -> list[int]:
+    return [int(child) for child in Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()]
+
+
+def _name(pid: int) -> str:
+    return Path(f"/proc/{pid}/comm").read_text().strip()
 
 
 def _children() -> float:

@@ -13,8 +13,11 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 unpacked=${UNPACKED:-$here/.cache/debian}
 log=$unpacked.log
 mkdir -p "$(dirname "$unpacked")"
-rm -f "$unpacked.missing"
 wanted=$(sed 's/#.*//' "$1")
+if [ -f "$unpacked.missing" ]; then  # what another list lacks stays
+    for package in $(printf '%s\n' "$wanted" | awk '{ print $1 }'); do sed -i "/^$package /d" "$unpacked.missing"; done
+    [ -s "$unpacked.missing" ] || rm -f "$unpacked.missing"
+fi
 
 is_there() {  # a package, or what serves in its place
     if [ -e "$unpacked/$1" ] || awk -v package="$1" 'BEGIN { RS = ""; found = 1 }

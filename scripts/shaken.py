@@ -184,7 +184,17 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
     log = LOGS / f"{plan.condition}-{plan.seed}.log"
     outcomes = log.with_suffix(".jsonl")
     outcomes.write_text("")
-    command: list[object] = [sys.executable, "-m", "pytest", "-n", arguments.workers, "--dist", "loadgroup"]
+    command: list[object] = [
+        "sh",
+        ROOT / "scripts/with_packages.sh",
+        sys.executable,
+        "-m",
+        "pytest",
+        "-n",
+        arguments.workers,
+        "--dist",
+        "loadgroup",
+    ]
     command += ["--no-loadscope-reorder", "-p", "tests.shuffled", "--order-seed", plan.seed, "--outcomes", outcomes]
     command += ["-m", "not soak", *selection(arguments)]
     with ExitStack() as stack, log.open("w") as told:

@@ -31,7 +31,18 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         how = ["-n", given.workers, "--dist", "loadgroup", "--no-loadscope-reorder", "--suite", given.suite]
-        command = [sys.executable, "-m", "pytest", *how, "-m", "not soak", f"--junitxml={report}", *given.arguments]
+        beside = ["sh", str(Path(__file__).with_name("with_packages.sh"))]
+        command = [
+            *beside,
+            sys.executable,
+            "-m",
+            "pytest",
+            *how,
+            "-m",
+            "not soak",
+            f"--junitxml={report}",
+            *given.arguments,
+        ]
         run = measured(command)
         if not report.exists():
             return run.code

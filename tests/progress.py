@@ -177,7 +177,8 @@ class Progress:
 
     def _words(self) -> str:
         option = self._config.option
-        return f"{self._workers} {option.markexpr} {option.keyword} {' '.join(self._config.args)}"
+        suite = self._config.getoption("suite", "all")
+        return f"{self._workers} {suite} {option.markexpr} {option.keyword} {' '.join(self._config.args)}"
 
     def _took(self) -> dict[str, tuple[int, float]]:
         cache = getattr(self._config, "cache", None)

@@ -69,7 +69,11 @@ class Chromium:
         with log.open("wb") as file:
             self._process: Guarded[bytes] = Guarded(line, stdout=file, stderr=STDOUT)
         ended = self._process.poll
-        until(lambda: ended() is not None or (told.exists() and told.read_text().count("\n")), HANG)
+        try:
+            until(lambda: ended() is not None or (told.exists() and told.read_text().count("\n")), HANG)
+        except AssertionError:
+            self.close()
+            raise
         if ended() is not None:
             pytest.fail(f"Chromium did not start; it printed:\n{log.read_text(errors='replace')[-2000:]}")
         port, path = told.read_text().split()

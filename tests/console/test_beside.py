@@ -33,7 +33,7 @@ def test_it_is_begun_begun_again_and_ended(copy: Path, monkeypatch: pytest.Monke
         except OSError:
             return False
 
-    until(serves, 60.0)
+    until(serves)
     until(lambda: serves() and f"The console is at http://127.0.0.1:{port}/ (Ctrl-C ends it)" in told)
     first = part.pid
     assert first
@@ -43,8 +43,8 @@ def test_it_is_begun_begun_again_and_ended(copy: Path, monkeypatch: pytest.Monke
         part.tick(0.0, ())
         return part.pid not in (None, first)
 
-    until(another, 60.0)
-    until(serves, 60.0)
+    until(another)
+    until(serves)
     assert any(line.startswith("the console has ended (-9)") for line in told)
     part.close()
     with pytest.raises(OSError, match="refused"):
@@ -64,6 +64,6 @@ def test_why_it_cannot_begin_is_told(copy: Path) -> None:
             part.tick(0.0, ())
             return any("is begun again in" in line for line in told)
 
-        until(ended, 60.0)
+        until(ended)
         until(lambda: part.tick(0.0, ()) or any(f"port {port} of 127.0.0.1 can't be had" in line for line in told))
         part.close()

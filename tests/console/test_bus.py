@@ -78,7 +78,7 @@ def test_a_broker_that_is_away_is_said_and_gone_on_with(copy: Path, own_broker: 
             assert answer.data["seconds"] < 1.0
             assert browser.command("say", text="Hello").data["state"] == "unsent"
             own_broker.start()
-            until(lambda: browser.robots[0]["connected"], 60.0)
+            until(lambda: browser.robots[0]["connected"])
             answer = browser.command("rest")
             assert answer.data["state"] == "finished", answer.data
             until(lambda: "stop" in [event.data.get("heard") for event in stream.of("entry")])
@@ -99,9 +99,9 @@ def test_a_robot_whose_process_is_gone_is_not_said_to_rest(copy: Path, broker: R
         served = Served(copy, bus=broker.url)
         browser = served.browser
         try:
-            until(lambda: any("robot" in p["parts"] for r in browser.robots for p in r["processes"]), 120.0)
-            until(lambda: browser.robots[0]["connected"], 120.0)
-            until(lambda: browser.command("rest").data["state"] == "finished", 60.0)
+            until(lambda: any("robot" in p["parts"] for r in browser.robots for p in r["processes"]))
+            until(lambda: browser.robots[0]["connected"])
+            until(lambda: browser.command("rest").data["state"] == "finished")
             browser.command("resume")
             os.killpg(robot.pid, signal.SIGKILL)
             robot.wait()
@@ -109,7 +109,7 @@ def test_a_robot_whose_process_is_gone_is_not_said_to_rest(copy: Path, broker: R
                 answer = browser.command("rest")
                 assert answer.data["state"] in ("unsent", "failed")
                 assert "may still move" in answer.data["reason"] or "nobody is there" in answer.data["reason"]
-                until(lambda: "stop" in [event.data.get("heard") for event in stream.of("entry")], 60.0)
+                until(lambda: "stop" in [event.data.get("heard") for event in stream.of("entry")])
         finally:
             served.close()
             os.killpg(brain.pid, signal.SIGKILL)

@@ -109,7 +109,7 @@ def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
 
     with Stream(browser, "/api/poses?robot=NAO") as stream:
         for angle in (0.5, -0.25):
-            until(partial(turned, angle), 60.0)
+            until(partial(turned, angle))
         child = poses._child
         assert child
     until(lambda: child.returncode is not None)

@@ -164,7 +164,7 @@ def test_a_button_is_pressed_held_or_asked_about_with_the_mouse_and_by_its_key(v
     assert never.get_attribute("aria-disabled") == "true"
     assert "context.n < 0" in str(never.get_attribute("aria-description"))
     told = "return [...document.querySelectorAll('.entry-text')].map((one) => one.textContent).join()"
-    until(lambda: "by Aisyah" in viewer.run(told), 20)
+    until(lambda: "by Aisyah" in viewer.run(told))
 
 
 def test_what_waits_for_go_is_asked_about_and_goes_or_stays(viewer: Viewer, hall: Hosted) -> None:

@@ -7,6 +7,7 @@ import golden_guard
 import pytest
 
 from tests.guarded import run_guarded
+from tests.provided import program
 
 GOLDEN = "tests/golden/recorded/runs/tour.txt"
 RECORD = "docs/decisions/200-why.md"
@@ -27,7 +28,7 @@ def repository(tmp_path: Path) -> Path:
 
 def git(folder: Path, *words: str) -> None:
     who = ("-c", "user.name=Ada", "-c", "user.email=ada@example.org")
-    run_guarded(["git", *who, *words], cwd=folder, check=True)
+    run_guarded([program("git"), *who, *words], cwd=folder, check=True)
 
 
 def write(folder: Path, files: dict[str, str]) -> None:
