@@ -57,6 +57,8 @@ class Group:
             _, controllers, path = line.split(":", 2)
             mounted = [CGROUPS] if not controllers else [CGROUPS / one for one in controllers.split(",")]
             for mount in {folder.resolve() for folder in mounted if folder.name in ("cgroup", "cpu", "cpuacct")}:
+                if not (mount / "cgroup.procs").exists():
+                    continue  # a folder that only holds the groups of version 1
                 with suppress(OSError):
                     (folder := mount / path.strip("/") / name).mkdir()
                     self.folders.append(folder)
