@@ -9,6 +9,8 @@ SPEED ?= 4
 TESTS ?= tests
 # What the tests of `make test` take of the processor, to print how long they will take [s].
 CPU := 400
+# The same for the rest, which waits half of its time for processes, brokers and the browser.
+REST := 2200
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 PYTEST = $(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder
 LEFT_OUT := soak or slow or broker or physics or npm
@@ -52,7 +54,7 @@ tested:
 test-all: test rest
 
 rest: setup
-	@$(PYTEST) -m "not soak" --suite rest
+	@$(PYTEST) -m "not soak" --suite rest --expect-cpu $(REST)
 
 soak: setup check
 	@$(PYTEST) -m soak -p tests.soaking

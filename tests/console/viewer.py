@@ -11,6 +11,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
 from tests.console.browser import DrivenBrowser
+from tests.servers import EVIL
 from tests.waiting import HANG, until
 
 PRESSES = "return document.querySelector('rest-button[main]').presses"
@@ -100,7 +101,8 @@ class Viewer:
     def complaints(self) -> list[str]:
         """What the page's own console said that is more than information."""
         said = [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
-        return [one for one in said if one.startswith(self._address) or not one.startswith("http://127.0.0.1:")]
+        others = ("http://127.0.0.1:", f"http://{EVIL}:")  # pages of other tests in this browser
+        return [one for one in said if one.startswith(self._address) or not one.startswith(others)]
 
     def requests(self) -> list[str]:
         """The addresses that the page has asked for since it was asked last."""
