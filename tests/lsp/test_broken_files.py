@@ -75,6 +75,7 @@ def test_it_is_one_finding_and_hides_no_other(how: str) -> None:
 
 
 def test_what_was_read_last_stands_for_what_cannot_be_read_at_all() -> None:
+    assert not [found for found in SOUND.diagnostics if found.place.file == TOUR]  # it was read
     nothing = Analysis(ROOT, {**FILES, TOUR: b"\xff\xfe{{{"}, SOUND)
     assert "atomic state" in hover(nothing, *at(nothing, VISITOR, "{state: gr|eet"))
     assert {d.place.file for d in nothing.diagnostics} == {TOUR}
