@@ -12,10 +12,8 @@ from typing import Any, NamedTuple, Self
 from tests.golden.warm import ROOT, environment
 from tests.guarded import DEVNULL, Guarded
 from tests.rabbitmq import _free_ports
-from tests.waiting import until
+from tests.waiting import HANG, until
 
-HANG = 300.0
-"""A bound that only a hang reaches [s]."""
 JSON = {"Content-Type": "application/json"}
 
 

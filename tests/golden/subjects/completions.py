@@ -22,7 +22,7 @@ BEGUN = (
 
 
 def record(folder: Path) -> None:
-    """Write each script, and the words (with what they mean) that complete a line."""
+    """Write each script, and the words that complete a line, with their meaning."""
     lines = ["", *(f"{verb} --" for verb in verbs() if verb != "lumen"), *BEGUN]
     with workplace() as work:
         shutil.copytree(PROJECTS / "tour", work, dirs_exist_ok=True)
