@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import lumen
 from lumen.bus import connect
-from lumen.interpreters.expressions.phrases import padded
+from lumen.interpreters.talk.folding import padded
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project

@@ -34,6 +34,21 @@ class Approval:
 
 
 @dataclass(frozen=True, slots=True)
+class Hears:
+    """What of a visitor's sentence takes a transition: a row of `hears`.
+
+    `number` tells it from the other rows of its machine, `key` is as it is written. `way` is how the names must be in
+    the sentence: found, negated (`not`), within a question (`asked`), or not at all (`else`). A name is one of
+    `phrases` or `answers`, or a path such as `context.round.entry.right` to phrases of a list's entry.
+    """
+
+    number: int
+    key: str
+    names: tuple[str, ...] = ()
+    way: Literal["", "not", "asked", "else"] = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Transition:
     """A candidate: taken on `event` where its guard holds.
 
@@ -43,6 +58,7 @@ class Transition:
     descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`. Where it waits for
     somebody to `approve` it, the event waits: no step knows of that.
     An `offer` is for a language model, too, which may raise its event.
+    A row of `hears` waits for `heard` and says in `hears` which sentences take it.
     """
 
     source: str
@@ -57,6 +73,7 @@ class Transition:
     schedule: Schedule | None = None
     approve: Approval | None = None
     offer: bool = False
+    hears: Hears | None = None
 
     @property
     def timed(self) -> bool:
@@ -157,7 +174,8 @@ class MachineDefinition:
     `phrases`, `answers` and `lists` are its own and those of its `words` files; `borrowed` says of those from which
     file each comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the
     names of their behaviours. `robots` are those of the house, where it has several: events can be sent to them.
-    `shared` are the keys that these have in common, in the context under the key of that name.
+    `shared` are the keys that these have in common, in the context under the key of that name. Phrases named in
+    `anyhow` count even if they are negated.
     """
 
     id: str
@@ -176,6 +194,7 @@ class MachineDefinition:
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
     robots: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
+    anyhow: frozenset[str] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:
         """What it says, for another process: what was made of it here is none of its fields."""

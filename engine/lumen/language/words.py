@@ -15,3 +15,4 @@ class Words:
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     lists: Mapping[str, tuple[Mapping[str, Any], ...]] = field(default_factory=dict)
+    anyhow: frozenset[str] = frozenset()

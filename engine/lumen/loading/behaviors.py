@@ -13,6 +13,7 @@ from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
 from lumen.loading.actions import Actions
 from lumen.loading.buttons import buttons
+from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
@@ -39,17 +40,21 @@ def build_machine(
     known: Collection[str] = (),
     shared: Mapping[str, SharedKey] = MappingProxyType({}),
     performed: Collection[str] = (),
+    languages: Collection[str] = (),
+    shipped: bool = False,
 ) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
     `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `words` are the
     words files that it may name, `known` the names of all, those that can't be read among them; `shared` what robots
-    have in common, which the behaviours `performed` by one can read.
+    have in common, which the behaviours `performed` by one can read. `languages` are those of the project; `common` of
+    the words files is `shipped` if it comes with Lumen.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
     common = shared if name in performed and SHARED not in (data.get("context") or {}) else {}
-    return MachineDefinition(**_Builder(data, report, name, words, known or words.keys(), common).fields())
+    builder = _Builder(data, report, name, words, known or words.keys(), common, languages, shipped)
+    return MachineDefinition(**builder.fields())
 
 
 def fingerprint(data: Any) -> str:
@@ -69,10 +74,13 @@ class _Builder:
         words: WordFiles,
         known: Collection[str],
         shared: Mapping[str, SharedKey],
+        languages: Collection[str],
+        shipped: bool,
     ) -> None:
         self.data, self.report, self.files, self.shared = data, report, words, shared
-        self.words = known_words(data, report, words, known)
         self.outline = BehaviorOutline(data, name, report)
+        hears = any("hears" in entry.data for entry in self.outline.entries.values())
+        self.words = known_words(data, report, words, known, languages, shipped=shipped, hears=hears)
         self.rounds = Rounds(self.outline, report, data.get("context") or {}, shared=bool(shared))
         names = {*self.outline.entries, *self.outline.aliases}
         self.expressions = Expressions(report, data, self.words, names, self.rounds)
@@ -103,13 +111,21 @@ class _Builder:
             "words": self.words.files,
             "borrowed": self.words.borrowed,
             "renamed": {was: now for was in data.get("renamed") or {} if (now := self.renamed(was))},
-            "hash": fingerprint([data, *self.borrowed()] if self.words.files or self.shared else data),
+            "hash": fingerprint([data, *borrowed] if (borrowed := list(self.borrowed())) else data),
             "shared": tuple(self.shared),
+            "anyhow": self.words.anyhow,
         }
 
     def borrowed(self) -> Iterator[Any]:
         """What other files say that it uses, as data."""
-        yield from (self.files[name].data for name in self.words.files if name in self.files)
+        supplied = self.words.supplied
+        yield from (
+            self.files[name].data
+            for name in self.words.files
+            if name in self.files and not (name == COMMON and supplied is not None)
+        )
+        if supplied is not None:
+            yield supplied
         yield from ([name, key.type, key.initial] for name, key in self.shared.items())
 
     def states(self, entry: OutlinedState) -> Iterator[State]:

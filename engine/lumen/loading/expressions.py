@@ -15,9 +15,10 @@ from lumen.interpreters.expressions.expression_findings import (
     MISPLACED_DRAW,
     UNGUARDED_FIELD,
     UNKNOWN_CONTEXT_KEY,
+    UNKNOWN_FUNCTION,
     UNKNOWN_NAME,
 )
-from lumen.interpreters.expressions.functions import DRAWING
+from lumen.interpreters.expressions.functions import CAUGHT, DRAWING
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.loading.document import Document
@@ -38,7 +39,7 @@ class Expressions:
     def __init__(
         self, report: DocumentReport, data: Mapping[str, Any], words: KnownWords, states: Iterable[str], rounds: Rounds
     ) -> None:
-        self.report, self.rounds = report, rounds
+        self.report, self.rounds, self.words = report, rounds, words
         self.keys = frozenset((*(data.get("context") or ()), *rounds.known))
         names: dict[str, Any] = {
             "context": {key: {} for key in self.keys},
@@ -108,13 +109,22 @@ class Expressions:
             place = place_within(self.report.document, where, source, finding.offset, finding.length)
             cause = cause_of(self.report.document.file, finding)
             self.report.diagnostics.append(finding.code.at(place, finding.message, finding.hint, cause=cause))
-        return not found and self._draws_where_it_may(source, where)
+        return not found and self._calls_what_it_may(source, where) and self._draws_where_it_may(source, where)
 
     def _explained(self, finding: ExpressionFinding) -> ExpressionFinding:
         """With a word on where a name is known that is known elsewhere."""
         home = self.rounds.elsewhere(finding.message.split("`")[1]) if finding.code == UNKNOWN_NAME else ""
         hint = f"it is an entry within `{home}` only, in its states, `on` and `after`"
         return finding._replace(hint=hint) if home else finding
+
+    def _calls_what_it_may(self, source: str, where: NodePath) -> bool:
+        """Whether `caught` is not called, which is the engine's own; reported otherwise."""
+        if not re.search(rf"\b{CAUGHT}\s*\(", source):
+            return True
+        self.report(
+            UNKNOWN_FUNCTION, where, f"there is no function `{CAUGHT}`", "write `heard.NAME` in a row of `hears`"
+        )
+        return False
 
     def _draws_where_it_may(self, source: str, where: NodePath) -> bool:
         """Whether nothing is drawn outside of `assign`; reported where something is."""

@@ -8,6 +8,7 @@ from pathlib import Path, PurePosixPath
 
 from lumen.loading.chosen_model import choice
 from lumen.loading.chosen_robot import CHOSEN_ROBOT, as_robot
+from lumen.loading.common_words import with_common_words
 from lumen.loading.kept_contents import KeptContents
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.regular_files import MEGABYTE
@@ -95,7 +96,7 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
             content = read.file(f"{folder}/{name}")
             if content is not None:
                 found[f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"] = content
-    return dict(sorted(as_robot({**found, **choice()}, robot).items()))
+    return dict(sorted(as_robot(with_common_words({**found, **choice()}), robot).items()))
 
 
 def read_main_file(root: Path) -> bytes:

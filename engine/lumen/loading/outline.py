@@ -9,6 +9,9 @@ from lumen.language.diagnostics import ERROR, MAX_COMPARED_NAMES, Code, NodePath
 from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport
 
+THIS = "."
+"""The target that is the state itself: it is left and entered again."""
+
 DUPLICATE_ID = Code(
     "duplicate-id", "statecharts", ERROR, "two states, or two behaviours that are invoked at once, have the same id"
 )
@@ -61,7 +64,9 @@ class BehaviorOutline:
         `written` is how the file has it, where that differs. A state that was itself reported as broken is not missed
         a second time.
         """
-        if target.startswith("#"):
+        if target == THIS:
+            found: OutlinedState | None = source
+        elif target.startswith("#"):
             found = self._by_id(target[1:])
         elif target.startswith("."):
             found = _descend(source, target[1:])

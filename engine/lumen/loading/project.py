@@ -18,6 +18,7 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.chosen_model import chosen
 from lumen.loading.chosen_robot import chosen_robot
+from lumen.loading.common_words import COMMON, is_shipped, with_common_words
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import (
@@ -70,6 +71,7 @@ FOLDER_KINDS: Mapping[str, str] = {
 
 def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
+    files = with_common_words(files)
     found = ProjectDraft(files)
     _folders(found)
     if (content := files.get(MAIN_FILE)) is None:
@@ -201,8 +203,17 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
     settings = found.settings
     shared = settings.shared if settings else {}
     performed = {robot.behavior for robot in settings.robots.values()} if settings and shared else set()
-    build = partial(build_machine, words=words, known=known, shared=shared, performed=performed)
-    return _each(found, "behaviors", build, around=(contents, shared, performed))
+    languages, shipped = settings.languages if settings else (), is_shipped(found.files, COMMON)
+    build = partial(
+        build_machine,
+        words=words,
+        known=known,
+        shared=shared,
+        performed=performed,
+        languages=languages,
+        shipped=shipped,
+    )
+    return _each(found, "behaviors", build, around=(contents, shared, performed, languages, shipped))
 
 
 def _each(

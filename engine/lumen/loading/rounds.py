@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from lumen.interpreters.expressions.functions import CAUGHT
+from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import Assign, Expression, PlacedAction
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.machines import ForEach, State, StateKind, Transition
@@ -24,8 +26,8 @@ NOTHING_YET: Mapping[str, Any] = {"entry": {}, "left": []}
 
 ReadExpression = Callable[[str, NodePath], Expression | None]
 
-_TAKEN = frozenset(("context", "event", "state", "lists"))
-_WITHIN = (("states",), ("on",), ("after",), ("at",))
+_TAKEN = frozenset(("context", "event", "state", "lists", HEARD))
+_WITHIN = (("states",), ("on",), ("hears",), ("after",), ("at",))
 """Where in a state with `for` its entry is known: not yet where it begins, and no longer where all is done."""
 
 
@@ -39,6 +41,8 @@ class Rounds:
         self.known = {SHARED: f"context.{SHARED}"} if shared else {}
         self.by_place: dict[NodePath, tuple[str, str]] = {}
         self.keys: dict[str, str] = {}
+        self.rows: dict[NodePath, int] = {}
+        """The numbers of rows of `hears` by their places, in which `heard` is known."""
         for entry in outline.entries.values():
             if "for" in entry.data and self._sound(entry):
                 name, key = entry.data["for"]["as"], self._key(entry, context)
@@ -51,6 +55,10 @@ class Rounds:
         for place, (name, key) in self.by_place.items():
             if where[: len(place)] == place and where[len(place) : len(place) + 1] in _WITHIN:
                 found[name] = f"context.{key}.entry"
+        if "hears" in where:
+            row = next((self.rows[where[:n]] for n in range(len(where), 0, -1) if where[:n] in self.rows), None)
+            if row is not None:
+                found[HEARD] = f"{CAUGHT}({row})"
         return found
 
     def read(self, entry: OutlinedState, expression: ReadExpression) -> ForEach | None:

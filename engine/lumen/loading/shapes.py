@@ -15,7 +15,7 @@ _HISTORY = {*_COMMON, "history", "target"}
 _FINAL = {*_COMMON, "entry", "exit", "output"}
 _MACHINE = {"units", "context", "types", "events", "words", "phrases", "answers", "lists", "properties", "renamed"}
 _STATE = {
-    *_COMMON, *_MACHINE, "on", "always", "after", "at", "onDone", "onError", "onReload", "resume", "buttons",
+    *_COMMON, *_MACHINE, "on", "always", "after", "at", "hears", "onDone", "onError", "onReload", "resume", "buttons",
     "life", "gestures",
     "entry",
     "do", "exit", "invoke", "for",
@@ -47,7 +47,11 @@ def _check_keys(entry: OutlinedState, report: DocumentReport) -> None:
             continue
         hint = did_you_mean(key, allowed - _MACHINE, "it may have")
         if key in ("history", "target"):
-            hint = "add `type: history`" if key == "history" else "write them under `on`, `always`, `after` or `at`"
+            hint = (
+                "add `type: history`"
+                if key == "history"
+                else "write them under `on`, `hears`, `always`, `after` or `at`"
+            )
         report.missed.update(filter(lambda value: isinstance(value, str), [entry.data[key]]))
         message = f"{_ARTICLES.get(entry.kind, f'a {entry.kind}')} state has no `{key}`"
         report(MISPLACED_KEY, (*entry.where, key), message, hint=hint, key=True)

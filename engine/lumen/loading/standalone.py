@@ -1,6 +1,7 @@
 """A behaviour without a project around it: from its file and those beside it, or from dicts."""
 
 from collections.abc import Callable, Collection, Mapping
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, Self
@@ -10,7 +11,8 @@ from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.words import Words
 from lumen.loading.behaviors import build_machine
-from lumen.loading.built_file import BuiltFile
+from lumen.loading.built_file import BuiltFile, read_file
+from lumen.loading.common_words import COMMON, COMMON_FILE, common_words
 from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.context import check_memory
 from lumen.loading.document import Document
@@ -75,6 +77,14 @@ class _Shelf(NamedTuple):
         return cls(lambda name: plain_document(name, dicts[name]), dicts.keys())
 
 
+@cache
+def supplied_words() -> BuiltFile[Words]:
+    """The words that come with Lumen, for behaviours without a project."""
+    read, _ = read_file(COMMON_FILE, common_words(), "words", build_words)
+    assert read is not None  # it is tested
+    return read
+
+
 class _Family:
     """A behaviour, those that it invokes, and those that they invoke; `words` are the words files beside them."""
 
@@ -108,7 +118,10 @@ class _Family:
             return []
         data = check_schema(document, "behavior", report)
         self.name_words(data)
-        machine = build_machine(data, report, name=name, words=self.words, known=self.shelf.names)
+        words, known = self.words, frozenset(self.shelf.names)
+        if shipped := COMMON not in known:
+            words, known = {**words, COMMON: supplied_words()}, known | {COMMON}
+        machine = build_machine(data, report, name=name, words=words, known=known, shipped=shipped)
         if machine is None:
             if not has_errors([*diagnostics, *report.diagnostics]):
                 report(MISSING_KEY, (), "a behaviour needs `states`", hint="write `states:` with at least one state")

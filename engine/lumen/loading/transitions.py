@@ -4,13 +4,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import Template
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
-from lumen.language.machines import Approval, StateKind, Transition
+from lumen.language.machines import Approval, Hears, StateKind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
+from lumen.loading.hears_keys import HearsKeys
 from lumen.loading.invocations import invoked
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.schedules import schedule
@@ -23,7 +25,7 @@ MISPLACED_APPROVAL = Code(
 )
 ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would run for ever")
 
-_OUTSIDE = frozenset(("on",))
+_OUTSIDE = frozenset(("on", "hears"))
 _OWN = ("done", "error", "after", "at")
 """How the names of events begin that come from within."""
 
@@ -38,6 +40,7 @@ class TransitionReader:
     ) -> None:
         self.report, self.outline = report, outline
         self.actions, self.expressions = actions, expressions
+        self.rows = HearsKeys(report, expressions)
 
     def of(self, entry: OutlinedState) -> tuple[Transition, ...]:
         """The candidates of a state, in the order of the file; broken ones are left out."""
@@ -64,6 +67,9 @@ class TransitionReader:
             case "on":
                 for event, rows in body.items():
                     yield from self._candidates(entry, rows, (*where, event), event=event)
+            case "hears":
+                for row, rows in body.items():
+                    yield from self._heard(entry, row, rows, (*where, row))
             case "always":
                 yield from self._candidates(entry, body, where)
             case "after":
@@ -80,6 +86,17 @@ class TransitionReader:
                 yield from self._candidates(entry, body, where, event=f"done.{kind}.{entry.name}", exact=True)
             case "onError":
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
+
+    def _heard(self, entry: OutlinedState, key: str, body: Any, where: NodePath) -> Iterator[Transition]:
+        """The candidates of a row of `hears`."""
+        way, names = self.rows.read(key, where)
+        if way == "" and not names:
+            self.report.pruned.add(where)
+            return
+        for place, row in _rows(body, where):
+            number = self.expressions.rounds.rows[place] = len(self.expressions.rounds.rows)
+            if found := self._one(entry, row, place, HEARD, leaves=True):
+                yield replace(found, where=place, hears=Hears(number, key, names, way))
 
     def _after(self, entry: OutlinedState, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
         for text, rows in body.items():

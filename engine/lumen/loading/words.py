@@ -8,11 +8,12 @@ from lumen.language.words import Words
 from lumen.loading.document_report import DocumentReport
 
 WORDS_FOLDER = "behaviors/words"
+ANYHOW = "anyhow"
 
 
 def build_words(data: Any, report: DocumentReport, *, name: str) -> Words | None:
     """What the data of `behaviors/words/NAME.yaml` holds, None where that is no map."""
-    return Words(name, **tables(data)) if isinstance(data, Mapping) else None
+    return Words(name, **tables(data), anyhow=anyhow(data)) if isinstance(data, Mapping) else None
 
 
 def tables(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -24,9 +25,19 @@ def tables(data: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+def anyhow(data: Mapping[str, Any]) -> frozenset[str]:
+    """The names of phrases that count even if they are negated."""
+    phrases = data.get("phrases") or {}
+    return frozenset(name for name, body in phrases.items() if isinstance(body, Mapping) and body.get(ANYHOW) is True)
+
+
 def _phrases(body: Any) -> dict[str, tuple[str, ...]]:
     table = body if isinstance(body, Mapping) else {"": body}
-    return {language: (rows,) if isinstance(rows, str) else tuple(rows) for language, rows in table.items()}
+    return {
+        language: (rows,) if isinstance(rows, str) else tuple(rows)
+        for language, rows in table.items()
+        if language != ANYHOW
+    }
 
 
 def _answers(rows: Any) -> tuple[Answer, ...]:

@@ -63,5 +63,5 @@ def _scope(deed: PlacedDeed, now: Snapshot) -> Scope:
     node, standing = program.chart.nodes[deed.state.path], program.planner.configuration(now.configuration)
     return Scope(
         now.context, None, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,
-        machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw,
+        machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw, machine,
     )  # fmt: skip

@@ -124,7 +124,7 @@ class _Asked:
         self._scope = Scope(
             one.snapshot.context, seen, chart.root.view(*self._view), configuration.known.__contains__, at,
             outermost.language, one.machine.phrases, one.machine.answers, outermost.epoch, outermost.timezone,
-            one.machine.lists, no_draw,
+            one.machine.lists, no_draw, one.machine,
         )  # fmt: skip
         self._known: dict[CompiledTransition, tuple[GuardTruth | None, str]] = {}
 

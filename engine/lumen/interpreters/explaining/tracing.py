@@ -13,7 +13,7 @@ from lumen.interpreters.statechart.execution_context import ExecutionContext, In
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.invocations import Invocations
 from lumen.interpreters.statechart.macrostep import enter_machine
-from lumen.interpreters.statechart.plans import Candidates, Configuration
+from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, Configuration
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command
 from lumen.language.diagnostics import NodePath
@@ -45,7 +45,7 @@ class Moment(NamedTuple):
         if self.eventless or self.event is None:
             return self.configuration.eventless
         if timed := self.configuration.timed(self.event.name):
-            return timed if self.event.sendid else ()
+            return timed if self.event.sendid else NO_CANDIDATES
         return self.configuration.candidates(self.event.name)
 
 

@@ -177,7 +177,7 @@ def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
     """What a part of an expression says of an event, where that can be true, false, empty or something."""
     machine, _, context = heard
     scope = Scope(context, {"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
-    scope = scope._replace(lists=machine.lists)
+    scope = scope._replace(lists=machine.lists, machine=machine)
     try:
         value = compile_expression(source)(scope)
     except ExpressionError:

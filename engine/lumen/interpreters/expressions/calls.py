@@ -13,7 +13,7 @@ from lumen.interpreters.expressions.expression_findings import (
     Declarations,
     ExpressionFindings,
 )
-from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS, FUNCTIONS, Function
+from lumen.interpreters.expressions.functions import ALL_FUNCTIONS, CLOCK_FUNCTIONS, FUNCTIONS, Function
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
 from lumen.language.diagnostics import Code, did_you_mean
@@ -34,7 +34,7 @@ _ARGUMENTS = {
 
 def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | None:
     """The function that is called, None where there is none of that name; a wrong number of arguments is reported."""
-    function = FUNCTIONS.get(node.function)
+    function = ALL_FUNCTIONS.get(node.function)
     if function is None:
         similar = _INSTEAD.get(node.function)
         hint = f"did you mean `{similar}`?" if similar else did_you_mean(node.function, FUNCTIONS, "there are")
@@ -51,7 +51,7 @@ def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | 
 
 def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:
     """Look the literal names up that `heard`, `lookup` and `In` are given, and read the pattern of `matches`."""
-    if len(node.arguments) != len(FUNCTIONS[node.function].parameters) or not node.arguments:
+    if len(node.arguments) != len(ALL_FUNCTIONS[node.function].parameters) or not node.arguments:
         return
     last = node.arguments[-1]
     name = last.value if isinstance(last, Literal) and isinstance(last.value, str) else None

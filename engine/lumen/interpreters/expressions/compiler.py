@@ -13,7 +13,7 @@ from lumen.interpreters.expressions import operators as values
 from lumen.interpreters.expressions.builder import OPERATOR_FUNCTIONS, CodeBuilder
 from lumen.interpreters.expressions.checker import must_hold
 from lumen.interpreters.expressions.error_explanation import explain
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.functions import ALL_FUNCTIONS
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.scope import Scope
 from lumen.interpreters.expressions.tree import ExpressionNode, Logic, walk
@@ -47,7 +47,7 @@ def _any_is(decisive: bool, operands: Sequence[Callable[[], Any]]) -> bool:
 _HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item", "has", "bounded"]
 NAMES: dict[str, Any] = (
     {name: getattr(values, name) for name in _HELPERS}
-    | {f"call_{name}": function.call for name, function in FUNCTIONS.items()}
+    | {f"call_{name}": function.call for name, function in ALL_FUNCTIONS.items()}
     | {"type": type, "map": dict, "numbers": frozenset((int, float)), "whole": int}
     | {"both": both, "either": either, "__builtins__": {}}
 )

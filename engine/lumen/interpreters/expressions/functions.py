@@ -19,11 +19,15 @@ from lumen.interpreters.expressions.kinds import (
 from lumen.interpreters.expressions.operators import bounded_text, has
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
+from lumen.interpreters.talk import folding
+from lumen.interpreters.talk.hearing import hearing_of
 from lumen.interpreters.wall_clock import local_time, moment
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.hours import WEEKDAYS
 
 KindSet = frozenset[str]
+CAUGHT = "caught"
+"""The function that `heard` stands for in a row of `hears`; files do not call it."""
 
 
 class Function(NamedTuple):
@@ -55,7 +59,7 @@ def lower(text: Any) -> str:
 
 def trim(text: Any) -> str:
     _texts(text)
-    return str(text[:MAX_TEXT_EXAMINED].strip(phrases.BLANKS))
+    return str(text[:MAX_TEXT_EXAMINED].strip(folding.BLANKS))
 
 
 def contains(text: Any, part: Any) -> bool:
@@ -72,12 +76,12 @@ def replace(text: Any, old: Any, new: Any) -> str:
 
 def after(text: Any, phrase: Any) -> str:
     _texts(text, phrase)
-    return phrases.after(text, phrase)
+    return folding.after(text, phrase)
 
 
 def words(text: Any) -> list[str]:
     _texts(text)
-    return phrases.words(text)
+    return folding.words(text)
 
 
 def matches(text: Any, pattern: Any) -> bool:
@@ -119,18 +123,18 @@ def heard(scope: Scope, text: Any, name: Any) -> bool:
     if type(text) is not str or type(name) is not str:
         _texts(text)
         if not isinstance(name, str):
-            return _heard_of(text, name)
+            return _heard_of(scope, text, name)
     known = scope[6]  # `phrases`: by its number in half the time
     if name not in known:
         raise _unnamed("phrases", name, known)
-    return phrases.is_heard(text, known[name])
+    return phrases.is_heard(text, known[name], scope.lists)
 
 
-def _heard_of(text: str, table: Any) -> bool:
+def _heard_of(scope: Scope, text: str, table: Any) -> bool:
     """`heard` of phrases that stand in an entry of a list."""
     if kind_of(table) not in (LIST, MAP):
         raise WrongKindError(1, table, TEXT, LIST, MAP)
-    return phrases.is_heard(text, phrases.phrases_of(table))
+    return phrases.is_heard(text, phrases.phrases_of(table), scope.lists)
 
 
 def lookup(scope: Scope, text: Any, table: Any) -> Any:
@@ -142,6 +146,13 @@ def lookup(scope: Scope, text: Any, table: Any) -> Any:
 
 def _unnamed(what: str, name: str, names: Iterable[str]) -> FaultError:
     return FaultError(f"there are no {what} named `{name[:40]}`", did_you_mean(name[:40], names, f"`{what}` has"))
+
+
+def caught(scope: Scope, row: int) -> dict[str, Any]:
+    """What `heard` is in the guard and actions of the row of `hears` with that number."""
+    if scope.machine is None:
+        raise FaultError("nothing is heard here", "`heard` is known in the guard and actions of a row of `hears`")
+    return hearing_of(scope.machine).caught(row, scope.event, scope.context, scope.language)
 
 
 def active(scope: Scope, state: Any) -> bool:
@@ -182,6 +193,9 @@ FUNCTIONS: dict[str, Function] = {
     "pick": Function((_LIST,), KINDS, lists.pick, scoped=True),
     "in_language": Function((KINDS,), KINDS, lists.in_language, scoped=True),
 }
+
+ALL_FUNCTIONS = FUNCTIONS | {CAUGHT: Function((_NUMBER,), frozenset((MAP,)), caught, scoped=True)}
+"""Those that compiled expressions call: `caught` too, which no file may call."""
 
 DRAWING = frozenset(("shuffle", "pick"))
 """The functions that draw: they stand in `assign` only, where the next draw is remembered."""

@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.builder import CodeBuilder
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.functions import ALL_FUNCTIONS, CAUGHT
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.tree import ExpressionNode, FieldAccess, FunctionCall, Identifier, walk
 from lumen.language.events import Event
@@ -31,7 +31,7 @@ def inlined(source: str, event: str, guard: bool) -> InlinedExpression:
 
 @lru_cache(maxsize=8192)
 def scope_needs(source: str) -> frozenset[str]:
-    """What a compiled expression needs a Scope for: the names it refers to, `In`, and `scope` for other functions."""
+    """What a compiled expression needs a Scope for: names it refers to, `In`, `heard`, and `scope` for others."""
     return frozenset(need for node, _ in walk(parse_expression(source)) for need in _needs_of(node))
 
 
@@ -41,7 +41,9 @@ def _needs_of(node: ExpressionNode) -> tuple[str, ...]:
             return (name,)
         case FunctionCall("In"):
             return ("In",)
-        case FunctionCall(function) if FUNCTIONS[function].scoped:
+        case FunctionCall(function) if function == CAUGHT:
+            return ("scope", "heard")
+        case FunctionCall(function) if ALL_FUNCTIONS[function].scoped:
             return ("scope",)
     return ()
 

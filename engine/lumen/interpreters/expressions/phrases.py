@@ -1,55 +1,20 @@
-"""Hearing phrases in what somebody said: whole words, whatever their case and punctuation, in every script."""
+"""Phrases in the language of expressions: `heard` and `lookup`."""
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
-from typing import Any, cast
-from unicodedata import category, normalize
+from typing import Any, TypeAlias, cast
 
 from lumen.interpreters.expressions.kinds import FaultError
 from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
+from lumen.interpreters.talk.finder import Finder
+from lumen.interpreters.talk.folding import padded
+from lumen.interpreters.talk.hearing import in_language, languages_of, phrases_in
+from lumen.interpreters.talk.patterns import forms
+from lumen.interpreters.talk.speech import Speech
 from lumen.language.machines import Answer
 
-_APOSTROPHES = frozenset("'’ʼ‘`´")
-BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
-"""What Unicode calls White_Space; Python counts four separators of records among it."""
-
-_AROUND = BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
 _MAX_PREPARED_TABLES = 256
-
-
-class _WordsOnly(dict[int, str | int]):
-    """For `str.translate`: letters, digits, marks and apostrophes stay, everything else becomes a blank."""
-
-    def __missing__(self, code: int) -> str | int:
-        character = chr(code)
-        kept = code if category(character)[0] in "LNM" or character in _APOSTROPHES else " "
-        if len(self) < 4096:
-            self[code] = kept
-        return kept
-
-
-_WORDS_ONLY = _WordsOnly()
-_NO_APOSTROPHES = dict.fromkeys(map(ord, _APOSTROPHES))
-
-
-@lru_cache(maxsize=512)
-def folded(text: str) -> tuple[str, ...]:
-    """The words of a text as they are compared: without case and apostrophes, so that "Don't" is "dont"."""
-    joined = normalize("NFKC", text.translate(_NO_APOSTROPHES))
-    return tuple(normalize("NFKC", joined.casefold()).translate(_WORDS_ONLY).split())
-
-
-@lru_cache(maxsize=512)
-def padded(text: str) -> str:
-    """The compared words between blanks, so that `" no " in " i know "` is false; empty where there is no word."""
-    found = folded(text)
-    return f" {' '.join(found)} " if found else ""
-
-
-def words(text: str) -> list[str]:
-    """The words of a text as they are written, without punctuation."""
-    cleaned = (word.strip("'’ʼ‘`´") for word in text[:MAX_TEXT_EXAMINED].translate(_WORDS_ONLY).split())
-    return [word for word in cleaned if word]
+Lists: TypeAlias = Mapping[str, Sequence[Mapping[str, Any]]]
+_NO_LISTS: Lists = {}
 
 
 class _ByIdentity:
@@ -78,15 +43,25 @@ _last = [("", "")]
 """The text compared last, and its words: the guards of a state compare one text, one after the other."""
 
 _answers = _ByIdentity()
+_finders = _ByIdentity()
 _entries = _ByIdentity()
 
 
 def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    return tuple({p: None for texts in phrases.values() for text in texts if (p := padded(text))})
+    """The forms without slots, padded."""
+    found = (form for texts in phrases.values() for text in texts for form in forms(text) if form.plain)
+    return tuple({f" {' '.join(form.literals)} ": None for form in found})
 
 
-def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]]) -> bool:
-    """Whether any of the phrases, of whatever language, stands in the text as whole words."""
+def _with_slots(phrases: Mapping[str, tuple[str, ...]]) -> bool:
+    return any("{" in text for texts in phrases.values() for text in texts)
+
+
+def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _NO_LISTS) -> bool:
+    """Whether any of the phrases, in any language, is in the text as whole words; a negation changes nothing.
+
+    `lists` are those that a slot may name.
+    """
     try:
         table, prepared = _kept[id(phrases)]
     except KeyError:
@@ -97,10 +72,20 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]]) -> bool:
     if last is not text:
         said = padded(text[:MAX_TEXT_EXAMINED])
         _last[0] = text, said
-    for phrase in prepared:  # noqa: SIM110 - `any` takes longer than the phrases
+    for phrase in prepared:
         if phrase in said:
             return True
-    return False
+    return _with_slots(phrases) and _is_caught(text, phrases, lists)
+
+
+def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) -> bool:
+    """Whether a form with slots is in the text."""
+    finder = _finders.get(phrases)
+    if finder is None:
+        entries = {name: [(phrases_in(entry), entry) for entry in rows] for name, rows in lists.items()}
+        finder = _finders.put(phrases, Finder(Speech({}, {}), {"": phrases}, lists=entries))
+    reading = finder.read(text)
+    return bool(reading.finds or finder.slotted(reading))
 
 
 def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
@@ -123,7 +108,7 @@ def answer(scope: Scope, text: str, table: Any) -> Any:
     """
     prepared = _answers.get(table) or _answers.put(table, _AnswerTable(table))
     found = prepared.entry(padded(text[:MAX_TEXT_EXAMINED]))
-    return None if found is None else _in_language(found.value, scope.language, prepared.languages)
+    return None if found is None else in_language(found.value, scope.language, prepared.languages)
 
 
 class _AnswerTable:
@@ -135,7 +120,7 @@ class _AnswerTable:
         for number, entry in enumerate(table):
             for phrase in _prepared(entry.phrases):
                 self.phrases.setdefault(phrase.split()[0], []).append((number, phrase))
-        self.languages = frozenset(language for entry in table for language in entry.phrases)
+        self.languages = languages_of(table)
         self.last: tuple[str, Answer | None] = ("", None)
 
     def entry(self, said: str) -> Answer | None:
@@ -147,27 +132,3 @@ class _AnswerTable:
             found = None if first is None else self.table[first]
             self.last = said, found
         return found
-
-
-def _in_language(value: Any, language: str, languages: frozenset[str]) -> Any:
-    if not isinstance(value, Mapping) or not value or not value.keys() <= languages | {language}:
-        return value
-    return value[language] if language in value else next(iter(value.values()))
-
-
-def after(text: str, phrase: str) -> str:
-    """What follows the phrase in the text, without the blanks and punctuation around it; "" where it is not there."""
-    text, sought = text[:MAX_TEXT_EXAMINED], list(folded(phrase[:MAX_TEXT_EXAMINED]))
-    found: list[str] = []
-    ends: list[int] = []
-    position = 0
-    blanked = text.translate(_WORDS_ONLY)
-    for word in blanked.split():
-        position = blanked.index(word, position) + len(word)
-        parts = folded(word)
-        found.extend(parts)
-        ends.extend([position] * len(parts))
-    for start in range(len(found) - len(sought) + 1) if sought else ():
-        if found[start : start + len(sought)] == sought:
-            return text[ends[start + len(sought) - 1] :].strip(_AROUND)
-    return ""

@@ -5,7 +5,8 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.kinds import FaultError
-from lumen.language.machines import Answer
+from lumen.interpreters.talk.folding import MAX_TEXT_EXAMINED as MAX_TEXT_EXAMINED
+from lumen.language.machines import Answer, MachineDefinition
 
 MAX_EXPRESSION_LENGTH = 2_000
 """Characters in an expression."""
@@ -21,9 +22,6 @@ MAX_COLLECTION_VALUES = 10_000
 
 MIN_INT, MAX_INT = -(2**63), 2**63 - 1
 """Whole numbers have 64 bits, as in CEL."""
-
-MAX_TEXT_EXAMINED = 1_000
-"""Characters of a text that the text functions look at."""
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
 
@@ -44,6 +42,7 @@ class Scope(NamedTuple):
     `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` that of
     the clock's zero [s since 1970, in UTC], and `timezone` that of `hour()` and its kin. `language` is the one that
     `lookup` answers in; `draw` gives one of as many numbers, from 0.
+    `machine` has the rows of `hears` that `heard` is about.
     """
 
     context: Mapping[str, Any] = _NOTHING
@@ -58,6 +57,7 @@ class Scope(NamedTuple):
     timezone: str = ""
     lists: Mapping[str, Sequence[Any]] = _NOTHING
     draw: Callable[[int], int] = no_draw
+    machine: MachineDefinition | None = None
 
 
 ROOTS = ("context", "event", "state", "lists")

@@ -7,6 +7,7 @@ from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart.action_context import ActionContext
 from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_delay, compile_value
 from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
+from lumen.interpreters.statechart.hears import row_guards
 from lumen.interpreters.statechart.type_checks import type_checks
 from lumen.language.actions import Template
 from lumen.language.diagnostics import NodePath
@@ -101,9 +102,12 @@ class StateNode:
 
 
 class CompiledTransition:
-    """A transition, its guard and actions compiled; compared by identity. `alone` is the set of it only."""
+    """A transition, its guard and actions compiled; compared by identity. `alone` is the set of it only.
 
-    __slots__ = ("alone", "block", "definition", "guard", "source", "targets", "where")
+    A row of `hears` has a `late` guard, too: whether it is taken if no state has taken anything else.
+    """
+
+    __slots__ = ("alone", "block", "definition", "guard", "late", "source", "targets", "where")
 
     def __init__(self, definition: Transition, source: StateNode, targets: tuple[StateNode, ...]) -> None:
         self.definition = definition
@@ -111,9 +115,16 @@ class CompiledTransition:
         self.targets = targets
         guard = definition.guard
         self.guard: CompiledGuard | None = compile_guard(guard.source) if guard else None
+        self.late: CompiledGuard | None = None
         self.where = guard.where if guard else definition.where
         self.block: CompiledBlock = compile_block(definition.actions)
         self.alone = (self,)
+
+    @property
+    def is_otherwise(self) -> bool:
+        """Whether it is a row `else`, which is late only."""
+        hears = self.definition.hears
+        return hears is not None and hears.way == "else"
 
     def matches(self, name: str) -> bool:
         """Whether an event of that name selects it (SCXML 3.12.1); `after` and `at` are never selected by a name."""
@@ -144,6 +155,16 @@ class Chart:
         self.checks = type_checks(definition)
         for node in self.nodes.values():
             self._connect(node)
+        self._guard_rows()
+
+    def _guard_rows(self) -> None:
+        """Give each row of `hears` the guards that know the other rows of its state."""
+        rows = {
+            t.definition.hears.number: t for node in self.nodes.values() for t in node.transitions if t.definition.hears
+        }
+        own = {number: transition.guard for number, transition in rows.items()}
+        for number, transition in rows.items():
+            transition.guard, transition.late = row_guards(self.definition, number, own)
 
     def _connect(self, node: StateNode) -> None:
         assert node.state is not None  # only the document has none, and it is not among the nodes

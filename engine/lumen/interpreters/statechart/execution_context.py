@@ -66,6 +66,9 @@ class InvocationHandler(Protocol):
     def post(self, context: "ExecutionContext") -> None:
         """Hand over what the machine sends to them."""
 
+    def listens(self, context: "ExecutionContext", name: str) -> bool:
+        """Whether one of them waits for an event of that name where it is now."""
+
 
 @dataclass(slots=True, eq=False)
 class ExecutionContext:
@@ -170,7 +173,7 @@ class ExecutionContext:
             seen = (
                 self.data, self.event_data, self.node.view(self.language, self.place), self.is_active, self.at,
                 self.language, definition.phrases, definition.answers, self.epoch, self.timezone,
-                definition.lists, self.draw,
+                definition.lists, self.draw, definition,
             )  # fmt: skip
             scope = self.cached_scope = _new(Scope, seen)
         return scope

@@ -11,7 +11,7 @@ from math import prod
 from typing import Any
 
 from lumen.interpreters.statechart.chart import CompiledTransition
-from lumen.interpreters.statechart.plans import Candidates, MicrostepPlanner, make_room
+from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, MicrostepPlanner, make_room
 from lumen.interpreters.statechart.step_code import WrittenStep
 from lumen.interpreters.statechart.step_writer import StepWriter
 from lumen.interpreters.statechart.values import Awaiting, Fork, Snapshot, Step, Within
@@ -100,7 +100,7 @@ class FastPaths:
         names, *place = key
         writer = StepWriter(self.planner, self.planner.configuration(names))
         if not place:
-            return writer.heard(())
+            return writer.heard(NO_CANDIDATES)
         branch, path, *_ = place
         return writer.resumed(self.planner.chart.nodes[path], snapshot.doing[path], branch)
 
@@ -119,4 +119,4 @@ def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenSt
 
 def _ways(candidates: Candidates) -> int:
     """In how many ways the guards may turn out."""
-    return prod(sum(t.guard is not None for t in group) + 1 for group in candidates)
+    return prod(sum(t.guard is not None for t in group) + 1 for group in (*candidates, *candidates.late))

@@ -90,7 +90,7 @@ def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
     chart, standing = planner.chart, planner.configuration(step.snapshot.configuration)
     timed = event.name.startswith(_TIMED) and event.sendid
     groups = standing.timed(event.name) if timed else standing.candidates(event.name)
-    for transition in dict.fromkeys(t for group in groups for t in group):
+    for transition in dict.fromkeys(t for group in (*groups, *groups.late) for t in group):
         if guard := transition.definition.guard:
             scope = _scope(chart, transition.source, standing, step.snapshot, event)
             values = readings(guard.source, scope, guard.shown)
@@ -102,5 +102,5 @@ def _scope(chart: Chart, node: StateNode, standing: Configuration, now: Snapshot
     machine, seen = chart.definition, {"name": event.name, "data": event.data}
     return Scope(
         now.context, seen, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,
-        machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw,
+        machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw, machine,
     )  # fmt: skip

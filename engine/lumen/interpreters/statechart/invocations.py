@@ -74,6 +74,10 @@ class Invocations:
             else:
                 context.returned(id, event)
 
+    def listens(self, context: ExecutionContext, name: str) -> bool:
+        """Whether one of them waits for an event of that name where it is now."""
+        return _listen(context.machine, self.children, name)
+
     def end(self, context: ExecutionContext, id: str) -> None:
         """End one of them: it leaves all its states."""
         child = self._open(context, id, None)
@@ -134,6 +138,16 @@ class Invocations:
 def invoked_machine(machine: CompiledMachine, state: str, id: str) -> CompiledMachine:
     """The machine that a state, by its path, invokes under that id."""
     return machine.invoked[machine.chart.definition.invoked_behavior(state, id)]
+
+
+def _listen(machine: CompiledMachine, children: Mapping[str, Invoked], name: str) -> bool:
+    for id, child in children.items():
+        inner = invoked_machine(machine, child.state, id)
+        groups = inner.planner.configuration(child.snapshot.configuration).candidates(name)
+        waiting = (t for group in (*groups, *groups.late) for t in group if t.definition.event != "*")
+        if any(waiting) or _listen(inner, child.snapshot.invoked, name):
+            return True
+    return False
 
 
 def _take_back(context: ExecutionContext, after: Snapshot) -> None:

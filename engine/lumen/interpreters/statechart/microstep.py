@@ -6,10 +6,10 @@ from lumen.errors import LumenError
 from lumen.interpreters.expressions import ExpressionError
 from lumen.interpreters.statechart.action_context import ActionError
 from lumen.interpreters.statechart.blocks import CompiledBlock
-from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
+from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.interpreters.statechart.computed_timers import begin_computed
 from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
-from lumen.interpreters.statechart.plans import Candidates, MicrostepPlan
+from lumen.interpreters.statechart.plans import Candidates, Group, MicrostepPlan
 from lumen.interpreters.statechart.schedule_timers import begin_schedules
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.diagnostics import NodePath
@@ -31,19 +31,30 @@ def take_enabled(context: ExecutionContext, candidates: Candidates) -> bool:
 
 
 def select_transitions(context: ExecutionContext, candidates: Candidates) -> tuple[CompiledTransition, ...]:
-    """The first candidate of each atomic state whose guard holds (`selectTransitions`)."""
-    if len(candidates) == 1:
+    """The first candidate of each atomic state whose guard holds (`selectTransitions`), then the late ones."""
+    if len(candidates) == 1 and not candidates.late:
         for transition in candidates[0]:
-            if transition.guard is None or _holds(context, transition):
+            if transition.guard is None or _holds(context, transition, transition.guard):
                 return transition.alone
         return ()
-    found: list[CompiledTransition] = []
-    for group in candidates:
-        for transition in group:
-            if transition.guard is None or _holds(context, transition):
-                found.append(transition)
-                break
-    return tuple(dict.fromkeys(found))
+    found = [_first(context, group) for group in candidates]
+    if candidates.late and not _is_heard_inside(context):
+        found += [_first(context, group, late=True) for group in candidates.after(found)]
+    return tuple(dict.fromkeys(transition for transition in found if transition))
+
+
+def _first(context: ExecutionContext, group: Group, *, late: bool = False) -> CompiledTransition | None:
+    for transition in group:
+        guard = transition.late if late else transition.guard
+        if guard is None or _holds(context, transition, guard):
+            return transition
+    return None
+
+
+def _is_heard_inside(context: ExecutionContext) -> bool:
+    """Whether an invoked behaviour listens to the event, too: it may understand what was said."""
+    event = context.unforwarded
+    return event is not None and context.invocations.listens(context, event.name)
 
 
 def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
@@ -92,13 +103,12 @@ def count_microstep(context: ExecutionContext) -> None:
         )
 
 
-def _holds(context: ExecutionContext, transition: CompiledTransition) -> bool:
+def _holds(context: ExecutionContext, transition: CompiledTransition, guard: CompiledGuard) -> bool:
     """Whether a guard is true; one that fails is false, and error.execution (`conditionMatch`, SCXML 5.9.1)."""
-    assert transition.guard is not None  # asked only of transitions that have one
     if transition.source is not context.node:
         context.evaluate_in(transition.source)
     try:
-        return transition.guard(context.cached_scope or context.scope())
+        return guard(context.cached_scope or context.scope())
     except ExpressionError as error:
         context.raise_error(str(error), transition.where)
         return False

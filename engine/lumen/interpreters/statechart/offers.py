@@ -20,7 +20,7 @@ def offers(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         scope = Scope(
             snapshot.context, None, node.view(snapshot.language, snapshot.place), standing.known.__contains__,
             snapshot.at, snapshot.language, machine.phrases, machine.answers, snapshot.epoch, snapshot.timezone,
-            machine.lists, no_draw,
+            machine.lists, no_draw, machine,
         )  # fmt: skip
         for one in (transition.definition for transition in node.transitions):
             if one.offer and not one.approve and (one.guard is None or _may_hold(one.guard.source, scope)):

@@ -1,6 +1,6 @@
 """What a microstep does, worked out once for each configuration and set of transitions, and kept."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, TypeAlias
 
@@ -20,8 +20,27 @@ from lumen.language.machines import Transition
 MAX_CACHE_ENTRIES = 4096
 """How many entries a cache holds before it is emptied: charts with many regions have no end of configurations."""
 
-Candidates: TypeAlias = tuple[tuple[CompiledTransition, ...], ...]
-"""For each active atomic state the transitions that an event selects, the innermost first."""
+Group: TypeAlias = tuple[CompiledTransition, ...]
+
+
+class Candidates(tuple[Group, ...]):
+    """For each active atomic state the transitions that an event selects, the innermost first.
+
+    `late` are those of the same state that are asked only if it takes none of these, and no state takes a row of
+    `hears`; it is empty if there are none at all.
+    """
+
+    late: tuple[Group, ...] = ()
+
+    def after(self, enabled: Sequence[CompiledTransition | None]) -> "Candidates":
+        """What is asked after these were taken, one for each state or none."""
+        if not self.late or any(t and t.definition.hears for t in enabled):
+            return NO_CANDIDATES
+        rest = (group for group, taken in zip(self.late, enabled, strict=True) if taken is None)
+        return Candidates(group for group in rest if group)
+
+
+NO_CANDIDATES = Candidates()
 
 
 class MicrostepPlan(NamedTuple):
@@ -74,11 +93,20 @@ class Configuration:
 
     def _select(self, wanted: Callable[[CompiledTransition], bool]) -> Candidates:
         if self.finished:
-            return ()
-        groups = (
-            tuple(t for node in (leaf, *leaf.ancestors) for t in node.transitions if wanted(t)) for leaf in self.leaves
-        )
-        return tuple(group for group in groups if group)
+            return NO_CANDIDATES
+        first: list[Group] = []
+        late: list[Group] = []
+        for leaf in self.leaves:
+            found = [t for node in (leaf, *leaf.ancestors) for t in _in_order(node.transitions) if wanted(t)]
+            now = tuple(t for t in found if not t.is_otherwise)
+            rows = tuple(t for t in found if t.late)
+            if now or rows:
+                first.append(now)
+                late.append(rows)
+        candidates = Candidates(first)
+        if any(late):
+            candidates.late = tuple(late)
+        return candidates
 
 
 class MicrostepPlanner:
@@ -152,6 +180,13 @@ class MicrostepPlanner:
         """Equal names that are there already, or these: with a thousand states it counts what memory a step visits."""
         make_room(self._names)
         return self._names.setdefault(names, names)
+
+
+def _in_order(transitions: tuple[CompiledTransition, ...]) -> Sequence[CompiledTransition]:
+    """The transitions of a state in the order in which they are asked: rows of `hears` after `heard`, before `*`."""
+    if not any(t.late for t in transitions):
+        return transitions
+    return sorted(transitions, key=lambda t: 2 if t.definition.event == "*" else t.late is not None)
 
 
 def make_room(cache: dict[Any, Any]) -> None:

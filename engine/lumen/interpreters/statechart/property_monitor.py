@@ -79,6 +79,7 @@ def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot)
         answers=machine.answers,
         epoch=snapshot.epoch,
         lists=machine.lists,
+        machine=machine,
     )
     try:
         return compile_guard(condition.source)(scope)

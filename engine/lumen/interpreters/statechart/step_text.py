@@ -138,7 +138,7 @@ class StepText:
         if not needed:
             return
         wanted = Sight(
-            sight.event if "event" in needed else None,
+            sight.event if needed & {"event", "heard"} else None,
             sight.node if "state" in needed else None,
             sight.active if "In" in needed else None,
         )
@@ -151,7 +151,7 @@ class StepText:
         phrases, answers, lists = map(self.constant, (machine.phrases, machine.answers, machine.lists))
         self.line(
             f"scope = new(Scope, (context, {event}, {view}, {active}, at, language, {phrases}, {answers}, epoch, zone,"
-            f" {lists}, no_draw))"
+            f" {lists}, no_draw, {self.constant(machine)}))"
         )
         self.scope = wanted
 

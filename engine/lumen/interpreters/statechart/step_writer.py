@@ -13,8 +13,8 @@ from functools import partial
 from typing import TypeAlias
 
 from lumen.interpreters.expressions.inlining import scope_needs
-from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
-from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner
+from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
+from lumen.interpreters.statechart.plans import Candidates, Configuration, Group, MicrostepPlan, MicrostepPlanner
 from lumen.interpreters.statechart.state_changes import StateChange
 from lumen.interpreters.statechart.step_actions import ActionText, Certain, Op
 from lumen.interpreters.statechart.step_code import WrittenStep
@@ -39,7 +39,7 @@ class StepWriter(ActionText):
 
     def heard(self, candidates: Candidates) -> WrittenStep | None:
         """What an event does that has these candidates; None where nothing of it is plain."""
-        return self.written(partial(self.decide, candidates, (), {}))
+        return self.written(self.select(candidates))
 
     def taken(self, enabled: Enabled) -> WrittenStep | None:
         """What these transitions do."""
@@ -98,11 +98,11 @@ class StepWriter(ActionText):
             raise NotPlainError
         elif known.configuration.eventless and not known.settled:
             known.settled = True
-            known.first(partial(self.decide, known.configuration.eventless, (), {}))
+            known.first(self.select(known.configuration.eventless))
         elif known.queue:
             (known.event, name), *others = known.queue
             known.queue, known.settled = tuple(others), False
-            known.first(partial(self.decide, known.configuration.candidates(name), (), {}))
+            known.first(self.select(known.configuration.candidates(name)))
         elif known.beginnings:
             begun = sorted(known.beginnings, key=lambda node: node.index)
             known.beginnings, known.settled = (), False
@@ -111,18 +111,33 @@ class StepWriter(ActionText):
             self.plain = True
             self.result(known)
 
-    def decide(self, candidates: Candidates, enabled: Enabled, facts: Mapping[str, bool], known: Certain) -> None:
+    def select(self, candidates: Candidates) -> Op:
+        """What selects among the candidates of an event."""
+        return partial(self.decide, tuple(candidates), candidates, (), {})
+
+    def decide(
+        self,
+        groups: tuple[Group, ...],
+        candidates: Candidates,
+        enabled: tuple[CompiledTransition | None, ...],
+        facts: Mapping[str, bool],
+        known: Certain,
+    ) -> None:
         """The first candidate of each atomic state whose guard holds (`selectTransitions`).
 
-        `facts` are the guards that were asked before, for another candidate, and have no other answer here.
+        `groups` are those of the `candidates` that are left. `facts` are the guards that were asked before, for
+        another candidate, and have no other answer here.
         """
-        if not candidates:
-            known.first(partial(self.take, tuple(dict.fromkeys(enabled))))
+        if not groups:
+            self.decide_late(candidates.after(enabled), enabled, known)
             return
-        group, *others = candidates
+        group, *others = groups
         for transition in group:
-            then = partial(self.decide, tuple(others), (*enabled, transition))
+            then = partial(self.decide, tuple(others), candidates, (*enabled, transition))
             guard = transition.definition.guard
+            if transition.late:
+                self.either(self.row(transition, transition.guard, known), known, partial(then, facts))
+                continue
             if guard is None or facts.get(guard.source):
                 known.first(partial(then, facts))
                 return
@@ -132,7 +147,28 @@ class StepWriter(ActionText):
                 everywhere = scope_needs(guard.source).isdisjoint(("state", "In"))
                 self.either(condition, known, partial(then, {**facts, guard.source: True} if everywhere else facts))
                 facts = {**facts, guard.source: False} if everywhere else facts
-        known.first(partial(self.decide, tuple(others), enabled, facts))
+        known.first(partial(self.decide, tuple(others), candidates, (*enabled, None), facts))
+
+    def decide_late(
+        self, groups: tuple[Group, ...], enabled: tuple[CompiledTransition | None, ...], known: Certain
+    ) -> None:
+        """The late rows of `hears` of those states that took nothing."""
+        if not groups:
+            known.first(partial(self.take, tuple(dict.fromkeys(filter(None, enabled)))))
+            return
+        group, *others = groups
+        for transition in group:
+            then = partial(self.decide_late, tuple(others), (*enabled, transition))
+            self.either(self.row(transition, transition.late, known), known, then)
+        known.first(partial(self.decide_late, tuple(others), enabled))
+
+    def row(self, transition: CompiledTransition, guard: CompiledGuard | None, known: Certain) -> str:
+        """The guard of a row of `hears`, called as it is: which row is taken depends on all rows of its state."""
+        self.see(
+            frozenset(("event", "state", "In", "scope")),
+            Sight(known.event, transition.source, known.configuration.known),
+        )
+        return f"{self.constant(guard)}(scope)"
 
     def take(self, enabled: Enabled, known: Certain) -> None:
         """One microstep, with these transitions."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.expressions.phrases import padded
+from lumen.interpreters.talk.folding import padded
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project

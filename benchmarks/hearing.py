@@ -1,0 +1,214 @@
+"""How much of what visitors say is understood, by kind and language: known sayings, and those that were held back.
+
+    python benchmarks/hearing.py                     # the words that come with Lumen, and the shipped tour
+    python benchmarks/hearing.py --failed            # and which sayings were misunderstood; not those held back
+    python benchmarks/hearing.py --tour FILE         # the tour on sayings in a file like benchmarks/hearing/tour.yaml
+    python benchmarks/hearing.py --cost              # processor time of a text that was not heard before
+
+A name is tried alone: a state that hears it and `else`. Every third saying is held back from who writes the word lists.
+"""
+
+import argparse
+import statistics
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+import lumen
+from lumen import statechart
+from lumen.interpreters.talk.hearing import hearing_of
+from lumen.language.commands import Start
+from lumen.language.events import Event
+
+HERE = Path(__file__).parent / "hearing"
+LANGUAGES = ("en", "id", "de")
+HELD_BACK = 3
+"""One saying of so many is held back."""
+PLACES = {"fine", "not_fine", "dance", "sing", "photo", "goodbye", "answer", "explain"}
+"""The states of the tour that a saying may lead to."""
+
+
+class Tried(NamedTuple):
+    """A saying that was tried: its kind and language, whether it was held back, and whether it was understood."""
+
+    kind: str
+    language: str
+    held_back: bool
+    said: str
+    wanted: Any
+    found: Any
+    right: bool
+
+
+def words_tried(languages: Sequence[str], names: Sequence[str]) -> Iterator[Tried]:
+    """Each saying for a name of the words that come with Lumen; `near` sayings must not be taken for it."""
+    for language in languages:
+        for name, both in yaml.safe_load((HERE / f"{language}.yaml").read_text()).items():
+            if names and name not in names:
+                continue
+            machine = statechart.Machine.from_dict(alone(name))
+            for what in ("sayings", "near"):
+                for number, saying in enumerate(both[what]):
+                    text = saying["say"] if isinstance(saying, dict) else saying
+                    wanted = saying["name"] if isinstance(saying, dict) else what == "sayings"
+                    found = heard(machine, text)
+                    right = same(found, wanted) if isinstance(saying, dict) else (found is not False) == wanted
+                    kind = name if what == "sayings" else f"near {name}"
+                    yield Tried(kind, language, held_back(number), text, wanted, found, right)
+
+
+def alone(name: str) -> dict[str, Any]:
+    """A behaviour that hears one name."""
+    row: dict[str, Any] = {"target": "hit"}
+    if name == "my_name":
+        row["actions"] = {"assign": {"caught": "heard.name"}}
+    states = {"asked": {"hears": {name: row, "else": "missed"}}, "hit": {}, "missed": {}}
+    return {"words": ["common"], "context": {"caught": ""}, "states": states}
+
+
+def heard(machine: Any, text: str) -> Any:
+    """What a name was taken for: False if it was not heard, else what was caught, or True."""
+    after = statechart.step(machine, statechart.initial(machine).snapshot, Event("heard", {"result": text})).snapshot
+    return "hit" in after.configuration and (after.context["caught"] or True)
+
+
+def same(name: Any, wanted: Any) -> bool:
+    """Whether a name is the one that was said; a recogniser writes it without capitals."""
+    return str(name).casefold() == str(wanted).casefold()
+
+
+def held_back(number: int) -> bool:
+    return number % HELD_BACK == HELD_BACK - 1
+
+
+class Tour:
+    """The shipped tour, brought to the states in which it asks."""
+
+    def __init__(self) -> None:
+        self.machine = lumen.load(Path(__file__).parents[1]).machine
+        begun = self.settled(statechart.initial(self.machine, language="en"))
+        greeted = self.settled(statechart.step(self.machine, begun, Event("face", {"x": 0, "y": 0}, 1.0)))
+        self.at = {"name": greeted}
+        self.at["mood"] = self.settled(self.said(greeted, "My name is Bob"))
+        self.at["offer"] = self.settled(self.said(self.at["mood"], "Fine"))
+        self.at["language"] = self.at["offer"]
+        for kind, state in (("name", "ask_name"), ("mood", "how_are_you"), ("offer", "offer")):
+            if state not in self.at[kind].configuration:
+                raise SystemExit(f"the tour is not in `{state}` but in {sorted(self.at[kind].configuration)}")
+
+    def said(self, snapshot: Any, text: str) -> Any:
+        return statechart.step(self.machine, snapshot, Event("heard", {"result": text}, snapshot.at + 1))
+
+    def settled(self, step: Any) -> Any:
+        """Where it is once the robot has done all that was started, one command after another."""
+        waiting = list(step.commands)
+        while waiting:
+            command = waiting.pop(0)
+            if isinstance(command, Start):
+                event = Event(f"done.command.{command.id}", None, step.snapshot.at + 0.1)
+                step = statechart.step(self.machine, step.snapshot, event)
+                waiting += step.commands
+        return step.snapshot
+
+    def try_all(self, file: Path, *, all_known: bool) -> Iterator[Tried]:
+        for kind, by_language in yaml.safe_load(file.read_text()).items():
+            for language, rows in by_language.items():
+                for number, (text, wanted) in enumerate(rows):
+                    found, right = self.tried(kind, language, text, wanted)
+                    yield Tried(kind, language, not all_known and held_back(number), text, wanted, found, right)
+
+    def tried(self, kind: str, language: str, text: str, wanted: Any) -> tuple[Any, bool]:
+        """What came of a saying, and whether that is as it should be."""
+        step = self.said(self.at[kind]._replace(language=language), text)
+        if kind == "name":
+            found = step.snapshot.context["visitor"] or None
+            return found, same(found, wanted)
+        if kind == "language":
+            found = step.snapshot.language
+            return found, found == wanted
+        entered = set(step.entered)
+        found = ", ".join(
+            sorted(entered & {"fine", "not_fine", "dance", "sing", "photo", "goodbye", "answer", "explain"})
+        )
+        if isinstance(wanted, str) and wanted.startswith("not "):
+            return found, wanted.removeprefix("not ") not in entered
+        return found, wanted in entered or (wanted == "answer" and "explain" in entered)
+
+
+def table(tried: list[Tried]) -> Iterator[str]:
+    """Shares by kind and language, known sayings and held-back ones."""
+    groups: dict[tuple[str, str], list[Tried]] = defaultdict(list)
+    for one in tried:
+        groups[one.kind, one.language].append(one)
+        groups["all", "near" if one.kind.startswith("near ") else "sayings"].append(one)
+    yield "| kind | language | known | held back |"
+    yield "| --- | --- | --- | --- |"
+    for (kind, language), several in groups.items():
+        yield f"| {kind} | {language} | {share(several, held=False)} | {share(several, held=True)} |"
+
+
+def share(tried: list[Tried], *, held: bool) -> str:
+    of = [one.right for one in tried if one.held_back == held]
+    return f"{sum(of)} of {len(of)}, {100 * sum(of) / len(of):.0f} %" if of else "-"
+
+
+def cost() -> str:
+    """Processor time to find the row of a text that was not heard before, on the tour's phrases [us]."""
+    machine = lumen.load(Path(__file__).parents[1]).machine
+    hearing = hearing_of(machine)
+    texts = [
+        row[0]
+        for by_language in yaml.safe_load((HERE / "tour.yaml").read_text()).values()
+        for rows in by_language.values()
+        for row in rows
+    ]
+    row = next(number for number, block in hearing.blocks.items() if len(block) > 5)
+    hearing.order(row, "something before", {})
+    times = []
+    for round_ in range(9):
+        for text in texts:
+            fresh = f"{text} {round_}"
+            begin = time.process_time_ns()
+            hearing.order(row, fresh, {})
+            times.append((time.process_time_ns() - begin) / 1000)
+    known, median = len(hearing.finder.phrases), statistics.median(times)
+    return f"a new text against {known:,} phrases: {median:.0f} us, median of {len(times):,}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--failed", action="store_true", help="list what was misunderstood")
+    parser.add_argument("--tour", type=Path, metavar="FILE", help="sayings to the tour, all of them known")
+    parser.add_argument("--only", choices=("words", "tour"), help="only one of the two")
+    parser.add_argument("--language", action="append", choices=LANGUAGES, help="only the words of this language")
+    parser.add_argument("--name", action="append", default=[], help="only the words of this name")
+    parser.add_argument("--cost", action="store_true", help="measure the processor time instead")
+    options = parser.parse_args()
+    if options.cost:
+        print(cost())
+        return 0
+    if options.tour:
+        parts = {"the tour": list(Tour().try_all(options.tour, all_known=True))}
+    else:
+        parts = (
+            {}
+            if options.only == "tour"
+            else {"the words that come with Lumen": list(words_tried(options.language or LANGUAGES, options.name))}
+        )
+        if options.only != "words":
+            parts["the tour"] = list(Tour().try_all(HERE / "tour.yaml", all_known=False))
+    for title, tried in parts.items():
+        print(f"{title}\n", *table(tried), "", sep="\n")
+        for one in tried if options.failed else ():
+            if not one.right and not one.held_back:
+                print(f"{one.kind} {one.language}: {one.said!r} -> {one.found!r}, wanted {one.wanted!r}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

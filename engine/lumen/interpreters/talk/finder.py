@@ -1,0 +1,391 @@
+"""Finds phrases in what was said: every form of every name at once, in one trie."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, TypeAlias
+
+from lumen.interpreters.talk.folding import read_words
+from lumen.interpreters.talk.patterns import Form, Slot, forms
+from lumen.interpreters.talk.speech import Speech
+
+NEAR = 5
+"""How many words that are no fillers may stand between a negation and what it negates."""
+NEAR_AFTER = 2
+"""The same if the negation follows."""
+MAX_NAME_WORDS = 4
+_ENDS, _SLOTS = 0, 1
+"""Keys of a node of the trie beside its words: the forms that end there, and the slots that follow."""
+_MAX_FINDS = 500
+
+Node: TypeAlias = dict[Any, Any]
+Languages: TypeAlias = Mapping[str, Sequence[str]]
+_PARTICLES = frozenset(
+    (
+        "van", "von", "der", "den", "de", "la", "le", "di", "da", "del", "della", "dos", "al", "el", "bin", "binti",
+        "bint", "ibn", "abu", "ter", "ten", "zu", "af",
+    )
+)  # fmt: skip
+"""Words in lower case that a name may hold."""
+
+
+class Entry(NamedTuple):
+    """A form in the trie: what it means, its strength, and how it is to be read.
+
+    `row` is the row of a table of answers. `strength` is the number of its words that are no fillers. A form that is
+    `alone` must be a whole clause; `negative` and `question` forms hold such a word themselves.
+    """
+
+    name: str
+    row: int
+    strength: int
+    alone: bool
+    negative: bool
+    question: bool
+    anyhow: bool
+
+
+class Find(NamedTuple):
+    """A form in a text: words `start` to `end`, and what its slots caught; a list's entry counts its words."""
+
+    entry: Entry
+    start: int
+    end: int
+    caught: tuple[tuple[str, Any], ...]
+    strength: int
+
+
+class Reading:
+    """A text as it was read, and the forms found in it by name."""
+
+    __slots__ = ("clauses", "filler", "finds", "kept", "marks", "slotted", "spans", "speech", "text", "words")
+
+    def __init__(self, text: str, speech: Speech) -> None:
+        read = read_words(text)
+        self.text, self.speech = read.text, speech
+        words, spans, clauses = read.folded, read.spans, read.clauses
+        if not speech._same.keys().isdisjoint(words):
+            words, spans, clauses = _written_out(speech, words, spans, clauses)
+        self.words, self.spans, self.clauses = words, spans, clauses
+        self.filler = speech.fillers.marks(words)
+        self.finds: dict[str, list[Find]] = {}
+        self.slotted: dict[str, list[Find]] | None = None
+        self.marks: dict[str, list[int]] = {}
+        self.kept: dict[Any, Any] = {}
+
+    def said(self, start: int, end: int) -> str:
+        """These words as they were said."""
+        return self.text[self.spans[start][0] : self.spans[end - 1][1]] if end > start else ""
+
+    def is_whole(self, find: Find) -> bool:
+        """Whether a clause holds nothing else but fillers and forms of the same name."""
+        words = range(len(self.words))
+        inside = set(self.clauses[find.start : find.end])
+        rest = [i for i in words if self.clauses[i] in inside and not self.filler[i] and not find.start <= i < find.end]
+        if not rest:
+            return True
+        same = [*self.finds.get(find.entry.name, ()), *(self.slotted or {}).get(find.entry.name, ())]
+        return all(any(other.start <= i < other.end for other in same) for i in rest)
+
+    def is_negated(self, find: Find) -> bool:
+        """Whether a negation of its clause belongs to it."""
+        if find.entry.negative or find.entry.anyhow:
+            return False
+        negations, contrasts = self._marked("negations"), self._marked("contrasts")
+        clause, between = self.clauses[find.start], 0
+        for i in range(find.start - 1, -1, -1):
+            if self.clauses[i] != clause or contrasts[i]:
+                break
+            if negations[i] and self.filler[i] <= negations[i]:
+                return True
+            between += not self.filler[i]
+            if between > NEAR:
+                break
+        negations, clause, between = self._marked("negations_after"), self.clauses[find.end - 1], 0
+        for i in range(find.end, len(self.words)):
+            if self.clauses[i] != clause or contrasts[i]:
+                break
+            if negations[i] and self.filler[i] <= negations[i]:
+                return True
+            between += not self.filler[i]
+            if between > NEAR_AFTER:
+                break
+        return False
+
+    def is_asked(self, find: Find) -> bool:
+        """Whether it is part of a who, why or when question."""
+        if find.entry.question:
+            return False
+        clause = self.clauses[find.start]
+        inside = [i for i, c in enumerate(self.clauses) if c == clause]
+        first = next((i for i in inside if not self.filler[i]), None)
+        if first is not None and self.speech.questions.length(self.words, first):
+            return True
+        anywhere = self._marked("questions_anywhere")
+        return any(anywhere[i] for i in inside)
+
+    def _marked(self, what: str) -> list[int]:
+        found = self.marks.get(what)
+        if found is None:
+            words: Any = getattr(self.speech, what)
+            found = self.marks[what] = words.marks(self.words)
+        return found
+
+
+def _written_out(
+    speech: Speech, words: list[str], spans: list[tuple[int, int]], clauses: list[int]
+) -> tuple[list[str], list[tuple[int, int]], list[int]]:
+    parts = [speech.same((word,)) for word in words]
+    return (
+        [part for several in parts for part in several],
+        [span for span, several in zip(spans, parts, strict=True) for _ in several],
+        [clause for clause, several in zip(clauses, parts, strict=True) for _ in several],
+    )
+
+
+class Finder:
+    """The phrases of a behaviour in one trie.
+
+    `tables` are phrases by language for each name, `rows` the same for each row of the answers of a name, `lists` the
+    phrases of the entries of each list with the entry. Names in `anyhow` are found even if they are negated.
+    """
+
+    def __init__(
+        self,
+        speech: Speech,
+        tables: Mapping[str, Languages],
+        rows: Mapping[str, Sequence[Languages]] | None = None,
+        lists: Mapping[str, Sequence[tuple[Languages, Any]]] | None = None,
+        anyhow: Iterable[str] = (),
+    ) -> None:
+        self.speech, self.anyhow = speech, frozenset(anyhow)
+        self.root: Node = {}
+        self.leading: list[tuple[frozenset[str], Node]] = []
+        """Forms that begin with a slot, and words that such a form needs."""
+        self.slots_only: list[tuple[Form, Entry]] = []
+        self.phrases: set[tuple[str, ...]] = set()
+        self.lists = {name: self._list(entries) for name, entries in (lists or {}).items()}
+        for name, table in tables.items():
+            self._add(name, 0, table)
+        for name, several in (rows or {}).items():
+            for number, table in enumerate(several):
+                self._add(name, number, table)
+
+    def _list(self, entries: Sequence[tuple[Languages, Any]]) -> Node:
+        root: Node = {}
+        for table, value in entries:
+            for phrases in table.values():
+                for phrase in phrases:
+                    for form in forms(phrase):
+                        if form.plain:
+                            words = self.speech.same(form.literals)
+                            _insert(root, words, (value, sum(word not in self.speech.fillers for word in words)))
+        return root
+
+    def _add(self, name: str, row: int, table: Languages) -> None:
+        for language, phrases in table.items():
+            small = self.speech.small_words.get(language, frozenset()) if language else self.speech.small
+            for phrase in phrases:
+                for form in forms(phrase):
+                    self._add_form(name, row, form, small)
+
+    def _add_form(self, name: str, row: int, form: Form, small: frozenset[str]) -> None:
+        speech = self.speech
+        words = speech.same(form.literals)
+        strength = sum(word not in speech.fillers for word in words)
+        entry = Entry(
+            name,
+            row,
+            strength,
+            alone=form.whole or (form.plain and all(word in small for word in words)),
+            negative=any(speech.negations.marks(words)) or any(speech.negations_after.marks(words)),
+            question=any(speech.questions.marks(words)) or any(speech.questions_anywhere.marks(words)),
+            anyhow=name in self.anyhow,
+        )
+        parts = [p for part in form.parts for p in ((part,) if isinstance(part, Slot) else speech.same((part,)))]
+        if form.plain:
+            self.phrases.add(words)
+        if not words:
+            self.slots_only.append((form, entry))
+        elif isinstance(parts[0], Slot):
+            node: Node = {}
+            _insert(node, parts, entry)
+            self.leading.append((frozenset(words), node))
+        else:
+            _insert(self.root, parts, entry)
+
+    def read(self, text: str) -> Reading:
+        """Find all forms that have words of their own in a text."""
+        reading = Reading(text, self.speech)
+        words, root = reading.words, self.root
+        for start, word in enumerate(words):
+            if word in root:
+                self._walk(reading, root[word], start + 1, start, (), 0, reading.finds)
+        if self.leading:
+            known = frozenset(words)
+            for needed, node in self.leading:
+                if needed <= known:
+                    for start in range(len(words)):
+                        self._walk(reading, node, start, start, (), 0, reading.finds)
+        return reading
+
+    def slotted(self, reading: Reading) -> dict[str, list[Find]]:
+        """Find the forms that are slots only."""
+        if reading.slotted is None:
+            found: dict[str, list[Find]] = {}
+            reading.slotted = found
+            for form, entry in self.slots_only:
+                node: Node = {}
+                _insert(node, form.parts, entry)
+                for start in range(len(reading.words)):
+                    if start == 0 or reading.clauses[start] != reading.clauses[start - 1] or reading.filler[start - 1]:
+                        self._walk(reading, node, start, start, (), 0, found)
+        return reading.slotted
+
+    def _walk(
+        self,
+        reading: Reading,
+        node: Node,
+        position: int,
+        start: int,
+        caught: tuple[tuple[str, Any], ...],
+        more: int,
+        found: dict[str, list[Find]],
+    ) -> None:
+        words, filler, count = reading.words, reading.filler, len(reading.words)
+        while True:
+            for entry in node.get(_ENDS, ()):
+                several = found.setdefault(entry.name, [])
+                if len(several) < _MAX_FINDS:
+                    several.append(Find(entry, start, position, caught, entry.strength + more))
+            for slot, then in node.get(_SLOTS, ()):
+                begin = position
+                while begin < count and filler[begin]:
+                    begin += 1
+                if begin < count:
+                    for end, value, strength in self._catch(reading, slot, begin, last=not then.keys() - {_ENDS}):
+                        self._walk(reading, then, end, start, (*caught, (slot.name, value)), more + strength, found)
+            while position < count:
+                if (after := node.get(words[position])) is not None:
+                    node, position = after, position + 1
+                    break
+                if not filler[position]:
+                    return
+                position += 1
+            else:
+                return
+
+    def _catch(self, reading: Reading, slot: Slot, start: int, *, last: bool) -> Iterator[tuple[int, Any, int]]:
+        """What a slot catches from a word on: the end, the value and the words that count, the longest first."""
+        match slot.type:
+            case "name" | "name?":
+                for end in self._names(reading, start, careful=slot.type == "name?", last=last):
+                    yield end, reading.said(start, end), 0
+            case "number":
+                value, end = self.speech.number(reading.words, start)
+                if end > start:
+                    yield end, value, 0
+            case "text":
+                for end in [len(reading.words)] if last else range(start + 1, len(reading.words) + 1):
+                    yield end, reading.text[reading.spans[start][0] : _text_end(reading, end)], 0
+            case kind:
+                node, position = self.lists.get(kind, {}), start
+                found: list[tuple[int, Any, int]] = []
+                while position < len(reading.words) and (after := node.get(reading.words[position])) is not None:
+                    node, position = after, position + 1
+                    found += [(position, value, strength) for value, strength in node.get(_ENDS, ())[:1]]
+                yield from reversed(found[-1:] if last else found)
+
+    def _names(self, reading: Reading, start: int, *, careful: bool, last: bool) -> Iterator[int]:
+        """The ends of a name that begins with a word, the longest first: one to four words of one clause."""
+        ends = self._name_ends(reading, start, careful=careful)
+        yield from reversed(ends[-1:] if last else ends)
+
+    def _name_ends(self, reading: Reading, start: int, *, careful: bool) -> list[int]:
+        words, speech, capitals = reading.words, self.speech, _has_capitals(reading)
+        found: list[int] = []
+        several = False
+        for position in range(start, min(start + MAX_NAME_WORDS, len(words))):
+            word, said = words[position], reading.text[slice(*reading.spans[position])]
+            capital = said[:1].isupper()
+            if reading.clauses[position] != reading.clauses[start] or reading.filler[position] or word.isdecimal():
+                break
+            if position > start and reading.spans[position] == reading.spans[position - 1]:
+                break  # the rest of a contraction
+            particle = word in _PARTICLES and position + 1 < len(words) and position > start
+            if capitals and not (capital or particle or _caseless(said)):
+                break
+            if position > start and not particle and not (capitals and capital and word not in speech.name_ends):
+                if self._is_no_name(word, speech):
+                    break
+            elif position == start:
+                follows = position + 1 < len(words) and reading.clauses[position + 1] == reading.clauses[start]
+                several = capitals and capital and follows and _begins_with_capital(reading, position + 1)
+                if self._refused(word, speech, several=several):
+                    break
+            if not particle:
+                found.append(position + 1)
+        return [end for end in found if not careful or self._is_sure(reading, start, end, several=several)]
+
+    def _refused(self, word: str, speech: Speech, *, several: bool) -> bool:
+        """Whether no name begins with that word; one of two capitalised words may be a state, as in "Happy Salma"."""
+        if word in speech.small or word in speech.negations or word in speech.questions:
+            return True
+        return not several and (word in speech.not_names or word in speech.name_ends)
+
+    def _is_no_name(self, word: str, speech: Speech) -> bool:
+        return (
+            word in speech.small or word in speech.name_ends or word in speech.negations or word in speech.questions
+            or word in speech.not_names or word in speech.contrasts
+        )  # fmt: skip
+
+    def _is_sure(self, reading: Reading, start: int, end: int, *, several: bool) -> bool:
+        words = tuple(reading.words[start:end])
+        if words in self.phrases or (len(words) == 1 and reading.text[reading.spans[start][1] :].lstrip()[:1] == "?"):
+            return False
+        speech = self.speech
+        if speech.not_names.length(words, 0) == len(words) and not several:
+            return False
+        return several or not any(self._is_no_name(word, speech) for word in words)
+
+
+def _insert(root: Node, parts: Sequence[str | Slot], entry: Any) -> None:
+    node = root
+    for part in parts:
+        if isinstance(part, Slot):
+            slots = node.setdefault(_SLOTS, [])
+            known = [then for slot, then in slots if slot == part]
+            node = known[0] if known else _appended(slots, part)
+        else:
+            node = node.setdefault(part, {})
+    node.setdefault(_ENDS, []).append(entry)
+
+
+def _appended(slots: list[tuple[Slot, Node]], slot: Slot) -> Node:
+    node: Node = {}
+    slots.append((slot, node))
+    return node
+
+
+def _has_capitals(reading: Reading) -> bool:
+    """Whether the speaker's words come with capitals, beyond those with which every sentence begins and "I"."""
+    found = reading.kept.get("capitals")
+    if found is None:
+        text, spans, clauses = reading.text, reading.spans, reading.clauses
+        found = reading.kept["capitals"] = any(
+            text[start].isupper() and text[start:end] not in ("I", "I'm", "I’m", "Im")
+            for i, (start, end) in enumerate(spans)
+            if i and clauses[i] == clauses[i - 1] and spans[i] != spans[i - 1]
+        )
+    return bool(found)
+
+
+def _begins_with_capital(reading: Reading, position: int) -> bool:
+    return reading.text[reading.spans[position][0]].isupper() and reading.words[position] not in ("i",)
+
+
+def _caseless(said: str) -> bool:
+    """Whether a word is of a script without capitals."""
+    return said.upper() == said.lower()
+
+
+def _text_end(reading: Reading, end: int) -> int:
+    return len(reading.text.rstrip()) if end == len(reading.words) else reading.spans[end - 1][1]

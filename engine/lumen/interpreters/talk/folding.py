@@ -1,0 +1,154 @@
+"""One folding of words, for phrases, answers, names and passages, in every script."""
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import NamedTuple
+from unicodedata import category, normalize
+
+APOSTROPHES = frozenset("'’ʼ‘`´")
+BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
+"""What Unicode calls White_Space; Python also counts four separators of records."""
+
+MAX_TEXT_EXAMINED = 1_000
+"""Characters of a text that is searched."""
+
+_AROUND = BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
+_ENDS = re.compile(r"[.!?;:,…。！？、，；：؟،।]|\s[-–—]+\s")
+"""What ends a clause."""
+
+_JOINERS = "\u200b\u200c\u200d\u2060\ufeff\u00ad\u0640"
+"""Joiners, soft hyphens and the Arabic tatweel: they are part of a word and do not change it."""
+
+_ALIKE = {"İ": "i", "ı": "i", "I": "i", "ي": "ی", "ى": "ی", "ك": "ک", "ۀ": "ه"}
+"""Letters that keyboards and languages with other rules of case write for one another: Turkish, Persian and Arabic."""
+
+_UNWRITTEN = [*range(0x064B, 0x0653), 0x0670, *range(0x0591, 0x05BE), 0x05BF, 0x05C1, 0x05C2, 0x05C4, 0x05C5, 0x05C7]
+"""Vowel signs of Arabic and Hebrew, which most texts leave out."""
+
+_WITHOUT_BLANKS = "\u0e00-\u0eff\u1000-\u109f\u1780-\u17ff\u3005-\u3007\u3040-\u30ff\u3400-\u9fff\uf900-\ufaff"
+"""Thai, Lao, Burmese, Khmer, Japanese and Chinese letters: there are no blanks between words."""
+
+_PIECES = re.compile(rf"[{_WITHOUT_BLANKS}]|[^{_WITHOUT_BLANKS}]+")
+_TITLES = frozenset(
+    ("dr", "mr", "mrs", "ms", "mx", "prof", "st", "ir", "drs", "dra", "hj", "sr", "sra", "mme", "fr", "hr")
+)
+_UNBROKEN = re.compile(rf"[{_WITHOUT_BLANKS}]")
+
+
+class _WordsOnly(dict[int, str | int]):
+    """For `str.translate`: letters, digits, marks, joiners and apostrophes stay, all else becomes a blank."""
+
+    def __missing__(self, code: int) -> str | int:
+        character = chr(code)
+        part = category(character)[0] in "LNM" or character in APOSTROPHES or character in _JOINERS
+        kept = code if part else " "
+        if len(self) < 4096:
+            self[code] = kept
+        return kept
+
+
+WORDS_ONLY = _WordsOnly()
+_FOLDED: dict[int, str | None] = {
+    **dict.fromkeys(map(ord, APOSTROPHES)),
+    **dict.fromkeys(map(ord, _JOINERS)),
+    **dict.fromkeys(_UNWRITTEN),
+    **{ord(one): other for one, other in _ALIKE.items()},
+}
+
+
+@lru_cache(maxsize=4096)
+def folded(text: str) -> tuple[str, ...]:
+    """Return the words of a text as they are compared: without case and apostrophes, so that "Don't" is "dont".
+
+    Letters of languages without blanks are words of their own, with the marks that belong to them.
+    """
+    if text.isascii():
+        return tuple(text.translate(_FOLDED).lower().translate(WORDS_ONLY).split())
+    joined = normalize("NFKC", text.translate(_FOLDED))
+    plain = normalize("NFKC", joined.casefold()).replace("i\u0307", "i").translate(WORDS_ONLY)
+    found = plain.translate(_FOLDED).split()
+    return tuple(piece for word in found for piece in _pieces(word))
+
+
+def _pieces(word: str) -> Iterator[str]:
+    if not _UNBROKEN.search(word):
+        yield word
+        return
+    piece = ""
+    for part in _PIECES.findall(word):
+        if piece and not category(part[0]).startswith("M"):
+            yield piece
+            piece = ""
+        piece += part
+    yield piece
+
+
+@lru_cache(maxsize=512)
+def padded(text: str) -> str:
+    """Return the compared words between blanks, so that `" no " in " i know "` is false; empty without any word."""
+    found = folded(text)
+    return f" {' '.join(found)} " if found else ""
+
+
+def words(text: str) -> list[str]:
+    """Return the words of a text as they are written, without punctuation."""
+    cleaned = (word.strip("'’ʼ‘`´") for word in text[:MAX_TEXT_EXAMINED].translate(WORDS_ONLY).split())
+    return [word for word in cleaned if word]
+
+
+def after(text: str, phrase: str) -> str:
+    """Return what follows the phrase in the text, without the blanks and punctuation around it; "" without it."""
+    text, sought = text[:MAX_TEXT_EXAMINED], list(folded(phrase[:MAX_TEXT_EXAMINED]))
+    found: list[str] = []
+    ends: list[int] = []
+    for word, _, end in placed_words(text):
+        parts = folded(word)
+        found.extend(parts)
+        ends.extend([end] * len(parts))
+    for start in range(len(found) - len(sought) + 1) if sought else ():
+        if found[start : start + len(sought)] == sought:
+            return text[ends[start + len(sought) - 1] :].strip(_AROUND)
+    return ""
+
+
+def placed_words(text: str) -> Iterator[tuple[str, int, int]]:
+    """The words of a text with their places, punctuation left out."""
+    blanked = text.translate(WORDS_ONLY)
+    position = 0
+    for word in blanked.split():
+        start = blanked.index(word, position)
+        position = start + len(word)
+        yield word, start, position
+
+
+def _is_title(word: str, text: str, end: int) -> bool:
+    """Whether the full stop after a word is that of an abbreviated title, as in "Dr. Hasan"."""
+    return word in _TITLES and text[end : end + 2] == ". "
+
+
+class Words(NamedTuple):
+    """A text as words: as they are compared, where each is in the text, and the clause that it is in, from 0."""
+
+    text: str
+    folded: list[str]
+    spans: list[tuple[int, int]]
+    clauses: list[int]
+
+
+def read_words(text: str) -> Words:
+    """Read the words and clauses of a text, as far as it is examined."""
+    text = text[:MAX_TEXT_EXAMINED]
+    found: list[str] = []
+    spans: list[tuple[int, int]] = []
+    clauses: list[int] = []
+    clause, last = 0, 0
+    for word, start, end in placed_words(text):
+        if found and start > last + 1 and _ENDS.search(text, last, start) and not _is_title(found[-1], text, last):
+            clause += 1
+        for part in folded(word):
+            found.append(part)
+            spans.append((start, end))
+            clauses.append(clause)
+        last = end
+    return Words(text, found, spans, clauses)

@@ -1,0 +1,193 @@
+"""The rows of `hears` of a behaviour: which of them a sentence takes, in which order, and what was caught for it."""
+
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from lumen.interpreters.talk.finder import Find, Finder, Reading
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS, Speech
+from lumen.language.machines import Answer, Hears, MachineDefinition
+
+HEARD = "heard"
+"""The event that rows of `hears` wait for; its text is `event.data.result`."""
+MATCHER = 1
+"""The version of the rules by which a sentence finds its row; a journal holds it."""
+_MAX_READINGS = 64
+_ENTRY = "context."
+
+
+class Taken(NamedTuple):
+    """A row that a sentence may take: its number, and what was found for it; nothing for `else`."""
+
+    number: int
+    find: Find | None = None
+
+
+class Order(NamedTuple):
+    """The rows of a state that a sentence may take, the best first; the `late` ones only if no state took another."""
+
+    first: tuple[Taken, ...]
+    late: tuple[Taken, ...]
+
+
+def said_in(event: Any) -> str:
+    """The text of an event, given as expressions see it; empty if there is none."""
+    data = event.get("data") if isinstance(event, Mapping) else None
+    text = data.get("result") if isinstance(data, Mapping) else None
+    return text if isinstance(text, str) else ""
+
+
+class Hearing:
+    """What a behaviour hears: its phrases and answers, and the rows of its states."""
+
+    def __init__(self, machine: MachineDefinition) -> None:
+        self.machine = machine
+        self.speech = Speech(machine.phrases, machine.answers)
+        self.rows: dict[int, Hears] = {}
+        self.blocks: dict[int, tuple[Hears, ...]] = {}
+        for state in machine.states.values():
+            block = tuple(t.hears for t in state.transitions if t.hears)
+            self.rows |= {row.number: row for row in block}
+            self.blocks |= dict.fromkeys([row.number for row in block], block)
+        self.finder = Finder(
+            self.speech,
+            {name: table for name, table in machine.phrases.items() if name not in WORD_LISTS},
+            {name: [row.phrases for row in rows] for name, rows in machine.answers.items() if name not in TABLES},
+            {name: [(phrases_in(entry), entry) for entry in entries] for name, entries in machine.lists.items()},
+            machine.anyhow,
+        )
+        self._readings: OrderedDict[str, Reading] = OrderedDict()
+        self._finders: dict[int, tuple[Any, Finder]] = {}
+
+    def read(self, text: str) -> Reading:
+        """Read a text; the last ones are kept."""
+        reading = self._readings.get(text)
+        if reading is None:
+            reading = self._readings[text] = self.finder.read(text)
+            if len(self._readings) > _MAX_READINGS:
+                self._readings.popitem(last=False)
+        return reading
+
+    def order(self, number: int, text: str, context: Mapping[str, Any]) -> Order:
+        """The rows that a sentence may take, of the state that the row of this number belongs to."""
+        reading, block = self.read(text), self.blocks[number]
+        key = block[0].number
+        found: Order | None = reading.kept.get(key)
+        if found is None:
+            found = self._order(reading, block, context)
+            if not any(name.startswith(_ENTRY) for row in block for name in row.names):
+                reading.kept[key] = found
+        return found
+
+    def caught(self, number: int, event: Any, context: Mapping[str, Any], language: str) -> dict[str, Any]:
+        """What `heard` is for a row: the text, the phrase as it was said, the answer, and what its slots caught."""
+        text = said_in(event)
+        order = self.order(number, text, context)
+        find = next((taken.find for taken in (*order.first, *order.late) if taken.number == number), None)
+        found: dict[str, Any] = {"text": text, "phrase": "", "answer": None}
+        if find:
+            found["phrase"] = self.read(text).said(find.start, find.end)
+            if find.entry.name in self.machine.answers:
+                rows = self.machine.answers[find.entry.name]
+                found["answer"] = in_language(rows[find.entry.row].value, language, languages_of(rows))
+            found.update(find.caught)
+        return found
+
+    def _order(self, reading: Reading, block: Sequence[Hears], context: Mapping[str, Any]) -> Order:
+        asked = {name for row in block if row.way == "asked" for name in row.names}
+        first: list[tuple[int, Taken]] = []
+        late: list[Taken] = []
+        otherwise: list[Taken] = []
+        for row in block:
+            if row.way == "else":
+                otherwise.append(Taken(row.number))
+            elif reading.words and (find := self.best(reading, row, asked, context)):
+                if find.strength:
+                    first.append((-find.strength, Taken(row.number, find)))
+                else:
+                    late.append(Taken(row.number, find))
+        first.sort(key=lambda one: one[0])
+        return Order(tuple(taken for _, taken in first), (*late, *otherwise))
+
+    def best(self, reading: Reading, row: Hears, asked: set[str], context: Mapping[str, Any]) -> Find | None:
+        """The find that counts for a row: the strongest, of equals the one of the upper answer, then the last."""
+        best: Find | None = None
+        rank = (-1, 0, 0, 0)
+        for name in row.names:
+            for find in self._finds(reading, name, context):
+                its = (find.strength, -find.entry.row, find.end, -find.start)
+                if its > rank and counts(reading, find, row.way, name in asked):
+                    best, rank = find, its
+        return best
+
+    def _finds(self, reading: Reading, name: str, context: Mapping[str, Any]) -> Iterator[Find]:
+        if name.startswith(_ENTRY):
+            found = self._entry_finder(name, context)
+            if found is None:
+                return
+            other = found.read(reading.text)
+            reading.finds[name] = other.finds.get(name, [])
+            yield from reading.finds[name]
+            yield from found.slotted(other).get(name, ())
+            return
+        finds = reading.finds.get(name, ())
+        yield from finds
+        if not any(find.strength for find in finds) and self.finder.slots_only:
+            yield from self.finder.slotted(reading).get(name, ())
+
+    def _entry_finder(self, path: str, context: Mapping[str, Any]) -> Finder | None:
+        """The phrases at a path of the context, as a finder; None if there are none."""
+        table: Any = context
+        for key in path.split(".")[1:]:
+            table = table.get(key) if isinstance(table, Mapping) else None
+        if not isinstance(table, str | list | tuple | Mapping):
+            return None
+        kept = self._finders.get(id(table))
+        if kept is None or kept[0] is not table:
+            if len(self._finders) >= _MAX_READINGS:
+                self._finders.clear()
+            kept = self._finders[id(table)] = table, Finder(self.speech, {path: by_language(table)})
+        return kept[1]
+
+
+def counts(reading: Reading, find: Find, way: str, asks: bool) -> bool:
+    """Whether a find counts in that way: found, negated or asked; `asks` if another row takes questions for it."""
+    if reading.is_negated(find):
+        return way == "not"
+    if way == "not" or (find.entry.alone and not reading.is_whole(find)):
+        return False
+    return (asks and reading.is_asked(find)) == (way == "asked")
+
+
+def hearing_of(machine: MachineDefinition) -> Hearing:
+    """The rows of a machine, made when they are first needed and kept beside it."""
+    found: Hearing | None = machine.__dict__.get("_hearing")
+    if found is None:
+        found = Hearing(machine)
+        object.__setattr__(machine, "_hearing", found)  # frozen, and the same for all who hold it
+    return found
+
+
+def by_language(value: Any) -> dict[str, tuple[str, ...]]:
+    """Phrases as an entry of a list has them: a text, a list of texts, or one for each language."""
+    table = value if isinstance(value, Mapping) else {"": value}
+    rows = {key: (row,) if isinstance(row, str) else tuple(row or ()) for key, row in table.items()}
+    return {key: tuple(text for text in row if isinstance(text, str)) for key, row in rows.items()}
+
+
+def phrases_in(entry: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
+    """The `phrases` of an entry of a list, by which a slot of the list's name finds it."""
+    value = entry.get("phrases")
+    return by_language(value) if isinstance(value, str | list | tuple | Mapping) else {}
+
+
+def languages_of(rows: Sequence[Answer]) -> frozenset[str]:
+    """The languages that a table of answers has phrases in."""
+    return frozenset(language for row in rows for language in row.phrases)
+
+
+def in_language(value: Any, language: str, languages: frozenset[str]) -> Any:
+    """Of a map of languages the current one's value, else the first; any other value as it is."""
+    if not isinstance(value, Mapping) or not value or not value.keys() <= languages | {language}:
+        return value
+    return value[language] if language in value else next(iter(value.values()))

@@ -1,0 +1,149 @@
+"""The words by which sentences are read: fillers, small words, negations, question words, numbers and ends of names.
+
+They are phrases and answers under reserved names, so a project replaces them as it does any phrase.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from lumen.interpreters.talk.folding import folded
+from lumen.language.machines import Answer
+
+FILLERS, SMALL_WORDS = "fillers", "small_words"
+NEGATIONS, NEGATIONS_AFTER, CONTRASTS = "negations", "negations_after", "contrasts"
+QUESTIONS, QUESTIONS_ANYWHERE = "questions", "questions_anywhere"
+NOT_NAMES, NAME_ENDS = "not_names", "name_ends"
+NUMBERS, CONTRACTIONS = "numbers", "contractions"
+WORD_LISTS = (
+    FILLERS, SMALL_WORDS, NEGATIONS, NEGATIONS_AFTER, CONTRASTS, QUESTIONS, QUESTIONS_ANYWHERE, NOT_NAMES, NAME_ENDS,
+)  # fmt: skip
+"""The names of phrases that are no meanings."""
+TABLES = (NUMBERS, CONTRACTIONS)
+"""The names of answers that are no answers: number words and contractions, each with what it stands for."""
+
+Phrases = Mapping[str, Mapping[str, tuple[str, ...]]]
+_HUNDRED, _THOUSAND = 100, 1000
+
+
+class WordList:
+    """Words and sequences of words; `marks` which words of a text are part of one."""
+
+    def __init__(self, entries: Iterable[tuple[str, ...]]) -> None:
+        self.by_first: dict[str, list[tuple[str, ...]]] = {}
+        for words in dict.fromkeys(entries):
+            if words:
+                self.by_first.setdefault(words[0], []).append(words)
+        for several in self.by_first.values():
+            several.sort(key=len, reverse=True)
+
+    def __contains__(self, word: str) -> bool:
+        return (word,) in self.by_first.get(word, ())
+
+    def length(self, words: Sequence[str], start: int) -> int:
+        """How many words from there on are its longest entry."""
+        for entry in self.by_first.get(words[start], ()):
+            length = len(entry)
+            if length == 1 or tuple(words[start : start + length]) == entry:
+                return length
+        return 0
+
+    def marks(self, words: Sequence[str]) -> list[int]:
+        """For each word the length of the entry that it is part of, 0 if it is part of none."""
+        found = [0] * len(words)
+        position = 0
+        while position < len(words):
+            if words[position] in self.by_first and (length := self.length(words, position)):
+                found[position : position + length] = [length] * length
+                position += length
+            else:
+                position += 1
+        return found
+
+
+class Speech:
+    """How sentences are read by the word lists of a behaviour."""
+
+    def __init__(self, phrases: Phrases, answers: Mapping[str, Sequence[Answer]]) -> None:
+        self._same: dict[str, tuple[str, ...]] = {}
+        self.numbers: dict[tuple[str, ...], int] = {}
+        for row in answers.get(CONTRACTIONS, ()):
+            for word in _texts(row.phrases):
+                self._same[word] = folded(str(row.value))
+        for row in answers.get(NUMBERS, ()):
+            for text in _texts(row.phrases):
+                words = tuple(text.split())
+                self.numbers[words] = row.value
+                if len(words) == 1:
+                    self._same.setdefault(text, (str(row.value),))
+        self.longest_number = max(map(len, self.numbers), default=1)
+        for words, value in list(self.numbers.items()):
+            self.numbers[self.same(words)] = value
+
+        def listed(name: str) -> WordList:
+            return WordList(self.same(folded(text)) for texts in phrases.get(name, {}).values() for text in texts)
+
+        self.fillers, self.negations, self.negations_after = listed(FILLERS), listed(NEGATIONS), listed(NEGATIONS_AFTER)
+        self.contrasts, self.questions = listed(CONTRASTS), listed(QUESTIONS)
+        self.questions_anywhere = listed(QUESTIONS_ANYWHERE)
+        self.not_names, self.name_ends = listed(NOT_NAMES), listed(NAME_ENDS)
+        self.small_words = {
+            language: frozenset(word for text in texts for word in self.same(folded(text)))
+            for language, texts in phrases.get(SMALL_WORDS, {}).items()
+        }
+        self.small = frozenset(word for words in self.small_words.values() for word in words)
+
+    def same(self, words: Iterable[str]) -> tuple[str, ...]:
+        """The words with contractions written out and number words as digits."""
+        same = self._same
+        found: list[str] = []
+        for word in words:
+            if word in same:
+                found += same[word]
+            else:
+                found.append(word)
+        return tuple(found)
+
+    def number(self, words: Sequence[str], start: int) -> tuple[int, int]:
+        """The number that begins there and its end; the end is the start if there is none."""
+        total = part = 0
+        position = start
+        while position < len(words):
+            length, value = self._number_word(words, position)
+            if not length:
+                break
+            if value in (_HUNDRED, _THOUSAND) and position > start:
+                total, part = (total, max(part, 1) * value) if value == _HUNDRED else (total + max(part, 1) * value, 0)
+            elif position == start or (part % 10 == 0 and value < max(10, part and _power(part))):
+                part += value
+            else:
+                break
+            position += length
+        return total + part, position
+
+    def _number_word(self, words: Sequence[str], position: int) -> tuple[int, int]:
+        for length in range(min(self.longest_number, len(words) - position), 0, -1):
+            value = self.numbers.get(tuple(words[position : position + length]))
+            if value is not None:
+                return length, value
+        word = words[position]
+        return (1, int(word)) if word.isdecimal() and len(word) <= 15 else (0, 0)
+
+
+def _power(number: int) -> int:
+    """The largest power of ten that divides a number."""
+    power = 1
+    while number % (10 * power) == 0:
+        power *= 10
+    return power
+
+
+def _texts(phrases: Mapping[str, tuple[str, ...]]) -> Iterable[str]:
+    return dict.fromkeys(" ".join(folded(text)) for texts in phrases.values() for text in texts)
+
+
+def word_lists(phrases: Mapping[str, Any], answers: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What of the phrases and answers of a words file is word lists and tables."""
+    return (
+        {name: phrases[name] for name in WORD_LISTS if name in phrases},
+        {name: answers[name] for name in TABLES if name in answers},
+    )

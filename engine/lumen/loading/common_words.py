@@ -1,0 +1,43 @@
+"""The words that come with Lumen: `words: [common]`, and the word lists by which every `hears` is read.
+
+They are one more file of a project that uses them and holds no `behaviors/words/common.yaml` of its own, so they are
+hashed, kept in bundles and replayed like any other.
+"""
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from lumen.loading.words import WORDS_FOLDER
+
+COMMON = "common"
+COMMON_FILE = f"{WORDS_FOLDER}/{COMMON}.yaml"
+
+_USED = re.compile(
+    rb"""(^|[\s{,])["']?hears["']?\s*:|\bwords["']?\s*:[^\n]*\bcommon\b|^\s*-\s+common\s*$""", re.MULTILINE
+)
+_FOLDER = Path(__file__).parents[1] / "words"
+
+
+@cache
+def common_words() -> bytes:
+    """The words file that comes with Lumen."""
+    return (_FOLDER / "common.yaml").read_bytes()
+
+
+def with_common_words(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
+    """The files of a project with the words that come with Lumen, if a behaviour uses them."""
+    if COMMON_FILE in files or not any(_USED.search(content) for file, content in files.items() if _is_behavior(file)):
+        return files
+    return dict(sorted({**files, COMMON_FILE: common_words()}.items()))
+
+
+def is_shipped(files: Mapping[str, bytes], name: str) -> bool:
+    """Whether the words file of that name is not the project's own."""
+    return name == COMMON and files.get(COMMON_FILE) == common_words()
+
+
+def _is_behavior(file: str) -> bool:
+    folder, _, name = file.rpartition("/")
+    return folder == "behaviors" and name.endswith(".yaml")
