@@ -64,6 +64,8 @@ class _Expressions:
 
     def findings(self, spot: ExpressionSite) -> Sequence[ExpressionFinding]:
         transition, variables = spot.transition, self.variables(spot.text.where)
+        if transition and transition.hears:
+            variables["heard"] = {}
 
         def around() -> dict[str, Any]:
             there = {"events": self.possible(transition), "variables": variables}

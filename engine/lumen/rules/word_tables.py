@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.language.machines import Answer
+from lumen.loading.common_words import is_shipped
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.words import WORDS_FOLDER
@@ -19,7 +20,7 @@ class WordTables(NamedTuple):
 
 
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
-    """Those of each file; a behaviour's without what it has from words files."""
+    """Those of each file of the project; a behaviour's without what it has from words files."""
     for name, machine in draft.behaviors.items():
 
         def own(key: str, table: Mapping[str, Any], borrowed: Any = machine.borrowed) -> dict[str, Any]:
@@ -28,4 +29,6 @@ def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
         phrases, answers = own("phrases", machine.phrases), own("answers", machine.answers)
         yield WordTables(draft.report("behaviors", name), phrases, answers, own("lists", machine.lists))
     for name, words in draft.words.items():
+        if is_shipped(draft.files, name):
+            continue
         yield WordTables(draft.report(WORDS_FOLDER, name), words.phrases, words.answers, words.lists)

@@ -188,21 +188,23 @@ class Finder:
                     self._add_form(name, row, form, small)
 
     def _add_form(self, name: str, row: int, form: Form, small: frozenset[str]) -> None:
-        speech = self.speech
+        speech, plain = self.speech, form.plain
         words = speech.same(form.literals)
-        strength = sum(word not in speech.fillers for word in words)
+        strength = len(words) - sum(word in speech.fillers.single for word in words)
         entry = Entry(
             name,
             row,
             strength,
-            alone=form.whole or (form.plain and all(word in small for word in words)),
-            negative=any(speech.negations.marks(words)) or any(speech.negations_after.marks(words)),
-            question=any(speech.questions.marks(words)) or any(speech.questions_anywhere.marks(words)),
+            alone=form.whole or (plain and small.issuperset(words)),
+            negative=speech.negations.are_in(words) or speech.negations_after.are_in(words),
+            question=speech.questions.are_in(words) or speech.questions_anywhere.are_in(words),
             anyhow=name in self.anyhow,
         )
-        parts = [p for part in form.parts for p in ((part,) if isinstance(part, Slot) else speech.same((part,)))]
-        if form.plain:
+        parts: Sequence[str | Slot] = words
+        if plain:
             self.phrases.add(words)
+        else:
+            parts = [p for part in form.parts for p in ((part,) if isinstance(part, Slot) else speech.same((part,)))]
         if not words:
             self.slots_only.append((form, entry))
         elif isinstance(parts[0], Slot):
@@ -319,17 +321,17 @@ class Finder:
             elif position == start:
                 follows = position + 1 < len(words) and reading.clauses[position + 1] == reading.clauses[start]
                 several = capitals and capital and follows and _begins_with_capital(reading, position + 1)
-                if self._refused(word, speech, several=several):
+                if self._refused(word, speech, careful=careful, several=several):
                     break
             if not particle:
                 found.append(position + 1)
         return [end for end in found if not careful or self._is_sure(reading, start, end, several=several)]
 
-    def _refused(self, word: str, speech: Speech, *, several: bool) -> bool:
+    def _refused(self, word: str, speech: Speech, *, careful: bool, several: bool) -> bool:
         """Whether no name begins with that word; one of two capitalised words may be a state, as in "Happy Salma"."""
         if word in speech.small or word in speech.negations or word in speech.questions:
             return True
-        return not several and (word in speech.not_names or word in speech.name_ends)
+        return careful and not several and (word in speech.not_names or word in speech.name_ends)
 
     def _is_no_name(self, word: str, speech: Speech) -> bool:
         return (

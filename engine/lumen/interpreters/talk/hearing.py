@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from lumen.interpreters.talk.finder import Find, Finder, Reading
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS, Speech
+from lumen.interpreters.talk.speech import Speech
 from lumen.language.machines import Answer, Hears, MachineDefinition
 
 HEARD = "heard"
@@ -49,10 +49,11 @@ class Hearing:
             block = tuple(t.hears for t in state.transitions if t.hears)
             self.rows |= {row.number: row for row in block}
             self.blocks |= dict.fromkeys([row.number for row in block], block)
+        heard = {name for row in self.rows.values() for name in row.names}
         self.finder = Finder(
             self.speech,
-            {name: table for name, table in machine.phrases.items() if name not in WORD_LISTS},
-            {name: [row.phrases for row in rows] for name, rows in machine.answers.items() if name not in TABLES},
+            {name: table for name, table in machine.phrases.items() if name in heard},
+            {name: [row.phrases for row in rows] for name, rows in machine.answers.items() if name in heard},
             {name: [(phrases_in(entry), entry) for entry in entries] for name, entries in machine.lists.items()},
             machine.anyhow,
         )

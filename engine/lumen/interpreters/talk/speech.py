@@ -35,9 +35,14 @@ class WordList:
                 self.by_first.setdefault(words[0], []).append(words)
         for several in self.by_first.values():
             several.sort(key=len, reverse=True)
+        self.single = frozenset(words[0] for several in self.by_first.values() for words in several if len(words) == 1)
 
     def __contains__(self, word: str) -> bool:
-        return (word,) in self.by_first.get(word, ())
+        return word in self.single
+
+    def are_in(self, words: Sequence[str]) -> bool:
+        """Whether an entry is among the words."""
+        return not self.by_first.keys().isdisjoint(words) and any(self.marks(words))
 
     def length(self, words: Sequence[str], start: int) -> int:
         """How many words from there on are its longest entry."""
@@ -50,6 +55,8 @@ class WordList:
     def marks(self, words: Sequence[str]) -> list[int]:
         """For each word the length of the entry that it is part of, 0 if it is part of none."""
         found = [0] * len(words)
+        if self.by_first.keys().isdisjoint(words):
+            return found
         position = 0
         while position < len(words):
             if words[position] in self.by_first and (length := self.length(words, position)):
@@ -95,6 +102,9 @@ class Speech:
     def same(self, words: Iterable[str]) -> tuple[str, ...]:
         """The words with contractions written out and number words as digits."""
         same = self._same
+        words = tuple(words)
+        if same.keys().isdisjoint(words):
+            return words
         found: list[str] = []
         for word in words:
             if word in same:
