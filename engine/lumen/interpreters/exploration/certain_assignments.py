@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from lumen.interpreters.exploration.expression_uses import tree_of
 from lumen.interpreters.expressions import ExpressionNode, names, unparse
-from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS
-from lumen.interpreters.expressions.tree import Binary, FunctionCall, Literal, Logic, Unary, children
+from lumen.interpreters.expressions.functions import CAUGHT, CLOCK_FUNCTIONS
+from lumen.interpreters.expressions.tree import Binary, FieldAccess, FunctionCall, Literal, Logic, Unary, children
 from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction, context_key
 from lumen.language.machines import Transition
 
@@ -21,10 +21,11 @@ def assigned_on_entry(block: tuple[PlacedAction, ...]) -> frozenset[str]:
     )
 
 
-def assigned_by(transition: Transition) -> frozenset[str]:
+def assigned_by(transition: Transition, caught: frozenset[str] = frozenset()) -> frozenset[str]:
     """The keys that its actions surely give new values: up to the first action that may fail.
 
-    What its guard has computed from the event, which it has if it is true, can be computed again.
+    What its guard has computed from the event, which it has if it is true, can be computed again. `caught` is what
+    `heard` surely has there.
     """
     guard = tree_of(transition.guard.source) if transition.guard else None
     known = {unparse(node) for node in _computed(guard)} if guard else set()
@@ -33,7 +34,7 @@ def assigned_by(transition: Transition) -> frozenset[str]:
         if not isinstance(step.action, Assign):
             break
         for key, value in step.action.values.items():
-            if not (_certain(value) or (isinstance(value, Expression) and _again(value, known))):
+            if not (_certain(value) or (isinstance(value, Expression) and _again(value, known, caught))):
                 return frozenset(found)
             if context_key(key) == key:
                 found.add(key)
@@ -45,8 +46,10 @@ def _certain(value: ComputedValue) -> bool:
     return not isinstance(value, Expression) or isinstance(tree_of(value.source), Literal)
 
 
-def _again(value: Expression, known: set[str]) -> bool:
-    tree = tree_of(value.source)
+def _again(value: Expression, known: set[str], caught: frozenset[str]) -> bool:
+    match tree := tree_of(value.source):
+        case FunctionCall("in_language", (FieldAccess(FunctionCall(function), name),)) if function == CAUGHT:
+            return name in caught
     return tree is not None and unparse(tree) in known
 
 

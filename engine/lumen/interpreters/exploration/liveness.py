@@ -11,6 +11,7 @@ from lumen.interpreters.exploration.certain_assignments import assigned_by, assi
 from lumen.interpreters.exploration.expression_uses import of_state, relevant
 from lumen.interpreters.exploration.history_uses import history_uses
 from lumen.interpreters.expressions import names
+from lumen.interpreters.talk.hearing import always_caught
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
 
@@ -60,12 +61,16 @@ class Liveness:
     def _successors(self, leaf: str) -> Iterator[tuple[str, frozenset[str]]]:
         """The leaves that transitions of a leaf or around it may lead to, each with the keys given new values there."""
         for transition in (tr for path in self._around(leaf) for tr in self._machine.states[path].transitions):
-            killed, domain = assigned_by(transition), self._domain(transition)
+            killed, domain = assigned_by(transition, self._caught(transition)), self._domain(transition)
             for target in transition.targets:
                 for after in sorted(self._entered(target, domain)):
                     yield after, self._kills[after] | killed
         for after in sorted(self._left_and_entered_again(leaf)):
             yield after, frozenset()
+
+    def _caught(self, transition: Transition) -> frozenset[str]:
+        """What `heard` surely has in the actions of a row of `hears`."""
+        return always_caught(self._machine, transition.hears) if transition.hears else frozenset()
 
     def _domain(self, transition: Transition) -> str:
         """The state within which everything is left and entered (SCXML's `getTransitionDomain`)."""

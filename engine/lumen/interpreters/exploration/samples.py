@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from math import prod
+from types import MappingProxyType
 from typing import Any
 
 from lumen.interpreters.expressions.kinds import FaultError
@@ -28,14 +29,18 @@ FieldPath = tuple[str, ...]
 
 
 def samples(
-    machine: MachineDefinition, schema: Any, trees: Iterable[ExpressionNode], context: Mapping[str, Any]
+    machine: MachineDefinition,
+    schema: Any,
+    trees: Iterable[ExpressionNode],
+    context: Mapping[str, Any],
+    more: Mapping[FieldPath, Iterable[Any]] = MappingProxyType({}),
 ) -> Iterator[Any]:
     """Data of an event with that JSON Schema, with every field that the trees read at all values they mention.
 
-    `context` is what the behaviour remembers. Further ones go on where a field has many values; the first is the
-    plainest.
+    `context` is what the behaviour remembers, `more` are other values of fields. Further ones go on where a field has
+    many values; the first is the plainest.
     """
-    values: dict[FieldPath, dict[Any, None]] = {}
+    values: dict[FieldPath, dict[Any, None]] = {path: dict.fromkeys(found) for path, found in more.items()}
     for tree in trees:
         for path, found in _mentioned(machine, tree, context):
             values.setdefault(path, {}).update(dict.fromkeys(found))

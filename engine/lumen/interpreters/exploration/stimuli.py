@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_block, of_transition
-from lumen.interpreters.exploration.samples import samples
+from lumen.interpreters.exploration.samples import FieldPath, samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS
 from lumen.interpreters.expressions.tree import children
@@ -14,6 +14,8 @@ from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.interpreters.statechart.values import awaited
+from lumen.interpreters.talk.examples import examples_of
+from lumen.interpreters.talk.hearing import hearing_of, said_in
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
@@ -120,8 +122,11 @@ class StimulusFinder:
         for machine in dict.fromkeys(id(one.machine) for one in heard):
             about = [tree for owner, tree in trees if id(owner.machine) == machine]
             owner = next(one for one in heard if id(one.machine) == machine)
-            for data in samples(owner.machine, self._events[name], about, owner.context):
-                sort = tuple(_sort(one, source, name, data) for one, source in atoms)
+            more: dict[FieldPath, list[str]] = {("result",): texts} if (texts := list(_said(heard))) else {}
+            for data in samples(owner.machine, self._events[name], about, owner.context, more):
+                sort: tuple[Any, ...] = tuple(_sort(one, source, name, data) for one, source in atoms)
+                if more:
+                    sort += tuple(_orders(heard, name, data))
                 if sort not in seen:
                     seen.add(sort)
                     yield data
@@ -148,12 +153,29 @@ def _arrival(command: BodyCommand | None, snapshot: Snapshot) -> Event | None:
 
 def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[HeardTransition]:
     """The transitions that an event of that name may select, here or in what is invoked."""
-    for group in machine.planner.configuration(snapshot.configuration).candidates(name):
+    groups = machine.planner.configuration(snapshot.configuration).candidates(name)
+    for group in (*groups, *groups.late):
         for transition in group:
             yield HeardTransition(machine.chart.definition, transition.definition, snapshot.context)
     for id, child in snapshot.invoked.items():
         behavior = machine.chart.definition.invoked_behavior(child.state, id)
         yield from _heard(machine.invoked[behavior], child.snapshot, name)
+
+
+def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
+    """A text for each name of each row of `hears`, and one that no row has."""
+    for machine, transition, context in heard:
+        if transition.hears:
+            yield from examples_of(hearing_of(machine), transition.hears, context)
+
+
+def _orders(heard: tuple[HeardTransition, ...], name: str, data: Any) -> Iterator[Any]:
+    """In which order a text is for the rows of each state."""
+    text = said_in({"name": name, "data": data})
+    for machine, transition, context in heard:
+        if transition.hears:
+            order = hearing_of(machine).order(transition.hears.number, text, context)
+            yield tuple(one.number for one in order.first), tuple(one.number for one in order.late)
 
 
 def _extremes(schema: Mapping[str, Any]) -> Iterator[Any]:

@@ -85,17 +85,21 @@ class Reading:
         same = [*self.finds.get(find.entry.name, ()), *(self.slotted or {}).get(find.entry.name, ())]
         return all(any(other.start <= i < other.end for other in same) for i in rest)
 
-    def is_negated(self, find: Find) -> bool:
-        """Whether a negation of its clause belongs to it."""
+    def negated(self, find: Find) -> int:
+        """How many words the negation of its clause that belongs to it adds to a find; 0 if there is none.
+
+        They are the negation and the words up to the find, but for fillers: "don't want to dance" is a better reason
+        for `not dance` than "don't want to" is for `no`.
+        """
         if find.entry.negative or find.entry.anyhow:
-            return False
+            return 0
         negations, contrasts = self._marked("negations"), self._marked("contrasts")
         clause, between = self.clauses[find.start], 0
         for i in range(find.start - 1, -1, -1):
             if self.clauses[i] != clause or contrasts[i]:
                 break
             if negations[i] and self.filler[i] <= negations[i]:
-                return True
+                return between + 1
             between += not self.filler[i]
             if between > NEAR:
                 break
@@ -104,11 +108,11 @@ class Reading:
             if self.clauses[i] != clause or contrasts[i]:
                 break
             if negations[i] and self.filler[i] <= negations[i]:
-                return True
+                return between + 1
             between += not self.filler[i]
             if between > NEAR_AFTER:
                 break
-        return False
+        return 0
 
     def is_asked(self, find: Find) -> bool:
         """Whether it is part of a who, why or when question."""

@@ -5,11 +5,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from lumen.interpreters.talk.finder import Find, Finder, Reading
+from lumen.interpreters.talk.patterns import Form, Slot, forms
 from lumen.interpreters.talk.speech import Speech
 from lumen.language.machines import Answer, Hears, MachineDefinition
 
 HEARD = "heard"
 """The event that rows of `hears` wait for; its text is `event.data.result`."""
+ALWAYS = ("text", "phrase", "answer")
+"""The keys of `heard` that every row has."""
 MATCHER = 1
 """The version of the rules by which a sentence finds its row; a journal holds it."""
 _MAX_READINGS = 64
@@ -104,7 +107,9 @@ class Hearing:
                 otherwise.append(Taken(row.number))
             elif reading.words and (find := self.best(reading, row, asked, context)):
                 if find.strength:
-                    first.append((-find.strength, Taken(row.number, find)))
+                    first.append(
+                        (-find.strength - (reading.negated(find) if row.way == "not" else 0), Taken(row.number, find))
+                    )
                 else:
                     late.append(Taken(row.number, find))
         first.sort(key=lambda one: one[0])
@@ -136,12 +141,17 @@ class Hearing:
         if not any(find.strength for find in finds) and self.finder.slots_only:
             yield from self.finder.slotted(reading).get(name, ())
 
-    def _entry_finder(self, path: str, context: Mapping[str, Any]) -> Finder | None:
-        """The phrases at a path of the context, as a finder; None if there are none."""
+    def entry(self, path: str, context: Mapping[str, Any]) -> Any:
+        """The phrases at a path of the context, `context.round.entry.right`; None if there are none."""
         table: Any = context
         for key in path.split(".")[1:]:
             table = table.get(key) if isinstance(table, Mapping) else None
-        if not isinstance(table, str | list | tuple | Mapping):
+        return table if isinstance(table, str | list | tuple | Mapping) else None
+
+    def _entry_finder(self, path: str, context: Mapping[str, Any]) -> Finder | None:
+        """The phrases at a path of the context, as a finder; None if there are none."""
+        table = self.entry(path, context)
+        if table is None:
             return None
         kept = self._finders.get(id(table))
         if kept is None or kept[0] is not table:
@@ -153,7 +163,7 @@ class Hearing:
 
 def counts(reading: Reading, find: Find, way: str, asks: bool) -> bool:
     """Whether a find counts in that way: found, negated or asked; `asks` if another row takes questions for it."""
-    if reading.is_negated(find):
+    if reading.negated(find):
         return way == "not"
     if way == "not" or (find.entry.alone and not reading.is_whole(find)):
         return False
@@ -167,6 +177,19 @@ def hearing_of(machine: MachineDefinition) -> Hearing:
         found = Hearing(machine)
         object.__setattr__(machine, "_hearing", found)  # frozen, and the same for all who hold it
     return found
+
+
+def always_caught(machine: MachineDefinition, row: Hears) -> frozenset[str]:
+    """The keys that `heard` has whenever a row is taken: not the slots that some of its forms lack."""
+    found = [frozenset(slot.name for slot in form.parts if isinstance(slot, Slot)) for form in _forms(machine, row)]
+    return frozenset(ALWAYS).union(frozenset.intersection(*found) if found else ())
+
+
+def _forms(machine: MachineDefinition, row: Hears) -> Iterator[Form]:
+    for name in row.names:
+        tables = [machine.phrases[name]] if name in machine.phrases else []
+        tables += [one.phrases for one in machine.answers.get(name, ())]
+        yield from (form for table in tables for texts in table.values() for text in texts for form in forms(text))
 
 
 def by_language(value: Any) -> dict[str, tuple[str, ...]]:
