@@ -1,6 +1,7 @@
 """Finds phrases in what was said: every form of every name at once, in one trie."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias
 
 from lumen.interpreters.talk.folding import read_words
@@ -85,21 +86,17 @@ class Reading:
         same = [*self.finds.get(find.entry.name, ()), *(self.slotted or {}).get(find.entry.name, ())]
         return all(any(other.start <= i < other.end for other in same) for i in rest)
 
-    def negated(self, find: Find) -> int:
-        """How many words the negation of its clause that belongs to it adds to a find; 0 if there is none.
-
-        They are the negation and the words up to the find, but for fillers: "don't want to dance" is a better reason
-        for `not dance` than "don't want to" is for `no`.
-        """
+    def negation(self, find: Find) -> int | None:
+        """Which word negates a find; None if none does."""
         if find.entry.negative or find.entry.anyhow:
-            return 0
+            return None
         negations, contrasts = self._marked("negations"), self._marked("contrasts")
         clause, between = self.clauses[find.start], 0
         for i in range(find.start - 1, -1, -1):
             if self.clauses[i] != clause or contrasts[i]:
                 break
             if negations[i] and self.filler[i] <= negations[i]:
-                return between + 1
+                return i
             between += not self.filler[i]
             if between > NEAR:
                 break
@@ -108,11 +105,11 @@ class Reading:
             if self.clauses[i] != clause or contrasts[i]:
                 break
             if negations[i] and self.filler[i] <= negations[i]:
-                return between + 1
+                return i
             between += not self.filler[i]
             if between > NEAR_AFTER:
                 break
-        return 0
+        return None
 
     def is_asked(self, find: Find) -> bool:
         """Whether it is part of a who, why or when question."""
@@ -149,7 +146,8 @@ class Finder:
     """The phrases of a behaviour in one trie.
 
     `tables` are phrases by language for each name, `rows` the same for each row of the answers of a name, `lists` the
-    phrases of the entries of each list with the entry. Names in `anyhow` are found even if they are negated.
+    phrases of the entries of each list with the entry. Names in `anyhow` are found even if they are negated. `others`
+    are phrases that are not looked for, and that are no names either.
     """
 
     def __init__(
@@ -159,19 +157,26 @@ class Finder:
         rows: Mapping[str, Sequence[Languages]] | None = None,
         lists: Mapping[str, Sequence[tuple[Languages, Any]]] | None = None,
         anyhow: Iterable[str] = (),
+        others: Iterable[Languages] = (),
     ) -> None:
         self.speech, self.anyhow = speech, frozenset(anyhow)
+        self._tables = (*tables.values(), *(table for several in (rows or {}).values() for table in several), *others)
         self.root: Node = {}
         self.leading: list[tuple[frozenset[str], Node]] = []
         """Forms that begin with a slot, and words that such a form needs."""
         self.slots_only: list[tuple[Form, Entry]] = []
-        self.phrases: set[tuple[str, ...]] = set()
         self.lists = {name: self._list(entries) for name, entries in (lists or {}).items()}
         for name, table in tables.items():
             self._add(name, 0, table)
         for name, several in (rows or {}).items():
             for number, table in enumerate(several):
                 self._add(name, number, table)
+
+    @cached_property
+    def phrases(self) -> frozenset[tuple[str, ...]]:
+        """The words of all phrases without slots: what a visitor says so is not their name."""
+        texts = {text for table in self._tables for several in table.values() for text in several}
+        return frozenset(self.speech.same(form.literals) for text in texts for form in forms(text) if form.plain)
 
     def _list(self, entries: Sequence[tuple[Languages, Any]]) -> Node:
         root: Node = {}
@@ -205,9 +210,7 @@ class Finder:
             anyhow=name in self.anyhow,
         )
         parts: Sequence[str | Slot] = words
-        if plain:
-            self.phrases.add(words)
-        else:
+        if not plain:
             parts = [p for part in form.parts for p in ((part,) if isinstance(part, Slot) else speech.same((part,)))]
         if not words:
             self.slots_only.append((form, entry))

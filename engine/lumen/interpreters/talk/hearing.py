@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.talk.finder import Find, Finder, Reading
 from lumen.interpreters.talk.patterns import Form, Slot, forms
-from lumen.interpreters.talk.speech import Speech
+from lumen.interpreters.talk.speech import WORD_LISTS, Speech
 from lumen.language.machines import Answer, Hears, MachineDefinition
 
 HEARD = "heard"
@@ -59,6 +59,7 @@ class Hearing:
             {name: [row.phrases for row in rows] for name, rows in machine.answers.items() if name in heard},
             {name: [(phrases_in(entry), entry) for entry in entries] for name, entries in machine.lists.items()},
             machine.anyhow,
+            [table for name, table in machine.phrases.items() if name not in heard and name not in WORD_LISTS],
         )
         self._readings: OrderedDict[str, Reading] = OrderedDict()
         self._finders: dict[int, tuple[Any, Finder]] = {}
@@ -99,19 +100,21 @@ class Hearing:
 
     def _order(self, reading: Reading, block: Sequence[Hears], context: Mapping[str, Any]) -> Order:
         asked = {name for row in block if row.way == "asked" for name in row.names}
+        found = {row.number: self.best(reading, row, asked, context) for row in block if reading.words}
+        refused = {reading.negation(find) for row in block if row.way == "not" and (find := found.get(row.number))}
         first: list[tuple[int, Taken]] = []
         late: list[Taken] = []
         otherwise: list[Taken] = []
         for row in block:
+            find = found.get(row.number)
             if row.way == "else":
                 otherwise.append(Taken(row.number))
-            elif reading.words and (find := self.best(reading, row, asked, context)):
-                if find.strength:
-                    first.append(
-                        (-find.strength - (reading.negated(find) if row.way == "not" else 0), Taken(row.number, find))
-                    )
-                else:
-                    late.append(Taken(row.number, find))
+            elif find is None or (row.way != "not" and not refused.isdisjoint(range(find.start, find.end))):
+                continue  # "I don't want" is no reason for `no` if what is not wanted is said
+            elif find.strength:
+                first.append((-find.strength, Taken(row.number, find)))
+            else:
+                late.append(Taken(row.number, find))
         first.sort(key=lambda one: one[0])
         return Order(tuple(taken for _, taken in first), (*late, *otherwise))
 
@@ -163,7 +166,7 @@ class Hearing:
 
 def counts(reading: Reading, find: Find, way: str, asks: bool) -> bool:
     """Whether a find counts in that way: found, negated or asked; `asks` if another row takes questions for it."""
-    if reading.negated(find):
+    if reading.negation(find) is not None:
         return way == "not"
     if way == "not" or (find.entry.alone and not reading.is_whole(find)):
         return False
