@@ -85,7 +85,7 @@ class _Gatherer:
                 self.report(UNKNOWN_WORDS, where, f"there is no words file `{name}`", hint, cause=f"words {name}")
         whole = all(name in self.files and self.files[name].built for name in rows)
         supplied = None
-        if self.shipped and (COMMON in rows or hears) and (common := self.files[COMMON].built):
+        if self.shipped and (COMMON in rows or hears) and (common := COMMON in self.files and self.files[COMMON].built):
             supplied = self.supply(common, everything=COMMON in rows)
         return KnownWords(self.tables, tuple(rows), self.borrowed, whole, self.anyhow, supplied)
 
