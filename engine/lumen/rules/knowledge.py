@@ -1,8 +1,8 @@
 """Passages: questions that two claim, answers that are too long or past their day, robots that are not there."""
 
-import re
 from datetime import date
 
+from lumen.interpreters.talk.folding import folded
 from lumen.language.diagnostics import ERROR, WARNING, Code, Place, Related, did_you_mean
 from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage
 from lumen.loading.document_report import DocumentReport
@@ -60,4 +60,4 @@ def _days(passage: Passage, report: DocumentReport, today: date | None) -> None:
 
 def words_of(question: str) -> str:
     """Its words, whatever the signs between them, and however they are written."""
-    return " ".join(re.findall(r"\w+", question.casefold()))
+    return " ".join(folded(question))

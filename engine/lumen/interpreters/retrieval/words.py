@@ -1,10 +1,11 @@
 """What a question is compared by: stems of its words, and runs of its letters."""
 
-import re
 from collections.abc import Callable
 from functools import cache
 
 import snowballstemmer
+
+from lumen.interpreters.talk.folding import unbroken
 
 STEMMERS = {"en": "english", "id": "indonesian", "de": "german", "fr": "french", "es": "spanish", "it": "italian",
             "nl": "dutch", "pt": "portuguese"}  # fmt: skip
@@ -34,8 +35,8 @@ def letter_runs(text: str, language: str) -> list[str]:
 
 
 def words(text: str) -> list[str]:
-    """Its words, in small letters."""
-    return re.findall(r"\w+", text[:MAX_QUESTION].casefold())
+    """Its words, folded as phrases are."""
+    return unbroken(text[:MAX_QUESTION])
 
 
 @cache

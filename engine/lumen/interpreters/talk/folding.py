@@ -63,12 +63,17 @@ def folded(text: str) -> tuple[str, ...]:
 
     Letters of languages without blanks are words of their own, with the marks that belong to them.
     """
+    found = unbroken(text)
+    return tuple(found) if text.isascii() else tuple(piece for word in found for piece in _pieces(word))
+
+
+def unbroken(text: str) -> list[str]:
+    """Return the folded words as blanks and punctuation separate them, in every language."""
     if text.isascii():
-        return tuple(text.translate(_FOLDED).lower().translate(WORDS_ONLY).split())
+        return text.translate(_FOLDED).lower().translate(WORDS_ONLY).split()
     joined = normalize("NFKC", text.translate(_FOLDED))
     plain = normalize("NFKC", joined.casefold()).replace("i\u0307", "i").translate(WORDS_ONLY)
-    found = plain.translate(_FOLDED).split()
-    return tuple(piece for word in found for piece in _pieces(word))
+    return plain.translate(_FOLDED).split()
 
 
 def _pieces(word: str) -> Iterator[str]:
