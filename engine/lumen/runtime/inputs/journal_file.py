@@ -10,6 +10,7 @@ import orjson
 
 from lumen.errors import JournalError
 from lumen.interpreters.replay.entries import RecordedEntry, entry_data, read_entry
+from lumen.interpreters.talk.hearing import MATCHER
 from lumen.loading.regular_files import read_regular
 from lumen.runtime.inputs.frames import unpack
 
@@ -27,6 +28,7 @@ class JournalHeader(NamedTuple):
 
     `first` is the position of its first entry, which says where the behaviour stood; `run` names the run that wrote it,
     `bundle` the files that ran, `began` when it was opened [s since 1970], `story` what was played, if anything.
+    `matcher` is the version of the rules by which sentences found their rows; 0 if no state `hears`.
     """
 
     first: int
@@ -35,9 +37,12 @@ class JournalHeader(NamedTuple):
     began: float
     story: str = ""
     version: int = JOURNAL_VERSION
+    matcher: int = 0
 
     def line(self) -> bytes:
         said = self._asdict()
+        if not self.matcher:
+            del said["matcher"]
         return encode({"lumen-journal": said.pop("version"), **said}).encode() + b"\n"
 
 
@@ -55,14 +60,20 @@ def read_header(line: bytes, name: str) -> JournalHeader:
         data = json.loads(line)
         version = data.pop("lumen-journal")
         header = JournalHeader(
-            int(data["first"]), str(data["run"]), str(data["bundle"]), float(data["began"]), str(data.get("story", ""))
-        )
+            int(data["first"]), str(data["run"]), str(data["bundle"]), float(data["began"]), str(data.get("story", "")),
+            matcher=int(data.get("matcher", 0)),
+        )  # fmt: skip
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         raise JournalError(f"{name} is no journal, or was cut in its first line: nothing in it can be read") from None
     if version != JOURNAL_VERSION:
         raise JournalError(
             f"{name} was written by another Lumen (the journal's version {version}, this one reads {JOURNAL_VERSION}): "
             "replay it with that one"
+        )
+    if header.matcher > MATCHER:
+        raise JournalError(
+            f"{name} was written by a later Lumen (its rules for sentences are version {header.matcher}, this one has"
+            f" {MATCHER}): replay it with that one"
         )
     return header
 

@@ -12,6 +12,7 @@ from typing import Any, BinaryIO
 from lumen.errors import ModuleError
 from lumen.interpreters.replay.entries import How, JumpKind
 from lumen.interpreters.statechart import Snapshot, Step
+from lumen.interpreters.talk.hearing import MATCHER
 from lumen.language.commands import Command
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
@@ -37,6 +38,11 @@ RETRY_PERIOD = 5.0
 """How long after a disk has refused something it is tried again [s]."""
 
 _log = logging.getLogger(__name__)
+
+
+def hears(project: Project) -> bool:
+    """Whether a state of a project lists in `hears` what it reacts to."""
+    return any(t.hears for m in project.behaviors.values() for state in m.states.values() for t in state.transitions)
 
 
 class JournalWriter:
@@ -176,7 +182,9 @@ class JournalWriter:
             return False
         bundle = told.project.hash if isinstance(told, Jumped) else self._pen.bundle
         try:
-            self._file = folder.open(JournalHeader(self.tail.next, self.run, bundle, time.time(), self._story))
+            matcher = MATCHER if self._project and hears(self._project) else 0
+            header = JournalHeader(self.tail.next, self.run, bundle, time.time(), self._story, matcher=matcher)
+            self._file = folder.open(header)
         except OSError as error:
             self._fail(error)
             return False
