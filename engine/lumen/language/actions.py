@@ -4,7 +4,7 @@ Verbs without expressions are their own commands (`Play`, `Posture`, …); the o
 that a step evaluates. `where` is the action's path in its document, for diagnostics; it does not count in equality.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Union  # a recursive alias needs it: `|` does not take names in quotes
 
@@ -163,3 +163,15 @@ class PlacedAction:
 
     action: Action
     where: NodePath = field(default=(), compare=False)
+
+
+def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
+    """The actions of a block, those inside `if` and `parallel` too."""
+    for step in block:
+        yield step
+        match step.action:
+            case If(then=then, otherwise=otherwise):
+                yield from nested(then)
+                yield from nested(otherwise)
+            case Parallel(branches) | AskQuestion(otherwise=branches):
+                yield from nested(branches)

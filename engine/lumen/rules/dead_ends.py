@@ -3,14 +3,14 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from lumen.language.actions import Raise, Send
+from lumen.language.actions import Raise, Send, nested
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.transitions import ENDLESS_ALWAYS
 from lumen.rules.statecharts import ALWAYS_LOOP, reachable
-from lumen.rules.walk import action_sites, nested
+from lumen.rules.walk import action_sites
 
 DEAD_END = Code("dead-end", "statecharts", WARNING, "no transition leads out of a state")
 NO_WAY_BACK = Code(

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from lumen.language.actions import PlacedAction
+from lumen.language.actions import PlacedAction, nested
 from lumen.language.commands import GoTo, Move, Play, Walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
-from lumen.rules.walk import action_sites, nested
+from lumen.rules.walk import action_sites
 
 UNHANDLED_FALL = Code("unhandled-fall", "statecharts", WARNING, "legs move, and nothing waits for `fallen`")
 

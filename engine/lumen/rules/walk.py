@@ -11,13 +11,13 @@ from lumen.language.actions import (
     Expression,
     If,
     LogText,
-    Parallel,
     PlacedAction,
     PublishBody,
     Raise,
     SayText,
     Send,
     Template,
+    nested,
 )
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import NodePath
@@ -94,18 +94,6 @@ def _input(invoke: Invoke, machine: MachineDefinition | None) -> Iterator[Expres
             yield ExpressionSite(value, None, expected=machine.types.get(key, schema_of(machine.context[key])))
         else:
             yield from (ExpressionSite(text, None) for text in _values(value))
-
-
-def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
-    """The actions of a block, those inside `if` and `parallel` too."""
-    for step in block:
-        yield step
-        match step.action:
-            case If(then=then, otherwise=otherwise):
-                yield from nested(then)
-                yield from nested(otherwise)
-            case Parallel(branches) | AskQuestion(otherwise=branches):
-                yield from nested(branches)
 
 
 def _spots(site: ActionSite) -> Iterator[ExpressionSite]:

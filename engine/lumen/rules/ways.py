@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
+from lumen.language.actions import nested
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
-from lumen.rules.walk import nested
 
 BLOCKED_PLACE = Code("blocked-place", "robot", WARNING, "a place is in something solid of the hall, or too near it")
 BLOCKED_WAY = Code("blocked-way", "robot", WARNING, "the straight way from one place to the next is not free")
