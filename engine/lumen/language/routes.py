@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from lumen.language.diagnostics import NodePath
 
@@ -81,6 +81,14 @@ SHORTEST_IMAGE_INTERVAL = 0.033
 """The time between two images of NAO's cameras [s]: 30 a second."""
 
 
+class RouteUse(NamedTuple):
+    """The first place in a behaviour that uses a route."""
+
+    file: str
+    where: NodePath
+    verb: Literal["hears", "publishes to"]
+
+
 @dataclass(frozen=True, slots=True)
 class Route:
     """A row of the route table in `lumen.yaml`.
@@ -112,6 +120,8 @@ class Route:
     of: str = ""
     content_type: str = JSON_TYPE
     where: NodePath = field(default=(), compare=False)
+    built_in: bool = field(default=False, compare=False)
+    uses: tuple[RouteUse, ...] = field(default=(), compare=False)
 
     def key_for(self, robot: str) -> str:
         """The routing key with the robot's name in it."""

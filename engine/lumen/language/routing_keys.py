@@ -2,63 +2,19 @@
 
 from collections.abc import Mapping
 
+from lumen.language.built_in_routes import BUILT_IN_ROUTES
+
 KEY_PREFIXES = ("avatar", "lumen")
 """What every key of ours begins with: `avatar` those of robots, `lumen` those of what thinks for them."""
 
 DEFAULT_KEYS: Mapping[str, str] = {
-    "image": "avatar.{robot}.data.image",
-    "joint": "avatar.{robot}.data.joint",
-    "sonar": "avatar.{robot}.data.sonar",
-    "tactile": "avatar.{robot}.data.tactile",
-    "battery": "avatar.{robot}.data.battery",
-    "recording": "avatar.{robot}.data.recording",
-    "command": "avatar.{robot}.command",
-    "stop": "avatar.{robot}.stop",
-    "aim": "avatar.{robot}.aim",
-    "report": "avatar.{robot}.event.command",
-    "noticed": "avatar.{robot}.event.noticed",
-    "hall": "avatar.{robot}.hall",
-    "seen": "avatar.{robot}.hall.seen",
-    "presence": "lumen.{robot}.presence",
-    "state": "lumen.{robot}.state",
-    "motion": "lumen.motion.{robot}.command",
-    "heard": "lumen.{robot}.audio.speech.recognition",
-    "listening": "lumen.{robot}.audio.listening",
-    "gender": "lumen.{robot}.audio.gender.identification",
-    "wav_stream": "lumen.{robot}.audio.wav.stream",
-    "text_stream": "lumen.{robot}.audio.text.stream",
-    "text_to_speech": "lumen.{robot}.audio.text.to.speech",
-    "face": "lumen.{robot}.visual.face.detection",
-    "recognised": "lumen.{robot}.visual.face.recognition",
-    "face_tracking": "lumen.{robot}.visual.face.tracking",
-    "human": "lumen.{robot}.visual.human.detection",
-    "visual_command": "lumen.{robot}.visual.command",
-    "social_perception": "lumen.{robot}.social.perception",
-    "social_expression": "lumen.{robot}.social.expression",
-    "fact": "lumen.{robot}.persistence.fact",
-    "forgotten": "lumen.{robot}.persistence.forgotten",
-    "journal": "lumen.{robot}.persistence.journal",
+    **{name: route.key for name, route in BUILT_IN_ROUTES.items()},
     "ask": "lumen.{robot}.ask",
     "answer": "lumen.{robot}.answer",
-    "trouble": "lumen.{robot}.trouble",
 }
 """The routes that Lumen and its modules use, and the key of each where lumen.yaml does not say otherwise."""
 
-DEFAULT_ALIASES: Mapping[str, str] = {
-    "presence": "lumen.presence",
-    "state": "lumen.state",
-    "heard": "lumen.audio.speech.recognition",
-    "gender": "lumen.audio.gender.identification",
-    "wav_stream": "lumen.audio.wav.stream",
-    "text_stream": "lumen.audio.text.stream",
-    "text_to_speech": "lumen.audio.text.to.speech",
-    "face": "lumen.visual.face.detection",
-    "recognised": "lumen.visual.face.recognition",
-    "face_tracking": "lumen.visual.face.tracking",
-    "human": "lumen.visual.human.detection",
-    "visual_command": "lumen.visual.command",
-    "trouble": "lumen.trouble",
-}
+DEFAULT_ALIASES: Mapping[str, str] = {name: route.alias for name, route in BUILT_IN_ROUTES.items() if route.alias}
 """The keys of 2015, which knew of one robot, for routes that lumen.yaml does not list (`Route.alias`)."""
 
 SHARED_ROUTES = frozenset((
