@@ -1,6 +1,7 @@
 """The smaller verbs: new, graph, play."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,18 @@ def test_a_project_like_another_is_whole_and_clean(
     assert set(steps[1]["with"]) <= set(yaml.safe_load((ROOT / "action.yml").read_text("utf-8"))["inputs"])
     assert ".lumen/" in (folder / ".gitignore").read_text("utf-8").splitlines()
     assert f"lumen run --story {story} " in (folder / "README.md").read_text("utf-8")
+
+
+def test_rows_of_routes_that_lumen_new_wrote_are_never_unused(tmp_path: Path) -> None:
+    """The behaviour that is left hears none of their events."""
+    folder = tmp_path / "mine"
+    assert main(["new", str(folder)]) == 0
+    shutil.rmtree(folder / "behaviors")
+    (folder / "behaviors").mkdir()
+    (folder / "behaviors" / "tour.yaml").write_text("states: {idle: {on: {fallen: idle}}}\n", "utf-8")
+    main_file = folder / "lumen.yaml"
+    main_file.write_text(main_file.read_text("utf-8").replace("\nstory: ", "\n# "), "utf-8")
+    assert lumen.check(folder) == []
 
 
 def test_the_minimal_project_is_short() -> None:

@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from lumen.runtime.journal import Journal
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
 from tests.guarded import PIPE, STDOUT, Guarded
+from tests.tour.names import ROOT
 from tests.waiting import HANG, until
 
 GUEST = """
@@ -193,6 +195,19 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
     assert found(copy, "and I am still here") == []
     assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 1
     assert "nothing of ipek is in" in capsys.readouterr().out
+
+
+def test_a_journal_without_a_row_is_named_among_what_a_broker_keeps(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    hello = folder / "behaviors" / "hello.yaml"
+    said = "[{publish: {route: journal, body: {visitor: \"'Budi'\"}}}, {play: wave}"
+    hello.write_text(hello.read_text("utf-8").replace("[{play: wave}", said), "utf-8")
+    unreachable = ["--bus", "amqp://127.0.0.1:1/", "--format", "json"]
+    assert main(["memory", "forget", "budi", "--project", str(folder), *unreachable]) == 1
+    elsewhere = {place["where"] for place in json.loads(capsys.readouterr().out)["elsewhere"]}
+    assert "the broker's stream of `journal`" in elsewhere
 
 
 def test_a_robot_without_its_brain_forgets_what_it_was_told_to_say(tmp_path: Path) -> None:

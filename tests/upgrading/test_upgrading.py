@@ -226,14 +226,15 @@ def test_the_command_offers_it_and_does_it_when_asked(tmp_path: Path, capsys: py
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(content)
     main_file = tmp_path / "lumen.yaml"
-    new = '"lumen.{robot}.audio.speech.recognition", alias: lumen.audio.speech.recognition'
-    text = main_file.read_text("utf-8").replace(new, "lumen.audio.speech.recognition")
-    main_file.write_text(f"lumen: 1\n{text}", "utf-8")
+    row = "heard: {key: lumen.audio.speech.recognition, direction: in, schema: speech.recognition, event: heard}"
+    text = main_file.read_text("utf-8")
+    main_file.write_text(f"lumen: 1\n{text}routes:\n  {row}\n", "utf-8")
     before = main_file.read_bytes()
     assert main(["upgrade", str(tmp_path), "--check"]) == 0
     assert "1 key of 2015 would be heard by several robots: `lumen upgrade --keys`\n" in capsys.readouterr().out
     assert main_file.read_bytes() == before
     assert main(["upgrade", str(tmp_path), "--check", "--keys"]) == 1
     assert main(["upgrade", str(tmp_path), "--keys"]) == 0
+    new = '"lumen.{robot}.audio.speech.recognition", alias: lumen.audio.speech.recognition'
     assert new in main_file.read_text("utf-8")
     assert main(["upgrade", str(tmp_path), "--check", "--keys"]) == 0

@@ -15,8 +15,9 @@ from lumen.cli.reach import configure_robot_name, reach
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
+from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
-from lumen.loading.project import main_settings
+from lumen.loading.project import draft, main_settings
 from lumen.loading.settings import Settings
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
@@ -76,10 +77,9 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
     if not name_key(options.name or ""):
         raise UsageError("say whom: `lumen memory forget NAME`")
     found, settings = Forgetting(), main_settings(root, one_robot(root, options.robot_name))
-    routes = settings.routes if settings else {}
-    broker = _tell_running(options, settings, found)
+    broker, whole = _tell_running(options, settings, found), draft(read_files(root)).settings
     forget_in(folder, options.name, found)
-    found.elsewhere += out_of_reach(routes.values(), broker)
+    found.elsewhere += out_of_reach(whole.routes.values() if whole else (), broker)
     if options.format == "json":
         print(json.dumps(_told(found), ensure_ascii=False))
     else:

@@ -78,6 +78,12 @@ class ProjectDraft:
         found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
         return gathered([*found, *self.loose])
 
+    @property
+    def whole_behaviors(self) -> bool:
+        """Whether everything was built that the behaviours say."""
+        names = self.names.get("behaviors", frozenset())
+        return all(name in self.behaviors and self.report("behaviors", name).whole for name in names)
+
     def report(self, folder: str, name: str) -> DocumentReport:
         """The report of `FOLDER/NAME.yaml`; of a motion, of the file that holds it for this robot."""
         if folder == "motions" and name in self.own_motions and self.settings:

@@ -3,9 +3,11 @@
 Only what is named is lent, and only where the project has no file of that name: its own always counts.
 """
 
+import json
 from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from lumen.language.projects import Project
 from lumen.loading.messages import SCHEMA_SUFFIX
@@ -44,6 +46,13 @@ def model_files(project: Project) -> tuple[Path, str]:
     robot = own if (own / project.body.mjcf).exists() else shipped_root() / MODELS
     hall = own if (own / project.hall).exists() else shipped_root() / MODELS
     return robot, project.hall if hall == robot else str(hall.absolute() / project.hall)
+
+
+@cache
+def shipped_message(name: str) -> Any:
+    """The schema of a message that comes with Lumen, None if there is none."""
+    file = shipped().get(f"{MESSAGES}/{name}{SCHEMA_SUFFIX}")
+    return json.loads(file.read_bytes()) if file else None
 
 
 def shipped_models() -> tuple[str, ...]:

@@ -43,6 +43,7 @@ from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.passages import belongs_to
 from lumen.loading.settings import Settings, build_settings, other_vocabulary
 from lumen.loading.stories import build_story
+from lumen.loading.used_routes import used_routes
 from lumen.loading.words import WORDS_FOLDER, build_words
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a file that is needed is not there")
@@ -85,7 +86,11 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     ):
         found.fleet = fleet.built
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
+    found.controllers = _built(_each(found, "fuzzy", build_controller))
     if found.settings:
+        lost = found.reports[MAIN_FILE].lost
+        used = used_routes(found.settings, _built(behaviors), found.controllers.values(), lost)
+        found.settings = replace(found.settings, routes={**found.settings.routes, **used})
         found.lent = lend(files, found.settings, [*_wanted(found.settings, models)])
         models |= _each(found, MODELS, build_body, found.lent)
     sources = {name: (file.data, file.report) for name, file in models.items()}
@@ -98,7 +103,6 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     found.stories = _built(_each(found, "behaviors/stories", build_story))
     found.knowledge = _built(_each(found, KNOWLEDGE_FOLDER, build_passage))
     found.questions = _built(_each(found, QUESTIONS_FOLDER, build_questions))
-    found.controllers = _built(_each(found, "fuzzy", build_controller))
     if body := found.body:
         found.controllers = {name: by_role(each, body) for name, each in found.controllers.items()}
     passages = _motions(found, PASSAGES)

@@ -46,6 +46,7 @@ class Settings:
     """What lumen.yaml says; a text is empty where the file lacks it or what stood there was refused.
 
     `robot` and what is said of it is that of `robots` whose exhibition this is; `told_apart` where they are several.
+    `removed_routes` are the names of rows that are `null`.
     """
 
     vocabulary: int = FIRST_VOCABULARY
@@ -62,6 +63,7 @@ class Settings:
     languages: tuple[str, ...] = ()
     timezone: str = ""
     routes: Mapping[str, Route] = field(default_factory=dict)
+    removed_routes: frozenset[str] = frozenset()
     stage: Stage | None = None
     imperfections: Imperfections = field(default_factory=Imperfections)
     bus: str = "memory://"
@@ -90,7 +92,7 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
     if robot and robot not in robots:
         hint = did_you_mean(robot, robots, "there are")
         report(NO_SUCH_ROBOT, ("robots",) if several else (), f"there is no robot `{robot}` any more", hint)
-    own = robots.get(robot) or next(iter(robots.values()))
+    own, rows = robots.get(robot) or next(iter(robots.values())), data.get("routes", {})
     return Settings(
         vocabulary=data.get(VOCABULARY_KEY, FIRST_VOCABULARY),
         name=data.get("name", ""),
@@ -105,7 +107,8 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         story=own.story,
         languages=own.languages,
         timezone=_timezone(data, report),
-        routes=build_routes(data.get("routes", {}), report, stand=own.stand),
+        routes=build_routes({name: row for name, row in rows.items() if row is not None}, report, stand=own.stand),
+        removed_routes=frozenset(name for name, row in rows.items() if row is None),
         stage=_stage(data, report),
         imperfections=Imperfections(**data.get("imperfections", {})),
         bus=data.get("bus", Settings.bus),

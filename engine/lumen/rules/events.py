@@ -1,9 +1,10 @@
 """Events: who raises them, and who waits for them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from typing import Any
 
 from lumen.language.actions import Raise, Send
+from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
@@ -12,6 +13,7 @@ from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import Same, memoize
+from lumen.loading.settings import Settings
 from lumen.rules.endings import ending_fault
 from lumen.rules.lookups import first
 from lumen.rules.recipients import recipients, sent_to
@@ -118,7 +120,6 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
     }
     heard = {event for event in {*descriptors(machine)} if any(hears(event, name) for name in known)}
     said: set[str] = set()
-    routed = any(route.event for route in draft.settings.routes.values())
     sound = not report.diagnostics
     for state in machine.states.values():
         for transition in state.transitions:
@@ -135,15 +136,19 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                     report(UNKNOWN_EVENT, path, message, hint, key=True)
             else:
                 path = _descriptor(transition.where, event)
-                lost = draft.main.lost | report.lost
-                hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in BUILT_IN_FAMILIES)} - lost)
-                if "mean" not in hint:
-                    hint = "declare it under `events:`, or give a route of lumen.yaml this `event`"
-                cause = f"name {event}"
-                if not routed:
-                    hint, cause = "no route of lumen.yaml has an `event`: look whether `routes` is whole", "no routes"
+                hint = _hint(draft.settings, event, known, draft.main.lost | report.lost)
                 message = f"nothing raises the event `{event}`"
-                report(UNKNOWN_EVENT, path, message, hint, key=True, cause=cause)
+                report(UNKNOWN_EVENT, path, message, hint, key=True, cause=f"name {event}")
+
+
+def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> str:
+    """The hint at an event that nothing raises; what is `lost` is not proposed."""
+    built_in = {route.event: name for name, route in BUILT_IN_ROUTES.items() if route.event}
+    if (name := built_in.get(event.removesuffix(".*"))) in settings.removed_routes:
+        return f"delete the row `{name}: null` of lumen.yaml, or declare the event under `events:`"
+    families = (family.removesuffix(".") for family in BUILT_IN_FAMILIES)
+    hint = did_you_mean(event, {*known, *built_in, *families} - {event} - lost)
+    return hint if "mean" in hint else "declare it under `events:`, or give a route of lumen.yaml this `event`"
 
 
 def _misnamed(event: str, machine: MachineDefinition, report: DocumentReport) -> bool:

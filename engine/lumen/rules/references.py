@@ -1,9 +1,11 @@
 """Names that one file uses and another one has: behaviours, stories, motions, controllers, postures, routes."""
 
 from lumen.language.actions import PublishBody
+from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.commands import VerbCommand
-from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Related, did_you_mean
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Related, did_you_mean, nearest
 from lumen.language.routes import Direction
+from lumen.language.routing_keys import SHARED_ROUTES
 from lumen.language.verbs import verb_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -34,9 +36,17 @@ def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, rou
         return False
     if route in draft.settings.routes:
         return True
-    if route not in draft.main.lost:
-        hint, cause = did_you_mean(route, draft.settings.routes, "lumen.yaml has"), f"name {route}"
-        if not draft.settings.routes:
+    by_use = route in BUILT_IN_ROUTES and route not in draft.settings.removed_routes
+    if route not in draft.main.lost and (draft.whole_behaviors or not by_use):
+        own = [name for name, row in draft.settings.routes.items() if not row.built_in]
+        hint, cause = did_you_mean(route, own, "lumen.yaml has"), f"name {route}"
+        if route in draft.settings.removed_routes:
+            hint = f"lumen.yaml removes it: delete the row `{route}: null`"
+        elif route in BUILT_IN_ROUTES:
+            hint = f"write a row `{route}:`; without one it is there if a behaviour hears its event or publishes to it"
+        elif "mean" not in hint and (near := nearest(route, SHARED_ROUTES)):
+            hint = f"did you mean `{near}`, which comes with Lumen?"
+        elif not own:
             hint, cause = "lumen.yaml has no `routes`", "no routes"
         report(UNKNOWN_ROUTE, path, f"there is no route `{route}`", hint, key=key, cause=cause)
     return False
@@ -65,8 +75,8 @@ def _published(draft: ProjectDraft, report: DocumentReport, path: NodePath, name
         message = f"`{name}` is a route on which messages come in"
         hint = "publish on one with `direction: out`"
         declared = Related(draft.main.document.place(route.where, key=True), "it is declared here")
-        place = report.document.place(path)
-        report.diagnostics.append(WRONG_DIRECTION.at(place, message, hint, (declared,)))
+        related = () if route.built_in else (declared,)
+        report.diagnostics.append(WRONG_DIRECTION.at(report.document.place(path), message, hint, related))
 
 
 def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:

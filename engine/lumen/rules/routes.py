@@ -1,10 +1,11 @@
 """The route table: keys, schemas, events."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from urllib.parse import urlsplit
 
+from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.commands import Track
-from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, has_errors
 from lumen.language.routes import (
     COMMAND,
     FLOATS_TYPE,
@@ -24,7 +25,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
 from lumen.rules.lookups import References
-from lumen.rules.references import WRONG_DIRECTION
+from lumen.rules.references import UNKNOWN_ROUTE, WRONG_DIRECTION
 from lumen.rules.routing_keys import check_key
 from lumen.rules.walk import action_sites
 
@@ -49,8 +50,9 @@ def check(draft: ProjectDraft) -> None:
     _password(settings.bus, report)
     references = References(draft)
     events: dict[tuple[str, str], str] = {}
+    _removed(settings.removed_routes, report)
     for name, route in settings.routes.items():
-        if not check_key(report, route, settings):
+        if route.built_in or not check_key(report, route, settings):
             continue
         _ways(draft, report, route)
         _carried(report, route)
@@ -66,6 +68,15 @@ def check(draft: ProjectDraft) -> None:
                 related = [((*settings.routes[other].where, "key"), "the other one stands here")]
                 report(DUPLICATE_ROUTE, (*route.where, "key"), message, "delete one of them", related=related)
     _missing(draft, settings.routes, report)
+
+
+def _removed(names: Collection[str], report: DocumentReport) -> None:
+    """Report rows that are null and whose name is none of a route that comes with Lumen."""
+    for name in names:
+        if name not in BUILT_IN_ROUTES:
+            message = f"`null` removes a route that comes with Lumen, and `{name}` is none"
+            hint = f"{did_you_mean(name, BUILT_IN_ROUTES, 'there are')}; your own have a `key` and a `direction`"
+            report(UNKNOWN_ROUTE, ("routes", name), message, hint)
 
 
 def _password(bus: str, report: DocumentReport) -> None:
@@ -150,6 +161,8 @@ def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     """A route that comes in and becomes an event should be waited for by somebody."""
     if route.direction is Direction.OUT or not draft.behaviors or has_errors(draft.diagnostics):
         return
+    if route == BUILT_IN_ROUTES.get(route.name):
+        return  # `lumen new` writes such rows, and without its row the route would not be there
     bound = {b.route for c in draft.controllers.values() for b in c.input_bindings}
     if route.name not in bound and not any(
         hears(d, route.event) for m in draft.behaviors.values() for d in descriptors(m)

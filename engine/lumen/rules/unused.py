@@ -73,12 +73,9 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
 
 def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
     """Words files that no behaviour names, and what stands in the others and is asked for by none of these."""
-    read = draft.names.get("behaviors", frozenset()) <= {
-        n for n in draft.behaviors if draft.report("behaviors", n).whole
-    }
     for name, words in draft.words.items():
         report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
-        if not users and report.whole and read:
+        if not users and report.whole and draft.whole_behaviors:
             message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
             draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
         elif users and all(user in sound for user in users):
@@ -177,7 +174,8 @@ def _alike_files(draft: ProjectDraft) -> None:
         message = f"{file} and {other} differ by case only, and some computers take them for one file"
         draft.say(SAME_BUT_CASE, file, message, "rename one of them")
     if draft.settings and draft.main:
-        _say_alike(draft.main, ("routes",), draft.settings.routes)
+        own = [name for name, route in draft.settings.routes.items() if not route.built_in]
+        _say_alike(draft.main, ("routes",), own)
 
 
 def _alike_inside(machine: MachineDefinition, report: DocumentReport) -> None:

@@ -66,7 +66,9 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     libraries = old.gestures, new.gestures
     yield from _named("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
     yield from _named("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
-    yield from _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes)
+    for found in _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
+        uses = (new.routes.get(found.about) or old.routes[found.about]).uses
+        yield replace(found, file=uses[0].file) if uses else found
     yield from _named("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
     yield from _named("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
