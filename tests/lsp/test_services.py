@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[2]
 SHIPPED = Analysis(ROOT, read_files(ROOT))
 FAQ = "behaviors/words/faq.yaml"
 VISITORS = "behaviors/words/visitors.yaml"
+HOST = "behaviors/host.yaml"
 TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
 
 
@@ -131,6 +132,41 @@ def test_definition(file: str, text: str, where: str) -> None:
 )
 def test_hover(file: str, text: str, said: str) -> None:
     assert said in hover(SHIPPED, *place(SHIPPED, file, text))
+
+
+def first(behavior: str, rows: str = "") -> tuple[Analysis, tuple[str, int, int]]:
+    """A project without routes but for these rows, and the place of the `|` in its behaviour."""
+    main = f"behavior: host\nlanguages: [en]\nrobot: {{model: nao}}\nhall: hall.xml\n{rows}"
+    texts = {"lumen.yaml": main, HOST: behavior.replace("|", "", 1)}
+    analysis = Analysis(ROOT, {file: text.encode() for file, text in texts.items()})
+    return analysis, place(analysis, HOST, behavior)
+
+
+@for_each(
+    ("behavior", "rows", "some", "none"),
+    [
+        ("states: {idle: {on: {f|", "", ["face: ", "fallen: "], ["idle: "]),
+        ("states: {idle: {on: {|", "routes:\n  face: null\n", ["heard: "], ["face: "]),
+        ("states: {idle: {entry: {publish: {route: |", "", ["text_stream", "social_expression"], ["ask"]),
+        ("states: {idle: {entry: {publish: {route: |", "routes:\n  fact: null\n", ["text_stream"], ["fact"]),
+        ("states: {idle: {entry: {publish: {route: text_stream, body: {|", "", ["text: "], ["x: "]),
+        ("states: {idle: {on: {face: {guard: event.data.|", "", ["x", "y"], ["result"]),
+    ],
+)
+def test_a_route_that_comes_with_lumen_is_proposed(behavior: str, rows: str, some: list[str], none: list[str]) -> None:
+    analysis, here = first(behavior, rows)
+    found = [item.text for item in complete(analysis, *here)]
+    assert set(some) <= set(found)
+    assert not set(none) & set(found)
+    assert len(found) == len(set(found))
+
+
+def test_hover_over_a_route_that_comes_with_lumen() -> None:
+    analysis, here = first("states: {idle: {on: {face: {actions: {publish: {route: text_st|ream}}}}}}\n")
+    assert "`lumen.{robot}.audio.text.stream` (out), comes with Lumen" in hover(analysis, *here)
+    analysis, here = first("states: {idle: {on: {fa|ce: idle}}}\n")
+    assert "from the route `face` (`lumen.{robot}.visual.face.detection`)" in hover(analysis, *here)
+    assert renamable(analysis, *here) is None
 
 
 def test_hover_over_a_finding_shows_its_rule() -> None:

@@ -5,8 +5,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
+from lumen.language.routes import Route
+from lumen.loading.lending import shipped_message
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.cursor import Cursor, cursor
 from lumen.lsp.grammar import key_kind, kind_of, value_kind
@@ -111,6 +114,8 @@ class _Completion:
                 yield from self.events(waits=key)
             case NameKind.FIELD:
                 yield from self.body(path)
+            case NameKind.ROUTE:
+                yield from ((n, "comes with Lumen" if r.built_in else "") for n, r in self.routes().items())
             case NameKind.LANGUAGE if key and path[-2:-1] == ("say",):
                 yield from ((name, "") for name in [*self.index.names(kind), "any"])
             case _:
@@ -145,6 +150,8 @@ class _Completion:
         yield from ((name, "") for name in names)
         if waits:
             yield from ((name, "the robot's") for name in ROBOT_EVENTS if name not in names)
+            routed = (route for route in self.routes().values() if route.event and route.event not in names)
+            yield from ((route.event, f"from the route `{route.name}`") for route in routed)
             yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
 
     def field(self, before: str) -> Iterator[Item]:
@@ -152,7 +159,7 @@ class _Completion:
         if dot:
             yield from (Item(name, "field", len(part)) for name in self.fields(self.schema(route)))
         else:
-            yield from (Item(name, "route", len(route)) for name in self.index.names(NameKind.ROUTE))
+            yield from (Item(name, "route", len(route)) for name in self.routes())
 
     def body(self, path: NodePath) -> Iterator[tuple[str, str]]:
         around = self.value(path[:-2])
@@ -188,17 +195,21 @@ class _Completion:
 
     def declared(self) -> Iterator[tuple[str, Any]]:
         """The events of routes, of the robot and of the file, each with the schema of its data."""
-        settings, own = self.analysis.settings.settings, self.index.documents.get(self.file)
-        for route in settings.routes.values() if settings else ():
-            yield route.event, self.analysis.settings.messages.get(route.schema)
+        own = self.index.documents.get(self.file)
+        yield from ((route.event, self.schema(name)) for name, route in self.routes().items())
         yield from ROBOT_EVENTS.items()
         events = own.data.get("events") if own and isinstance(own.data, dict) else None
         yield from events.items() if isinstance(events, dict) else ()
 
-    def schema(self, route: str) -> Any:
+    def routes(self) -> Mapping[str, Route]:
+        """The project's routes, and those that come with Lumen and that it does not remove."""
         settings = self.analysis.settings.settings
-        known = settings.routes.get(route) if settings else None
-        return self.analysis.settings.messages.get(known.schema) if known else None
+        own, removed = (settings.routes, settings.removed_routes) if settings else ({}, frozenset[str]())
+        return {**own, **{n: r for n, r in BUILT_IN_ROUTES.items() if n not in own and n not in removed}}
+
+    def schema(self, route: str) -> Any:
+        known = self.routes().get(route)
+        return known and (self.analysis.settings.messages.get(known.schema) or shipped_message(known.schema))
 
     def fields(self, schema: Any) -> list[str]:
         properties = schema.get("properties") if isinstance(schema, Mapping) else None

@@ -64,7 +64,8 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
         case NameKind.ROUTE:
             route = draft.settings.routes.get(use.name) if draft.settings else None
             event = f", becomes the event `{route.event}`" if route and route.event else ""
-            return f"`{route.key}` ({route.direction}){event}" if route else ""
+            origin = ", comes with Lumen" if route and route.built_in else ""
+            return f"`{route.key}` ({route.direction}){event}{origin}" if route else ""
         case NameKind.PHRASE:
             holder = draft.words.get(use.scope.removeprefix(WORDS_SCOPE)) or draft.behaviors.get(use.scope)
             rows = holder.phrases.get(use.name, {}) if holder else {}
