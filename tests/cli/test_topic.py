@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+import lumen
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
@@ -111,7 +112,8 @@ def test_list_hz_and_bw_measure(run: Run) -> None:
 
     until(heard)
     assert (listed[SONAR]["route"], listed["avatar.NAO.command"]["messages"]) == ("sonar", 0)
-    assert listed["lumen.note"]["route"] == ""
+    assert (listed["lumen.note"]["route"], listed["lumen.note"]["origin"]) == ("", "")
+    assert listed[SONAR]["origin"].startswith("lumen.yaml:")
     assert listed["lumen.visual.face.detection"]["alias"]
     assert not listed["lumen.NAO.visual.face.detection"]["alias"]
 
@@ -129,6 +131,36 @@ def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
     code, out, _ = run("topic", *words, "--for", "500ms", "--format", "json")
     assert code == 0
     return list(json.loads(out)["topics"])
+
+
+def test_list_tells_where_each_route_comes_from(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("LUMEN_BUS", raising=False)
+    hall = tmp_path / "hall"
+    assert main(["new", str(hall), "--minimal"]) == 0
+    with (hall / "lumen.yaml").open("a", encoding="utf-8") as file:
+        file.write("routes:\n  lamp: {key: museum.lamp, direction: out}\n")
+    shown, premises = lumen.load(hall), RunDirectory(hall)
+    bus = validated(connect("memory://"), shown)
+    premises.open(bus, "memory://", shown)
+    listing = ["topic", "list", "--for", "1ms", "--project", str(hall)]
+    capsys.readouterr()
+    assert main(listing) == 0
+    text = capsys.readouterr().out
+    assert main([*listing, "--format", "json"]) == 0
+    rows = {row["key"]: row for row in json.loads(capsys.readouterr().out)["topics"]}
+    premises.close(forget=True)
+    bus.close()
+    heard, lamp = rows["lumen.NAO.audio.speech.recognition"], rows["museum.lamp"]
+    uses = [{"place": "behaviors/hello.yaml:9", "verb": "hears"}]
+    assert (heard["route"], heard["origin"], heard["uses"]) == ("heard", "comes with Lumen", uses)
+    assert rows["lumen.audio.speech.recognition"]["uses"] == uses
+    assert (lamp["origin"], lamp["uses"]) == ("lumen.yaml:9", [])
+    assert text.splitlines()[0].split()[-1] == "origin"
+    ends = {line.split()[0]: " ".join(line.split()[-6:]) for line in text.splitlines()[1:]}
+    assert ends["lumen.NAO.visual.face.detection"] == "comes with Lumen: behaviors/hello.yaml:6 hears it"
+    assert ends["museum.lamp"].endswith(" 0 lumen.yaml:9")
 
 
 @pytest.mark.network

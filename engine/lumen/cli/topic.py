@@ -17,11 +17,11 @@ from lumen.cli.progress import progress
 from lumen.cli.reach import reach
 from lumen.cli.tables import table
 from lumen.errors import BusClosedError, BusRefusedError, UsageError
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.projects import Project
-from lumen.language.routes import Direction
+from lumen.language.routes import Direction, Route
 from lumen.loading.files import read_files
-from lumen.loading.packaged import find_project
+from lumen.loading.packaged import MAIN_FILE, find_project
 from lumen.loading.units import seconds
 from lumen.ports import Bus, Message, ReturningBus
 from lumen.rules import check_files
@@ -37,6 +37,8 @@ TOPIC_VERBS = {
 LISTENING = 3.0
 SHOWN = 200
 LOOK = 0.5
+BUILT_IN = "comes with Lumen"
+"""The origin of a route that no row of lumen.yaml declares."""
 
 
 class Heard(NamedTuple):
@@ -100,17 +102,32 @@ def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int
         route = routes.get(key)
         name, direction, carried = (route.name, route.direction, route.carried) if route else ("", "", "")
         row = {"key": key, "route": name, "direction": direction, "carried": carried, "messages": counts.get(key, 0)}
-        rows.append({**row, "alias": bool(route and key == route.alias)})
+        row["alias"] = bool(route and key == route.alias)
+        rows.append({**row, **(_origin(route, project) if route and project else {"origin": "", "uses": []})})
     if options.format == "json":
         print(json.dumps({"seconds": span, "topics": rows}))
         return 0
-    print(table(["key", "route", "direction", "carried", f"in {span:g} s"], [_cells(row) for row in rows]))
+    print(table(["key", "route", "direction", "carried", f"in {span:g} s", "origin"], [_cells(row) for row in rows]))
     return 0
+
+
+def _origin(route: Route, project: Project) -> dict[str, Any]:
+    """Return the row of lumen.yaml, or that the route comes with Lumen and the places that use it."""
+
+    def line(file: str, where: NodePath) -> str:
+        return f"{file}:{project.place(file, where).line}"
+
+    if not route.built_in:
+        return {"origin": line(MAIN_FILE, route.where), "uses": []}
+    uses = [{"place": line(use.file, use.where), "verb": use.verb} for use in route.uses]
+    return {"origin": BUILT_IN, "uses": uses}
 
 
 def _cells(row: Mapping[str, Any]) -> list[str]:
     name = f"{row['route']} (alias)" if row["alias"] else row["route"]
-    return [row["key"], name, str(row["direction"]), str(row["carried"]), str(row["messages"])]
+    uses = ", ".join(f"{use['place']} {use['verb']} it" for use in row["uses"])
+    origin = f"{row['origin']}: {uses}" if uses else row["origin"]
+    return [row["key"], name, str(row["direction"]), str(row["carried"]), str(row["messages"]), origin]
 
 
 def _echo(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
