@@ -7,7 +7,7 @@ from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart.action_context import ActionContext
 from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_delay, compile_value
 from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
-from lumen.interpreters.statechart.hears import row_guards
+from lumen.interpreters.statechart.hears import RowBlock
 from lumen.interpreters.statechart.type_checks import type_checks
 from lumen.language.actions import Template
 from lumen.language.diagnostics import NodePath
@@ -104,10 +104,11 @@ class StateNode:
 class CompiledTransition:
     """A transition, its guard and actions compiled; compared by identity. `alone` is the set of it only.
 
-    A row of `hears` has a `late` guard, too: whether it is taken if no state has taken anything else.
+    A row of `hears` has a `late` guard, too, whether it is taken if no state has taken anything else; `rows` are all
+    rows of its state.
     """
 
-    __slots__ = ("alone", "block", "definition", "guard", "late", "source", "targets", "where")
+    __slots__ = ("alone", "block", "definition", "guard", "late", "rows", "source", "targets", "where")
 
     def __init__(self, definition: Transition, source: StateNode, targets: tuple[StateNode, ...]) -> None:
         self.definition = definition
@@ -116,6 +117,7 @@ class CompiledTransition:
         guard = definition.guard
         self.guard: CompiledGuard | None = compile_guard(guard.source) if guard else None
         self.late: CompiledGuard | None = None
+        self.rows: RowBlock | None = None
         self.where = guard.where if guard else definition.where
         self.block: CompiledBlock = compile_block(definition.actions)
         self.alone = (self,)
@@ -159,12 +161,12 @@ class Chart:
 
     def _guard_rows(self) -> None:
         """Give each row of `hears` the guards that know the other rows of its state."""
-        rows = {
-            t.definition.hears.number: t for node in self.nodes.values() for t in node.transitions if t.definition.hears
-        }
-        own = {number: transition.guard for number, transition in rows.items()}
-        for number, transition in rows.items():
-            transition.guard, transition.late = row_guards(self.definition, number, own)
+        for node in self.nodes.values():
+            rows = {t.definition.hears.number: t for t in node.transitions if t.definition.hears}
+            if rows:
+                block = RowBlock(self.definition, {number: row.guard for number, row in rows.items()})
+                for number, row in rows.items():
+                    row.rows, (row.guard, row.late) = block, block.guards(number)
 
     def _connect(self, node: StateNode) -> None:
         assert node.state is not None  # only the document has none, and it is not among the nodes

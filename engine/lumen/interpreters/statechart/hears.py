@@ -6,6 +6,7 @@ they are asked only if no state has taken anything else.
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from lumen.interpreters.expressions import ExpressionError, Scope
 from lumen.interpreters.talk.hearing import Taken, hearing_of, said_in
@@ -14,36 +15,48 @@ from lumen.language.machines import MachineDefinition
 CompiledGuard = Callable[[Scope], bool]
 
 
-def row_guards(
-    machine: MachineDefinition, number: int, own: Mapping[int, CompiledGuard | None]
-) -> tuple[CompiledGuard, CompiledGuard]:
-    """Return the guard of the row with that number, and its late guard; `own` are the guards that the rows have."""
+class RowBlock:
+    """The rows of one state; `own` are the guards that they have themselves, by the numbers of the rows."""
 
-    def first(scope: Scope) -> bool:
-        text = said_in(scope.event)
-        return bool(text) and _best(hearing_of(machine).order(number, text, scope.context).first, number, own, scope)
+    __slots__ = ("_any", "_machine", "_own")
 
-    def late(scope: Scope) -> bool:
-        order = hearing_of(machine).order(number, said_in(scope.event), scope.context)
-        return _best(order.late, number, own, scope)
+    def __init__(self, machine: MachineDefinition, own: Mapping[int, CompiledGuard | None]) -> None:
+        self._machine, self._own, self._any = machine, own, next(iter(own))
 
-    return first, late
+    def guards(self, number: int) -> tuple[CompiledGuard, CompiledGuard]:
+        """The guard of a row, and its guard when it is late."""
+        return partial(self._holds, number, False), partial(self._holds, number, True)
 
+    def chosen(self, scope: Scope) -> int:
+        """The number of the row that is taken, -1 if none is; raises ExpressionError if a guard fails."""
+        return next((one.number for one in self._order(scope, False) if self._is_true(one, scope)), -1)
 
-def _best(taken: tuple[Taken, ...], number: int, own: Mapping[int, CompiledGuard | None], scope: Scope) -> bool:
-    """Whether this row is the first of these whose own guard is true.
+    def chosen_late(self, scope: Scope) -> int:
+        """The number of the late row that is taken, as `chosen`."""
+        return next((one.number for one in self._order(scope, True) if self._is_true(one, scope)), -1)
 
-    Raises ExpressionError if the row's own guard fails; a better row whose guard fails is not taken.
-    """
-    if not any(one.number == number for one in taken):
+    def _order(self, scope: Scope, late: bool) -> tuple[Taken, ...]:
+        order = hearing_of(self._machine).order(self._any, said_in(scope.event), scope.context)
+        return order.late if late else order.first
+
+    def _is_true(self, taken: Taken, scope: Scope) -> bool:
+        guard = self._own[taken.number]
+        return guard is None or guard(scope)
+
+    def _holds(self, number: int, late: bool, scope: Scope) -> bool:
+        """Whether this row is the first one whose own guard is true.
+
+        Raises ExpressionError if the row's own guard fails; a better row whose guard fails is not taken.
+        """
+        order = self._order(scope, late)
+        if not any(one.number == number for one in order):
+            return False
+        for one in order:
+            if one.number == number:
+                return self._is_true(one, scope)
+            try:
+                if self._is_true(one, scope):
+                    return False
+            except ExpressionError:
+                continue
         return False
-    for one in taken:
-        guard = own[one.number]
-        if one.number == number:
-            return guard is None or guard(scope)
-        try:
-            if guard is None or guard(scope):
-                return False
-        except ExpressionError:
-            continue
-    return False

@@ -48,7 +48,8 @@ class Sight(NamedTuple):
 class StepText:
     """One function being written; `scope` is what the variable of that name shows now, None where there is none.
 
-    It is for events of that `sendid`, by how it is written; most have none.
+    It is for events of that `sendid`, by how it is written; most have none. `chosen` are the variables that hold which
+    row of `hears` of a state is taken.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
@@ -57,6 +58,7 @@ class StepText:
         self.constants: list[Any] = []
         self.depth = 2
         self.scope: Sight | None = None
+        self.chosen: dict[tuple[object, ...], str] = {}
         self.sendid = "''"
 
     def text(self) -> str:
@@ -90,9 +92,10 @@ class StepText:
         if self.depth > MAX_DEPTH:
             raise NotPlainError
         self.line(f"if {condition}:")
-        self.depth, scope = self.depth + 1, self.scope
+        self.depth, scope, chosen = self.depth + 1, self.scope, self.chosen
+        self.chosen = {**chosen}
         yield
-        self.depth, self.scope = self.depth - 1, scope
+        self.depth, self.scope, self.chosen = self.depth - 1, scope, chosen
 
     def constant(self, value: Any) -> str:
         """What stands for a value that the text does not spell out."""

@@ -13,7 +13,7 @@ from functools import partial
 from typing import TypeAlias
 
 from lumen.interpreters.expressions.inlining import scope_needs
-from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
+from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Candidates, Configuration, Group, MicrostepPlan, MicrostepPlanner
 from lumen.interpreters.statechart.state_changes import StateChange
 from lumen.interpreters.statechart.step_actions import ActionText, Certain, Op
@@ -135,8 +135,8 @@ class StepWriter(ActionText):
         for transition in group:
             then = partial(self.decide, tuple(others), candidates, (*enabled, transition))
             guard = transition.definition.guard
-            if transition.late:
-                self.either(self.row(transition, transition.guard, known), known, partial(then, facts))
+            if transition.rows:
+                self.either(self.row(transition, known, late=False), known, partial(then, facts))
                 continue
             if guard is None or facts.get(guard.source):
                 known.first(partial(then, facts))
@@ -159,16 +159,21 @@ class StepWriter(ActionText):
         group, *others = groups
         for transition in group:
             then = partial(self.decide_late, tuple(others), (*enabled, transition))
-            self.either(self.row(transition, transition.late, known), known, then)
+            self.either(self.row(transition, known, late=True), known, then)
         known.first(partial(self.decide_late, tuple(others), enabled))
 
-    def row(self, transition: CompiledTransition, guard: CompiledGuard | None, known: Certain) -> str:
-        """The guard of a row of `hears`, called as it is: which row is taken depends on all rows of its state."""
-        self.see(
-            frozenset(("event", "state", "In", "scope")),
-            Sight(known.event, transition.source, known.configuration.known),
-        )
-        return f"{self.constant(guard)}(scope)"
+    def row(self, transition: CompiledTransition, known: Certain, *, late: bool) -> str:
+        """Whether a row of `hears` is the one that is taken of its state; the rows of a state are asked once."""
+        block, hears = transition.rows, transition.definition.hears
+        assert block is not None
+        assert hears is not None
+        if (chosen := self.chosen.get((block, late, known.event))) is None:
+            chosen = f"h{len(self.chosen)}"
+            sight = Sight(known.event, transition.source, known.configuration.known)
+            self.see(frozenset(("event", "state", "In", "scope")), sight)
+            self.line(f"{chosen} = {self.constant(block.chosen_late if late else block.chosen)}(scope)")
+            self.chosen[block, late, known.event] = chosen
+        return f"{chosen} == {hears.number}"
 
     def take(self, enabled: Enabled, known: Certain) -> None:
         """One microstep, with these transitions."""
