@@ -153,10 +153,8 @@ def _arrival(command: BodyCommand | None, snapshot: Snapshot) -> Event | None:
 
 def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[HeardTransition]:
     """The transitions that an event of that name may select, here or in what is invoked."""
-    groups = machine.planner.configuration(snapshot.configuration).candidates(name)
-    for group in (*groups, *groups.late):
-        for transition in group:
-            yield HeardTransition(machine.chart.definition, transition.definition, snapshot.context)
+    for transition in machine.planner.configuration(snapshot.configuration).candidates(name).all:
+        yield HeardTransition(machine.chart.definition, transition.definition, snapshot.context)
     for id, child in snapshot.invoked.items():
         behavior = machine.chart.definition.invoked_behavior(child.state, id)
         yield from _heard(machine.invoked[behavior], child.snapshot, name)

@@ -119,4 +119,5 @@ def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenSt
 
 def _ways(candidates: Candidates) -> int:
     """In how many ways the guards may turn out."""
-    return prod(sum(t.guard is not None for t in group) + 1 for group in (*candidates, *candidates.late))
+    groups = (*candidates, *(group for later in candidates.later for group in later))
+    return prod(sum(t.guard is not None for t in group) + 1 for group in groups)

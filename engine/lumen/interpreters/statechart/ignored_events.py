@@ -90,7 +90,7 @@ def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
     chart, standing = planner.chart, planner.configuration(step.snapshot.configuration)
     timed = event.name.startswith(_TIMED) and event.sendid
     groups = standing.timed(event.name) if timed else standing.candidates(event.name)
-    for transition in dict.fromkeys(t for group in (*groups, *groups.late) for t in group):
+    for transition in dict.fromkeys(t for t in groups.all):
         if guard := transition.definition.guard:
             scope = _scope(chart, transition.source, standing, step.snapshot, event)
             values = readings(guard.source, scope, guard.shown)

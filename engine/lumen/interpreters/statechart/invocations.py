@@ -143,8 +143,8 @@ def invoked_machine(machine: CompiledMachine, state: str, id: str) -> CompiledMa
 def _listen(machine: CompiledMachine, children: Mapping[str, Invoked], name: str) -> bool:
     for id, child in children.items():
         inner = invoked_machine(machine, child.state, id)
-        groups = inner.planner.configuration(child.snapshot.configuration).candidates(name)
-        waiting = (t for group in (*groups, *groups.late) for t in group if t.definition.event != "*")
+        candidates = inner.planner.configuration(child.snapshot.configuration).candidates(name)
+        waiting = (t for t in candidates.all if t.definition.event != "*")
         if any(waiting) or _listen(inner, child.snapshot.invoked, name):
             return True
     return False

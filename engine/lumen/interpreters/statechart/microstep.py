@@ -32,14 +32,17 @@ def take_enabled(context: ExecutionContext, candidates: Candidates) -> bool:
 
 def select_transitions(context: ExecutionContext, candidates: Candidates) -> tuple[CompiledTransition, ...]:
     """The first candidate of each atomic state whose guard holds (`selectTransitions`), then the late ones."""
-    if len(candidates) == 1 and not candidates.late:
+    if len(candidates) == 1 and not candidates.later:
         for transition in candidates[0]:
             if transition.guard is None or _holds(context, transition, transition.guard):
                 return transition.alone
         return ()
     found = [_first(context, group) for group in candidates]
-    if candidates.late and not _is_heard_inside(context):
-        found += [_first(context, group, late=True) for group in candidates.after(found)]
+    if candidates.later and not _is_heard_inside(context):
+        for groups in candidates.later:
+            if any(taken and taken.rows for taken in found):
+                break
+            found = [taken or _first(context, group, late=True) for taken, group in zip(found, groups, strict=True)]
     return tuple(dict.fromkeys(transition for transition in found if transition))
 
 

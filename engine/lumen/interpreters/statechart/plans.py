@@ -1,6 +1,6 @@
 """What a microstep does, worked out once for each configuration and set of transitions, and kept."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, TypeAlias
 
@@ -26,18 +26,16 @@ Group: TypeAlias = tuple[CompiledTransition, ...]
 class Candidates(tuple[Group, ...]):
     """For each active atomic state the transitions that an event selects, the innermost first.
 
-    `late` are those of the same state that are asked only if it takes none of these, and no state takes a row of
-    `hears`; it is empty if there are none at all.
+    `later` are rows of `hears` of the same states, in two passes: those whose phrase is slots only, then `else`. A pass
+    is for states that have taken nothing, if no state has taken a row so far; there are none without rows.
     """
 
-    late: tuple[Group, ...] = ()
+    later: tuple[tuple[Group, ...], ...] = ()
 
-    def after(self, enabled: Sequence[CompiledTransition | None]) -> "Candidates":
-        """What is asked after these were taken, one for each state or none."""
-        if not self.late or any(t and t.definition.hears for t in enabled):
-            return NO_CANDIDATES
-        rest = (group for group, taken in zip(self.late, enabled, strict=True) if taken is None)
-        return Candidates(group for group in rest if group)
+    @property
+    def all(self) -> Iterator[CompiledTransition]:
+        """Every transition that may be taken."""
+        yield from (t for groups in (self, *self.later) for group in groups for t in group)
 
 
 NO_CANDIDATES = Candidates()
@@ -94,18 +92,18 @@ class Configuration:
     def _select(self, wanted: Callable[[CompiledTransition], bool]) -> Candidates:
         if self.finished:
             return NO_CANDIDATES
-        first: list[Group] = []
-        late: list[Group] = []
+        groups: list[Group] = []
         for leaf in self.leaves:
             found = [t for node in (leaf, *leaf.ancestors) for t in _in_order(node.transitions) if wanted(t)]
-            now = tuple(t for t in found if not t.is_otherwise)
-            rows = tuple(t for t in found if t.late)
-            if now or rows:
-                first.append(now)
-                late.append(rows)
-        candidates = Candidates(first)
-        if any(late):
-            candidates.late = tuple(late)
+            if found:
+                groups.append(tuple(found))
+        if not any(t.rows for group in groups for t in group):
+            return Candidates(groups)
+        candidates = Candidates(tuple(t for t in group if not t.is_otherwise) for group in groups)
+        candidates.later = (
+            tuple(tuple(t for t in group if t.rows and not t.is_otherwise) for group in groups),
+            tuple(tuple(t for t in group if t.is_otherwise) for group in groups),
+        )
         return candidates
 
 
@@ -184,9 +182,9 @@ class MicrostepPlanner:
 
 def _in_order(transitions: tuple[CompiledTransition, ...]) -> Sequence[CompiledTransition]:
     """The transitions of a state in the order in which they are asked: rows of `hears` after `heard`, before `*`."""
-    if not any(t.late for t in transitions):
+    if not any(t.rows for t in transitions):
         return transitions
-    return sorted(transitions, key=lambda t: 2 if t.definition.event == "*" else t.late is not None)
+    return sorted(transitions, key=lambda t: 2 if t.definition.event == "*" else t.rows is not None)
 
 
 def make_room(cache: dict[Any, Any]) -> None:

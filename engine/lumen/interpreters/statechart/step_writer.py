@@ -129,7 +129,7 @@ class StepWriter(ActionText):
         another candidate, and have no other answer here.
         """
         if not groups:
-            self.decide_late(candidates.after(enabled), enabled, known)
+            self.decide_late(candidates.later, 0, enabled, known)
             return
         group, *others = groups
         for transition in group:
@@ -150,17 +150,24 @@ class StepWriter(ActionText):
         known.first(partial(self.decide, tuple(others), candidates, (*enabled, None), facts))
 
     def decide_late(
-        self, groups: tuple[Group, ...], enabled: tuple[CompiledTransition | None, ...], known: Certain
+        self,
+        passes: tuple[tuple[Group, ...], ...],
+        number: int,
+        enabled: tuple[CompiledTransition | None, ...],
+        known: Certain,
     ) -> None:
-        """The late rows of `hears` of those states that took nothing."""
-        if not groups:
+        """The late rows of `hears`, of the states from that number on which have taken nothing."""
+        if passes and number == len(enabled):
+            passes, number = passes[1:], 0
+        if not passes or (not number and any(taken and taken.rows for taken in enabled)):
             known.first(partial(self.take, tuple(dict.fromkeys(filter(None, enabled)))))
             return
-        group, *others = groups
-        for transition in group:
-            then = partial(self.decide_late, tuple(others), (*enabled, transition))
-            self.either(self.row(transition, known, late=True), known, then)
-        known.first(partial(self.decide_late, tuple(others), enabled))
+        for transition in passes[0][number] if enabled[number] is None else ():
+            taken = (*enabled[:number], transition, *enabled[number + 1 :])
+            self.either(
+                self.row(transition, known, late=True), known, partial(self.decide_late, passes, number + 1, taken)
+            )
+        known.first(partial(self.decide_late, passes, number + 1, enabled))
 
     def row(self, transition: CompiledTransition, known: Certain, *, late: bool) -> str:
         """Whether a row of `hears` is the one that is taken of its state; the rows of a state are asked once."""

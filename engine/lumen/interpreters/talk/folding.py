@@ -127,6 +127,13 @@ def placed_words(text: str) -> Iterator[tuple[str, int, int]]:
         yield word, start, position
 
 
+def _ends(text: str, last: int, start: int) -> bool:
+    """Whether a clause ends between two words: a full stop within "3.5" ends none."""
+    if start - last == 1:
+        return text[last] > "\u0500" and _ENDS.match(text, last) is not None
+    return _ENDS.search(text, last, start) is not None
+
+
 def _is_title(word: str, text: str, end: int) -> bool:
     """Whether the full stop after a word is that of an abbreviated title, as in "Dr. Hasan"."""
     return word in _TITLES and text[end : end + 2] == ". "
@@ -149,7 +156,7 @@ def read_words(text: str) -> Words:
     clauses: list[int] = []
     clause, last = 0, 0
     for word, start, end in placed_words(text):
-        if found and start > last + 1 and _ENDS.search(text, last, start) and not _is_title(found[-1], text, last):
+        if found and _ends(text, last, start) and not _is_title(found[-1], text, last):
             clause += 1
         for part in folded(word):
             found.append(part)

@@ -27,7 +27,10 @@ class Taken(NamedTuple):
 
 
 class Order(NamedTuple):
-    """The rows of a state that a sentence may take, the best first; the `late` ones only if no state took another."""
+    """The rows of a state that a sentence may take, the best first.
+
+    The `late` ones, which are slots only and then `else`, count only if no state has taken another.
+    """
 
     first: tuple[Taken, ...]
     late: tuple[Taken, ...]
