@@ -1,4 +1,4 @@
-"""How much of what visitors say is understood, by kind and language: known sayings, and those that were held back.
+"""Measure the share of visitors' sayings that is understood, by kind and language: known and held-back ones.
 
     python benchmarks/hearing.py                     # the words that come with Lumen, and the shipped tour
     python benchmarks/hearing.py --failed            # and which sayings were misunderstood; not those held back
@@ -72,7 +72,7 @@ def alone(name: str) -> dict[str, Any]:
 
 
 def heard(machine: Any, text: str) -> Any:
-    """What a name was taken for: False if it was not heard, else what was caught, or True."""
+    """Return False if a name was not heard, else what was caught, or True."""
     after = statechart.step(machine, statechart.initial(machine).snapshot, Event("heard", {"result": text})).snapshot
     return "hit" in after.configuration and (after.context["caught"] or True)
 
@@ -105,7 +105,7 @@ class Tour:
         return statechart.step(self.machine, snapshot, Event("heard", {"result": text}, snapshot.at + 1))
 
     def settled(self, step: Any) -> Any:
-        """Where it is once the robot has done all that was started, one command after another."""
+        """Return the snapshot after the robot has done all that was started, one command after another."""
         waiting = list(step.commands)
         while waiting:
             command = waiting.pop(0)
@@ -123,7 +123,7 @@ class Tour:
                     yield Tried(kind, language, not all_known and held_back(number), text, wanted, found, right)
 
     def tried(self, kind: str, language: str, text: str, wanted: Any) -> tuple[Any, bool]:
-        """What came of a saying, and whether that is as it should be."""
+        """Return the result of a saying, and whether it is the right one."""
         step = self.said(self.at[kind]._replace(language=language), text)
         if kind == "name":
             found = step.snapshot.context["visitor"] or None

@@ -74,5 +74,5 @@ def taken(machine: Machine, text: str) -> str:
 
 
 def caught(machine: Machine, text: str) -> Any:
-    """What `heard` was for the row that was taken."""
+    """Return `heard` of the row that was taken."""
     return said(machine, text).snapshot.context["caught"]

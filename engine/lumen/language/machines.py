@@ -35,9 +35,9 @@ class Approval:
 
 @dataclass(frozen=True, slots=True)
 class Hears:
-    """What of a visitor's sentence takes a transition: a row of `hears`.
+    """A row of `hears`: the sentences that lead to a transition.
 
-    `number` tells it from the other rows of its machine, `key` is as it is written. `way` is how the names must be in
+    `number` is unique in its machine, `key` is the key in the file. `way` is how the names must be in
     the sentence: found, negated (`not`), within a question (`asked`), or not at all (`else`). A name is one of
     `phrases` or `answers`, or a path such as `context.round.entry.right` to phrases of a list's entry.
     """
@@ -58,7 +58,7 @@ class Transition:
     descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`. Where it waits for
     somebody to `approve` it, the event waits: no step knows of that.
     An `offer` is for a language model, too, which may raise its event.
-    A row of `hears` waits for `heard` and says in `hears` which sentences take it.
+    A row of `hears` waits for `heard`, and `hears` is the row.
     """
 
     source: str

@@ -51,7 +51,9 @@ class HearsKeys:
             self.report(BAD_ROW, where, "a name is missing beside `|`", hint, key=True)
         elif name == "else":
             hint = "give `else` a row of its own"
-            self.report(BAD_ROW, where, "`else` stands alone: it is what no other row hears", hint, key=True)
+            self.report(
+                BAD_ROW, where, "`else` can't be joined with names: it is for every other sentence", hint, key=True
+            )
         else:
             hint = did_you_mean(name, self.names, "there are")
             self.report(UNKNOWN_PHRASE, where, f"there are no phrases or answers named `{name}`", hint, key=True)

@@ -25,7 +25,7 @@ class KnownWords(NamedTuple):
     """The tables by their keys, each from name to content; `files` are those named under `words`.
 
     `borrowed` says of (key, name) from which of them it comes. Unless `whole`, one of them can't be read, and a name
-    that is not known may stand there. `anyhow` are the names of phrases that count even if negated, and `supplied` is
+    that is not known may be there. `anyhow` are the names of phrases that count even if negated, and `supplied` is
     what of Lumen's own words is used without being named, as data.
     """
 

@@ -69,7 +69,7 @@ class Liveness:
             yield after, frozenset()
 
     def _caught(self, transition: Transition) -> frozenset[str]:
-        """What `heard` surely has in the actions of a row of `hears`."""
+        """The keys that `heard` always has in the actions of a row of `hears`."""
         return always_caught(self._machine, transition.hears) if transition.hears else frozenset()
 
     def _domain(self, transition: Transition) -> str:

@@ -27,7 +27,7 @@ from lumen.language.hours import WEEKDAYS
 
 KindSet = frozenset[str]
 CAUGHT = "caught"
-"""The function that `heard` stands for in a row of `hears`; files do not call it."""
+"""The function that `heard` is compiled to in a row of `hears`; files do not call it."""
 
 
 class Function(NamedTuple):
@@ -149,7 +149,7 @@ def _unnamed(what: str, name: str, names: Iterable[str]) -> FaultError:
 
 
 def caught(scope: Scope, row: int) -> dict[str, Any]:
-    """What `heard` is in the guard and actions of the row of `hears` with that number."""
+    """Return the value of `heard` in the guard and actions of the row of `hears` with that number."""
     if scope.machine is None:
         raise FaultError("nothing is heard here", "`heard` is known in the guard and actions of a row of `hears`")
     return hearing_of(scope.machine).caught(row, scope.event, scope.context, scope.language)

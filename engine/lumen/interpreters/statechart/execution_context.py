@@ -67,7 +67,7 @@ class InvocationHandler(Protocol):
         """Hand over what the machine sends to them."""
 
     def listens(self, context: "ExecutionContext", name: str) -> bool:
-        """Whether one of them waits for an event of that name where it is now."""
+        """Whether one of them waits for an event of that name now."""
 
 
 @dataclass(slots=True, eq=False)

@@ -28,7 +28,7 @@ class RowBlock:
         return partial(self._holds, number, False), partial(self._holds, number, True)
 
     def chosen(self, scope: Scope) -> int:
-        """The number of the row that is taken, -1 if none is; raises ExpressionError if a guard fails."""
+        """Return the number of the row that is taken, or -1; raise ExpressionError if a guard fails."""
         return next((one.number for one in self._order(scope, False) if self._is_true(one, scope)), -1)
 
     def chosen_late(self, scope: Scope) -> int:

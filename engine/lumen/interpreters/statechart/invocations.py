@@ -75,7 +75,7 @@ class Invocations:
                 context.returned(id, event)
 
     def listens(self, context: ExecutionContext, name: str) -> bool:
-        """Whether one of them waits for an event of that name where it is now."""
+        """Whether one of them waits for an event of that name now."""
         return _listen(context.machine, self.children, name)
 
     def end(self, context: ExecutionContext, id: str) -> None:

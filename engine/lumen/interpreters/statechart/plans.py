@@ -27,7 +27,7 @@ class Candidates(tuple[Group, ...]):
     """For each active atomic state the transitions that an event selects, the innermost first.
 
     `later` are rows of `hears` of the same states, in two passes: those whose phrase is slots only, then `else`. A pass
-    is for states that have taken nothing, if no state has taken a row so far; there are none without rows.
+    is for states that have not reacted, if no state has taken a row so far; there are none without rows.
     """
 
     later: tuple[tuple[Group, ...], ...] = ()

@@ -112,7 +112,7 @@ class StepWriter(ActionText):
             self.result(known)
 
     def select(self, candidates: Candidates) -> Op:
-        """What selects among the candidates of an event."""
+        """Return the operation that selects among the candidates of an event."""
         return partial(self.decide, tuple(candidates), candidates, (), {})
 
     def decide(

@@ -1,1 +1,1 @@
-"""What visitors say, and which phrases are in it: folding of words, patterns, finding, and the rows of `hears`."""
+"""Sentences of visitors: folding of words, patterns, finding of phrases, and the rows of `hears`."""

@@ -8,18 +8,18 @@ from lumen.interpreters.talk.patterns import Form, Slot, forms
 from lumen.language.machines import Hears
 
 NONSENSE = "qwe rty uio asd fgh jkl"
-"""What no phrase is in; it has too many words for a name."""
+"""A sentence without any phrase; it has too many words for a name."""
 
 _CAUGHT = {"name": "Ani", "name?": "Ani", "number": "7", "text": "something"}
 
 
 def example(form: Form, lists: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
-    """Return a form as somebody may say it, with something in each of its slots."""
+    """Return a form as a sentence, with an example in each of its slots."""
     return " ".join(_caught(part, lists) if isinstance(part, Slot) else part for part in form.parts)
 
 
 def examples_of(hearing: Hearing, row: Hears, context: Mapping[str, Any]) -> Iterator[str]:
-    """A text for each name of a row that should take it, if nothing better does."""
+    """Return a sentence for each name of a row, which leads there unless a better row is found."""
     if row.way == "else":
         yield NONSENSE
         return

@@ -1,4 +1,4 @@
-"""Finds phrases in what was said: every form of every name at once, in one trie."""
+"""Find phrases in a sentence: every form of every name at once, in one trie."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -9,7 +9,7 @@ from lumen.interpreters.talk.patterns import Form, Slot, forms
 from lumen.interpreters.talk.speech import Speech
 
 NEAR = 5
-"""How many words that are no fillers may stand between a negation and what it negates."""
+"""The most words, fillers aside, between a negation and the words that it negates."""
 NEAR_AFTER = 2
 """The same if the negation follows."""
 MAX_NAME_WORDS = 4
@@ -29,7 +29,7 @@ _PARTICLES = frozenset(
 
 
 class Entry(NamedTuple):
-    """A form in the trie: what it means, its strength, and how it is to be read.
+    """A form in the trie: its name, its strength, and the rules that apply to it.
 
     `row` is the row of a table of answers. `strength` is the number of its words that are no fillers. A form that is
     `alone` must be a whole clause; `negative` and `question` forms hold such a word themselves.
@@ -174,7 +174,7 @@ class Finder:
 
     @cached_property
     def phrases(self) -> frozenset[tuple[str, ...]]:
-        """The words of all phrases without slots: what a visitor says so is not their name."""
+        """The words of all phrases without slots; none of them is a name."""
         texts = {text for table in self._tables for several in table.values() for text in several}
         return frozenset(self.speech.same(form.literals) for text in texts for form in forms(text) if form.plain)
 
@@ -283,7 +283,7 @@ class Finder:
                 return
 
     def _catch(self, reading: Reading, slot: Slot, start: int, *, last: bool) -> Iterator[tuple[int, Any, int]]:
-        """What a slot catches from a word on: the end, the value and the words that count, the longest first."""
+        """Yield the end, the value and the words that count of each catch of a slot, the longest first."""
         match slot.type:
             case "name" | "name?":
                 for end in self._names(reading, start, careful=slot.type == "name?", last=last):

@@ -8,14 +8,14 @@ from unicodedata import category, normalize
 
 APOSTROPHES = frozenset("'’ʼ‘`´")
 BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
-"""What Unicode calls White_Space; Python also counts four separators of records."""
+"""Unicode's White_Space; Python also counts four separators of records."""
 
 MAX_TEXT_EXAMINED = 1_000
 """Characters of a text that is searched."""
 
 _AROUND = BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
 _ENDS = re.compile(r"[.!?;:,…。！？、，；：؟،।]|\s[-–—]+\s")
-"""What ends a clause."""
+"""The ends of clauses."""
 
 _JOINERS = "\u200b\u200c\u200d\u2060\ufeff\u00ad\u0640"
 """Joiners, soft hyphens and the Arabic tatweel: they are part of a word and do not change it."""

@@ -37,14 +37,14 @@ class Order(NamedTuple):
 
 
 def said_in(event: Any) -> str:
-    """The text of an event, given as expressions see it; empty if there is none."""
+    """Return the text of an event in the form that expressions see, or an empty text."""
     data = event.get("data") if isinstance(event, Mapping) else None
     text = data.get("result") if isinstance(data, Mapping) else None
     return text if isinstance(text, str) else ""
 
 
 class Hearing:
-    """What a behaviour hears: its phrases and answers, and the rows of its states."""
+    """The phrases and answers of a behaviour, and the rows of its states."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
@@ -88,7 +88,7 @@ class Hearing:
         return found
 
     def caught(self, number: int, event: Any, context: Mapping[str, Any], language: str) -> dict[str, Any]:
-        """What `heard` is for a row: the text, the phrase as it was said, the answer, and what its slots caught."""
+        """Return `heard` of a row: the text, the phrase as it was said, the answer, and the slots."""
         text = said_in(event)
         order = self.order(number, text, context)
         find = next((taken.find for taken in (*order.first, *order.late) if taken.number == number), None)

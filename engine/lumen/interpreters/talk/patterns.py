@@ -13,7 +13,7 @@ from typing import NamedTuple
 from lumen.interpreters.talk.folding import folded
 
 MAX_FORMS = 200
-"""How many forms a pattern may have."""
+"""The most forms of a pattern."""
 
 _SLOT = re.compile(r"\{([A-Za-z_]\w*\??)(?::([A-Za-z_]\w*))?\}")
 _SIGNS = re.compile(r"[()\[\]{}|]")
@@ -22,7 +22,7 @@ TYPES = ("name", "name?", "number", "text")
 
 
 class Slot(NamedTuple):
-    """What a form catches: `type` is one of TYPES or the name of a list, `name` the key in `heard`."""
+    """A slot of a form: `type` is one of TYPES or the name of a list, `name` the key in `heard`."""
 
     type: str
     name: str
@@ -83,7 +83,7 @@ def _formed(texts: list[str], slots: list[Slot], phrase: str) -> tuple[Form, ...
 
 
 class _Reader:
-    """Reads one pattern into the texts of its forms, in which `\\0number\\0` stands for a slot."""
+    """Reads one pattern into the texts of its forms, in which `\\0number\\0` marks a slot."""
 
     def __init__(self, phrase: str) -> None:
         self.phrase, self.position = phrase, 0

@@ -19,7 +19,7 @@ WORD_LISTS = (
 )  # fmt: skip
 """The names of phrases that are no meanings."""
 TABLES = (NUMBERS, CONTRACTIONS)
-"""The names of answers that are no answers: number words and contractions, each with what it stands for."""
+"""The names of answers that are no answers: number words and contractions, each with its meaning."""
 
 Phrases = Mapping[str, Mapping[str, tuple[str, ...]]]
 _HUNDRED, _THOUSAND = 100, 1000
@@ -45,7 +45,7 @@ class WordList:
         return not self.by_first.keys().isdisjoint(words) and any(self.marks(words))
 
     def length(self, words: Sequence[str], start: int) -> int:
-        """How many words from there on are its longest entry."""
+        """Return the number of words of its longest entry that begins there."""
         for entry in self.by_first.get(words[start], ()):
             length = len(entry)
             if length == 1 or tuple(words[start : start + length]) == entry:
@@ -114,7 +114,7 @@ class Speech:
         return tuple(found)
 
     def number(self, words: Sequence[str], start: int) -> tuple[int, int]:
-        """The number that begins there and its end; the end is the start if there is none."""
+        """Return the number that begins there and its end, which is the start without a number."""
         total = part = 0
         position = start
         while position < len(words):
@@ -152,7 +152,7 @@ def _texts(phrases: Mapping[str, tuple[str, ...]]) -> Iterable[str]:
 
 
 def word_lists(phrases: Mapping[str, Any], answers: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """What of the phrases and answers of a words file is word lists and tables."""
+    """Return the word lists and tables among the phrases and answers of a words file."""
     return (
         {name: phrases[name] for name in WORD_LISTS if name in phrases},
         {name: answers[name] for name in TABLES if name in answers},
