@@ -4,7 +4,6 @@ They are phrases and answers under reserved names, so a project replaces them as
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 from lumen.interpreters.talk.folding import folded
 from lumen.language.machines import Answer
@@ -149,11 +148,3 @@ def _power(number: int) -> int:
 
 def _texts(phrases: Mapping[str, tuple[str, ...]]) -> Iterable[str]:
     return dict.fromkeys(" ".join(folded(text)) for texts in phrases.values() for text in texts)
-
-
-def word_lists(phrases: Mapping[str, Any], answers: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the word lists and tables among the phrases and answers of a words file."""
-    return (
-        {name: phrases[name] for name in WORD_LISTS if name in phrases},
-        {name: answers[name] for name in TABLES if name in answers},
-    )
