@@ -241,3 +241,8 @@ def test_this_state_again_is_left_and_entered() -> None:
 def test_what_comes_again_is_the_same() -> None:
     for text in ("Dance, please.", "please don't sing", "why do you dance?", "No.", "hello there"):
         assert len({taken(OFFERED, text) for _ in range(4)}) == 1
+
+
+def test_a_long_text_ends_however_many_ways_a_pattern_fits() -> None:
+    machine = hearing({"any": "told", "else": "other"}, {"any": {"en": ["{text:a} x {text:b} x {text:c} x {name} y"]}})
+    assert taken(machine, "a x " * 400) == "other"

@@ -7,6 +7,7 @@ from lumen.app.local_timezone import local_timezone
 from lumen.app.setup import Setup
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
+from lumen.interpreters.statechart.compiled_machine import prepare
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -54,6 +55,8 @@ class LiveBehavior:
     def start(self, language: str = "") -> None:
         """Enter the initial states."""
         story = self._story
+        if story is None:
+            prepare(self.project.machine)
         timezone = self._timezone()
         began = story_epoch(story, timezone) if story else time.time()
         self.loop.start(

@@ -13,7 +13,7 @@ from lumen.app.reload.validation_worker import FileJudge
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.interpreters.changes import Change, Risk, changes
-from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.compiled_machine import prepare
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck
@@ -98,7 +98,7 @@ class BundleValidator:
             self._loaded = hash
             if project is None:
                 return Validation(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
-            compiled(project.machine)
+            prepare(project.machine)
             running = self._running()
             found = changes(running, project)
             loaded = time.perf_counter()

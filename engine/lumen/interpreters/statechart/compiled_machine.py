@@ -6,6 +6,7 @@ from typing import NamedTuple
 from lumen.interpreters.statechart.chart import Chart
 from lumen.interpreters.statechart.fast_path import FastPaths
 from lumen.interpreters.statechart.plans import MicrostepPlanner
+from lumen.interpreters.talk.hearing import hearing_of
 from lumen.language.machines import MachineDefinition
 from lumen.upkeep.garbage import gc_paused
 
@@ -31,3 +32,11 @@ def compiled(definition: MachineDefinition) -> CompiledMachine:
             machine = CompiledMachine(chart, planner, FastPaths(planner), invoked, definition.robots)
         object.__setattr__(definition, "_compiled", machine)  # frozen, and the same for all who hold it
     return machine
+
+
+def prepare(definition: MachineDefinition) -> None:
+    """Compile a machine with its phrases, so that the first sentence is understood without delay."""
+    if any(t.hears for state in definition.states.values() for t in state.transitions):
+        hearing_of(definition)
+    for other in compiled(definition).chart.definition.invoked.values():
+        prepare(other)

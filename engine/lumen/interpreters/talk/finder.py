@@ -16,6 +16,8 @@ MAX_NAME_WORDS = 4
 _ENDS, _SLOTS = 0, 1
 """Keys of a node of the trie beside its words: the forms that end there, and the slots that follow."""
 _MAX_FINDS = 500
+_MAX_WALKS = 10_000
+"""Of one text: patterns with several slots have no end of ways to fit a long one."""
 
 Node: TypeAlias = dict[Any, Any]
 Languages: TypeAlias = Mapping[str, Sequence[str]]
@@ -57,7 +59,7 @@ class Find(NamedTuple):
 class Reading:
     """A text as it was read, and the forms found in it by name."""
 
-    __slots__ = ("clauses", "filler", "finds", "kept", "marks", "slotted", "spans", "speech", "text", "words")
+    __slots__ = ("clauses", "filler", "finds", "kept", "marks", "slotted", "spans", "speech", "text", "walks", "words")
 
     def __init__(self, text: str, speech: Speech) -> None:
         read = read_words(text)
@@ -71,6 +73,7 @@ class Reading:
         self.slotted: dict[str, list[Find]] | None = None
         self.marks: dict[str, list[int]] = {}
         self.kept: dict[Any, Any] = {}
+        self.walks = 0
 
     def said(self, start: int, end: int) -> str:
         """These words as they were said."""
@@ -260,6 +263,9 @@ class Finder:
         found: dict[str, list[Find]],
     ) -> None:
         words, filler, count = reading.words, reading.filler, len(reading.words)
+        reading.walks += 1
+        if reading.walks > _MAX_WALKS:
+            return
         while True:
             for entry in node.get(_ENDS, ()):
                 several = found.setdefault(entry.name, [])
