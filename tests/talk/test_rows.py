@@ -88,6 +88,7 @@ def test_what_is_no_text_takes_only_else(data: Any) -> None:
         ("Happy Salma", "Happy Salma"),
         ("I am Robert, my name is Rob", "Rob"),
         ("My name is not Bob", None),
+        ("My name is Not", "Not"),
         ("I am tired", None),
         ("I am the boss", None),
         ("What?", None),

@@ -197,10 +197,12 @@ class Finder:
             small = self.speech.small_words.get(language, frozenset()) if language else self.speech.small
             for phrase in phrases:
                 for form in forms(phrase):
-                    self._add_form(name, row, form, small)
+                    self._add_form(name, row, form, small, language)
 
-    def _add_form(self, name: str, row: int, form: Form, small: frozenset[str]) -> None:
+    def _add_form(self, name: str, row: int, form: Form, small: frozenset[str], language: str) -> None:
         speech, plain = self.speech, form.plain
+        if not plain:
+            form = form._replace(parts=tuple(_spoken(part, language) for part in form.parts))
         words = speech.same(form.literals)
         strength = len(words) - sum(word in speech.fillers.single for word in words)
         entry = Entry(
@@ -292,7 +294,10 @@ class Finder:
         """Yield the end, the value and the words that count of each catch of a slot, the longest first."""
         match slot.type:
             case "name" | "name?":
-                for end in self._names(reading, start, careful=slot.type == "name?", last=last):
+                careful, small = slot.type == "name?", self.speech.small
+                if not careful:
+                    small = self.speech.small_words.get(slot.language, small)
+                for end in self._names(reading, start, small, careful=careful, last=last):
                     yield end, reading.said(start, end), 0
             case "number":
                 value, end = self.speech.number(reading.words, start)
@@ -309,12 +314,14 @@ class Finder:
                     found += [(position, value, strength) for value, strength in node.get(_ENDS, ())[:1]]
                 yield from reversed(found[-1:] if last else found)
 
-    def _names(self, reading: Reading, start: int, *, careful: bool, last: bool) -> Iterator[int]:
+    def _names(
+        self, reading: Reading, start: int, small: frozenset[str], *, careful: bool, last: bool
+    ) -> Iterator[int]:
         """The ends of a name that begins with a word, the longest first: one to four words of one clause."""
-        ends = self._name_ends(reading, start, careful=careful)
+        ends = self._name_ends(reading, start, small, careful=careful)
         yield from reversed(ends[-1:] if last else ends)
 
-    def _name_ends(self, reading: Reading, start: int, *, careful: bool) -> list[int]:
+    def _name_ends(self, reading: Reading, start: int, small: frozenset[str], *, careful: bool) -> list[int]:
         words, speech, capitals = reading.words, self.speech, _has_capitals(reading)
         found: list[int] = []
         several = False
@@ -329,37 +336,43 @@ class Finder:
             if capitals and not (capital or particle or _caseless(said)):
                 break
             if position > start and not particle and not (capitals and capital and word not in speech.name_ends):
-                if self._is_no_name(word, speech):
+                if self._is_no_name(word, speech, small):
                     break
             elif position == start:
                 follows = position + 1 < len(words) and reading.clauses[position + 1] == reading.clauses[start]
                 several = capitals and capital and follows and _begins_with_capital(reading, position + 1)
-                if self._refused(word, speech, careful=careful, several=several):
+                if not (capitals and capital and not careful) and self._refused(
+                    word, speech, small, careful=careful, several=several
+                ):
                     break
             if not particle:
                 found.append(position + 1)
-        return [end for end in found if not careful or self._is_sure(reading, start, end, several=several)]
+        return [end for end in found if not careful or self._is_sure(reading, start, end, small, several=several)]
 
-    def _refused(self, word: str, speech: Speech, *, careful: bool, several: bool) -> bool:
+    def _refused(self, word: str, speech: Speech, small: frozenset[str], *, careful: bool, several: bool) -> bool:
         """Whether no name begins with that word; one of two capitalised words may be a state, as in "Happy Salma"."""
-        if word in speech.small or word in speech.negations or word in speech.questions:
+        if word in small or word in speech.negations or word in speech.questions:
             return True
         return careful and not several and (word in speech.not_names or word in speech.name_ends)
 
-    def _is_no_name(self, word: str, speech: Speech) -> bool:
+    def _is_no_name(self, word: str, speech: Speech, small: frozenset[str]) -> bool:
         return (
-            word in speech.small or word in speech.name_ends or word in speech.negations or word in speech.questions
+            word in small or word in speech.name_ends or word in speech.negations or word in speech.questions
             or word in speech.not_names or word in speech.contrasts
         )  # fmt: skip
 
-    def _is_sure(self, reading: Reading, start: int, end: int, *, several: bool) -> bool:
+    def _is_sure(self, reading: Reading, start: int, end: int, small: frozenset[str], *, several: bool) -> bool:
         words = tuple(reading.words[start:end])
         if words in self.phrases or (len(words) == 1 and reading.text[reading.spans[start][1] :].lstrip()[:1] == "?"):
             return False
         speech = self.speech
         if speech.not_names.length(words, 0) == len(words) and not several:
             return False
-        return several or not any(self._is_no_name(word, speech) for word in words)
+        return several or not any(self._is_no_name(word, speech, small) for word in words)
+
+
+def _spoken(part: str | Slot, language: str) -> str | Slot:
+    return part._replace(language=language) if isinstance(part, Slot) else part
 
 
 def _insert(root: Node, parts: Sequence[str | Slot], entry: Any) -> None:

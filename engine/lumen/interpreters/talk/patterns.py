@@ -22,10 +22,14 @@ TYPES = ("name", "name?", "number", "text")
 
 
 class Slot(NamedTuple):
-    """A slot of a form: `type` is one of TYPES or the name of a list, `name` the key in `heard`."""
+    """A slot of a form: `type` is one of TYPES or the name of a list, `name` the key in `heard`.
+
+    `language` is that of the phrase, once it is known.
+    """
 
     type: str
     name: str
+    language: str = ""
 
 
 class Form(NamedTuple):
