@@ -368,7 +368,7 @@ class Finder:
         speech = self.speech
         if speech.not_names.length(words, 0) == len(words) and not several:
             return False
-        return several or not any(self._is_no_name(word, speech, small) for word in words)
+        return several or not any(self._is_no_name(word, speech, small) for word in words if word not in _PARTICLES)
 
 
 def _spoken(part: str | Slot, language: str) -> str | Slot:
