@@ -39,9 +39,25 @@ MACHINE = Machine.from_dict(
 )
 
 
-def runtime(project: Project) -> tuple[Runtime, list[Step]]:
+ROWS = Machine.from_dict(
+    {
+        "id": "talk",
+        "phrases": {"dance": {"en": ["dance"]}, "sing": {"en": ["sing", "song"]}},
+        "answers": {"faq": [{"phrases": {"en": ["how tall"]}, "value": "57 cm"}]},
+        "states": {
+            "offer": {"hears": {"dance": "dancing", "sing": "singing", "faq": "answering", "else": "asking"}},
+            "dancing": None,
+            "singing": None,
+            "answering": None,
+            "asking": None,
+        },
+    }
+)
+
+
+def runtime(project: Project, machine: Machine = MACHINE) -> tuple[Runtime, list[Step]]:
     steps: list[Step] = []
-    made = Runtime(replace(project, behaviors={"talk": MACHINE}, behavior="talk"), steps.append)
+    made = Runtime(replace(project, behaviors={"talk": machine}, behavior="talk"), steps.append)
     made.start()
     return made, steps
 
@@ -51,6 +67,7 @@ def project() -> Project:
     return lumen.load(".")
 
 
+@pytest.mark.parametrize("machine", [MACHINE, ROWS], ids=["guards", "hears"])
 @pytest.mark.parametrize(
     ("result", "others", "state", "taken"),
     [
@@ -61,9 +78,9 @@ def project() -> Project:
     ],
 )
 def test_the_first_that_means_something(
-    project: Project, result: str, others: list[str], state: str, taken: str
+    project: Project, result: str, others: list[str], state: str, taken: str, machine: Machine
 ) -> None:
-    talk, steps = runtime(project)
+    talk, steps = runtime(project, machine)
     data = {"result": result, "confidence": 0.4, "alternatives": [{"result": text} for text in others]}
     talk.tick(1.0, [Event("heard", data, 1.0)])
     assert state in talk.snapshot.configuration

@@ -33,6 +33,8 @@ def _cause(taken: Transition, step: Step) -> str:
 
 
 def _trigger(taken: Transition, step: Step) -> str:
+    if taken.hears:
+        return taken.hears.title
     if taken.timed:
         return taken.awaited_time
     if taken.event.startswith("done."):

@@ -205,7 +205,7 @@ def _way(way: WayOut, bundle: _Bundle, time: Callable[[float], str]) -> dict[str
     prefix = "".join(f"{id}/" for id in reversed(way.owner.split("@"))) if way.owner else ""
     return {
         "source": prefix + (states[wanted.source].name or way.machine.id),
-        "event": wanted.awaited_time or wanted.event,
+        "event": wanted.hears.title if wanted.hears else wanted.awaited_time or wanted.event,
         "targets": [prefix + (states[path].name or way.machine.id) for path in wanted.targets],
         **bundle.place(way.machine, wanted.where),
         "due": None if way.due is None else time(way.due),

@@ -241,7 +241,8 @@ def _unanswered(day: Day, id: str) -> None:
 def understood(entry: JournalInput, taken: ReplayedStep) -> bool:
     """Whether something came of what a visitor said, and not what comes of anything that nobody expected.
 
-    That is a transition without a guard, of a state that has another one for the same event with one.
+    That is the row `else` of `hears`, or a transition without a guard, of a state that has another one for the same
+    event with one.
     """
     if taken.step is None or taken.machine is None:
         return bool(entry.entered or entry.exited or entry.commands)
@@ -252,6 +253,8 @@ def understood(entry: JournalInput, taken: ReplayedStep) -> bool:
         state = taken.machine.states.get(one.source)
         others = state.transitions if state else ()
         fallback = one.guard is None and any(o.event == one.event and o.guard is not None for o in others)
+        if one.hears:
+            fallback = one.hears.way == "else"
         if one.event and not fallback:
             return True
     return False

@@ -12,9 +12,11 @@ def invocation(invoke: Invoke) -> str:
 
 
 def caption(transition: Transition) -> str:
-    """`event [guard]`; an `after` or `at` with its time, `onDone` and `onError` as done and error."""
+    """`event [guard]`; a row of `hears` with its key, an `after` or `at` with its time, an end as done or error."""
     event = transition.event
-    if transition.timed:
+    if transition.hears:
+        event = transition.hears.title
+    elif transition.timed:
         event = transition.awaited_time
     elif transition.exact:
         event = "error" if event.startswith("error.") else "done"

@@ -47,6 +47,11 @@ class Hears:
     names: tuple[str, ...] = ()
     way: Literal["", "not", "asked", "else"] = ""
 
+    @property
+    def title(self) -> str:
+        """The row in words: `hears not dance|sing`."""
+        return f"hears {' '.join(self.key.split()).replace(' |', '|').replace('| ', '|')}"
+
 
 @dataclass(frozen=True, slots=True)
 class Transition:

@@ -47,6 +47,8 @@ def _texts(data: dict[str, Any]) -> Iterator[str]:
 
 
 def _means_something(taken: Step) -> bool:
+    if any(transition.hears and transition.hears.way != "else" for transition in taken.transitions):
+        return True
     guards = (transition.guard for transition in taken.transitions)
     if any(guard is not None and _asks_for_phrases(guard.source) for guard in guards):
         return True

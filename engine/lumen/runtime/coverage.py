@@ -88,6 +88,8 @@ def described(machine: MachineDefinition, transition: Transition) -> str:
 
 def trigger(transition: Transition) -> str:
     """What a transition waits for, in words."""
+    if transition.hears:
+        return f"on `{transition.hears.title}`"
     if transition.timed:
         return transition.awaited_time
     if transition.exact:

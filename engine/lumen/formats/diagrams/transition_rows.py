@@ -1,4 +1,4 @@
-"""What leads on from a state, as a person reads it: `“dance” → dance`, `after 30 s → goodbye`."""
+"""What leads on from a state, as a person reads it: `hears dance → dance`, `after 30 s → goodbye`."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -18,9 +18,10 @@ def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterato
     by_target: dict[str, list[str]] = {}
     seen: set[str] = set()
     for transition in (t for t in state.transitions if not made(t.where)):
-        cause = trigger(transition, after_others=transition.event in seen)
+        awaited = transition.hears.title if transition.hears else transition.event
+        cause = trigger(transition, after_others=awaited in seen)
         if transition.guard:
-            seen.add(transition.event)
+            seen.add(awaited)
         for target in transition.targets:
             if not only or target == only:
                 causes = by_target.setdefault(target, [])
@@ -32,12 +33,14 @@ def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterato
 def trigger(transition: Transition, *, after_others: bool = False) -> str:
     """What takes a transition; `after_others` of the same event with guards it is what is left."""
     event = transition.event
-    if transition.timed:
+    if transition.hears:
+        event = transition.hears.title
+    elif transition.timed:
         event = transition.awaited_time
     elif transition.exact:
         event = "failed" if event.startswith("error.") else "done"
     guard = guard_phrase(transition.guard) if transition.guard else ""
-    if guard.startswith("“"):
+    if guard.startswith("“") and not transition.hears:
         return guard
     if guard:
         return f"{event} if {guard}".strip()

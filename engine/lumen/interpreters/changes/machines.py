@@ -147,6 +147,10 @@ class _Comparison:
 
     def phrases(self) -> Iterator[Change]:
         yield from self.named("phrases", self.old.phrases, self.new.phrases)
+        both = self.old.phrases.keys() & self.new.phrases.keys()
+        for name in sorted(both & (self.old.anyhow ^ self.new.anyhow)):
+            how = "count even if they are negated" if name in self.new.anyhow else "do not count if they are negated"
+            yield self.change("phrases", name, f"phrases `{name}` {how} now", part="phrases")
 
     def answers(self) -> Iterator[Change]:
         """Answers: what is said to the same phrases is a text, all else is behaviour."""

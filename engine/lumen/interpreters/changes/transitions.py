@@ -1,13 +1,22 @@
 """What differs between the transitions of two versions of a state."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
 
 from lumen.interpreters.changes.actions import block_changes, paired
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, seconds
-from lumen.language.actions import Template
+from lumen.interpreters.expressions.functions import CAUGHT
+from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
+
+_CAUGHT = re.compile(rf"\b{CAUGHT}\(\d+\)")
+"""How expressions of a row of `hears` call `heard`: the number of a row depends on those above it."""
+
+_ROW = "on `hears "
+"""How the trigger of a row of `hears` begins."""
 
 PathMapping = Callable[[tuple[str, ...]], tuple[str, ...]]
 StateNaming = Callable[[str], str]
@@ -22,11 +31,16 @@ def transition_changes(
     after = _by_trigger(list(new.transitions))
     fewer, more = [k for k in before if k not in after], [k for k in after if k not in before]
     for was in list(fewer):
-        now = next((k for k in more if was[:5] == k[:5] == "after" and _same(before[was], after[k])), None)
+        now = next((k for k in more if _moved(was, k) and _same(before[was], after[k])), None)
         if now:
             fewer.remove(was)
             more.remove(now)
-            yield comparison.change(f"{title} waits {now.removeprefix('after ')}, not {was.removeprefix('after ')}")
+            yield comparison.change(f"{title} {_moved(was, now)}")
+    old_rows, new_rows = (
+        [key for key in one if key.startswith(_ROW) and key in both] for one, both in ((before, after), (after, before))
+    )
+    if old_rows != new_rows:
+        yield comparison.change(f"{title} asks its rows of `hears` in another order")
     for trigger in (*before, *more):
         if trigger in fewer:
             yield from (comparison.gone(t, trigger) for t in before[trigger])
@@ -83,13 +97,40 @@ class _TransitionComparison:
 def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
     found: dict[str, list[Transition]] = {}
     for transition in transitions:
-        found.setdefault(_trigger(transition), []).append(transition)
+        row = _comparable(replace(transition, hears=None)) if transition.hears else transition
+        found.setdefault(_trigger(transition), []).append(row)
     return found
+
+
+def _comparable(value: Any) -> Any:
+    """A value with expressions as they were written, where they hold the number of a row."""
+    match value:
+        case Expression(source):
+            return replace(value, source=_CAUGHT.sub("heard", source))
+        case Template(text):
+            return replace(value, text=_CAUGHT.sub("heard", text))
+        case tuple():
+            return tuple(map(_comparable, value))
+        case Mapping():
+            return {key: _comparable(one) for key, one in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{each.name: _comparable(getattr(value, each.name)) for each in fields(value)})
+    return value
+
+
+def _moved(was: str, now: str) -> str:
+    """What is said of a trigger that is another one now: `waits 15 s, not 12 s`; empty if the two are not alike."""
+    for begin, verb, quote in (("after ", "waits", ""), (_ROW, "hears", "`")):
+        if was.startswith(begin) and now.startswith(begin):
+            return f"{verb} {quote}{now.removeprefix(begin)}, not {quote}{was.removeprefix(begin)}"
+    return ""
 
 
 def _trigger(transition: Transition) -> str:
     """When it is taken, in words that do not depend on what the state is called."""
     event = transition.event
+    if transition.hears:
+        return f"on `{transition.hears.title}`"
     if isinstance(transition.delay, Template):
         return f"after {code(transition.delay.shown)}"
     if transition.delay is not None:

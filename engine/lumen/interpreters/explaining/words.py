@@ -54,6 +54,8 @@ def of_transition(machine: MachineDefinition, transition: Transition, owner: str
 
 def awaited(transition: Transition) -> str:
     """What a transition waits for."""
+    if transition.hears:
+        return transition.hears.title
     if transition.timed:
         return transition.awaited_time
     if transition.exact:
