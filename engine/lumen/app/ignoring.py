@@ -4,8 +4,8 @@ import json
 import re
 from typing import Any
 
+from lumen.interpreters.explaining.ignored_events import FalseGuard, IgnoredEvent, ignored
 from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.ignored_events import FalseGuard, IgnoredEvent, ignored
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.runtime.visitor import SPEECH_ROUTE
@@ -58,13 +58,14 @@ def _words(found: IgnoredEvent) -> str:
         return f"{what} while {' and '.join(found.deaf)} {'does' if len(found.deaf) == 1 else 'do'} not listen"
     false = [_false(guard, found.event) for guard in found.refused[:MAX_GUARDS]]
     more = len(found.refused) - len(false)
-    return f"{what} while {', and '.join(false)}" + (f", and {more} more guards are" if more else "")
+    nothing = [f"{state} hears nothing of it" for state in found.unheard]
+    return f"{what} while {', and '.join([*nothing, *false])}" + (f", and {more} more guards are" if more else "")
 
 
 def _false(guard: FalseGuard, event: Event) -> str:
     said = _said(event)
     news = {name: value for name, value in guard.values.items() if not said or value != said}
-    values = ", ".join(f"{name} is {_value(value)}" for name, value in news.items())
+    values = guard.why or ", ".join(f"{name} is {_value(value)}" for name, value in news.items())
     return f"{guard.guard.shown} is false in {guard.state}" + (f" ({values})" if values else "")
 
 

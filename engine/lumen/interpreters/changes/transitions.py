@@ -1,6 +1,5 @@
 """What differs between the transitions of two versions of a state."""
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
@@ -8,12 +7,9 @@ from typing import Any
 from lumen.interpreters.changes.actions import block_changes, paired
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, seconds
-from lumen.interpreters.expressions.functions import CAUGHT
+from lumen.interpreters.expressions.readings import as_written
 from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
-
-_CAUGHT = re.compile(rf"\b{CAUGHT}\(\d+\)")
-"""How expressions of a row of `hears` call `heard`: the number of a row depends on those above it."""
 
 _ROW = "on `hears "
 """How the trigger of a row of `hears` begins."""
@@ -103,12 +99,12 @@ def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
 
 
 def _comparable(value: Any) -> Any:
-    """A value with expressions as they were written, where they hold the number of a row."""
+    """A value with expressions as they were written: the number of a row of `hears` depends on those above it."""
     match value:
         case Expression(source):
-            return replace(value, source=_CAUGHT.sub("heard", source))
+            return replace(value, source=as_written(source))
         case Template(text):
-            return replace(value, text=_CAUGHT.sub("heard", text))
+            return replace(value, text=as_written(text))
         case tuple():
             return tuple(map(_comparable, value))
         case Mapping():

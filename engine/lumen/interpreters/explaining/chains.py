@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 
 from lumen.interpreters.explaining.conditions import values
 from lumen.interpreters.explaining.effects import Effect
+from lumen.interpreters.explaining.hearing import heard_row
 from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
 from lumen.interpreters.explaining.insides import ended_timer, machine_within, sets_timer
 from lumen.interpreters.explaining.links import Link, LinkKind
@@ -102,7 +103,11 @@ class Chain:
             return
         node = step.moment.machine.chart.nodes[taken.source]
         text, place = of_transition(machine, taken, owner), self._place(number, machine, taken.where)
-        found = values(taken.guard, step.moment.scope_of(node))
+        scope = step.moment.scope_of(node)
+        found = values(taken.guard, scope)
+        if taken.hears:
+            row = heard_row(machine, taken, scope)
+            text, found = f"{text}: {row.why}" if row.why else text, {**row.caught, **found}
         yield self._link(number, "transition", text, place, values=found)
         if taken.event:
             yield partial(self.event, number, step.moment.event, owner)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard, parse_expression, unparse
-from lumen.interpreters.expressions.readings import readings
+from lumen.interpreters.expressions.readings import looks_at_what_was_heard, readings
 from lumen.interpreters.expressions.tree import ExpressionNode, Logic, path_of, walk
 from lumen.language.actions import Expression
 
@@ -56,7 +56,7 @@ def values(guard: Expression | None, scope: Scope) -> dict[str, Any]:
 def awaits_event(source: str) -> tuple[bool, ...]:
     """Of each part of a guard: whether it looks at the event, and so has no truth before one has come."""
     return tuple(
-        any((path_of(node) or ("",))[0] == "event" for node, _ in walk(part))
+        any((path_of(node) or ("",))[0] == "event" or looks_at_what_was_heard(node) for node, _ in walk(part))
         for part in _joined(parse_expression(source))
     )
 

@@ -73,7 +73,7 @@ def _read(history: StepHistory, number: int) -> set[str]:
     keys: set[str] = set()
     trace = history.trace(number)
     for moment in trace.moments:
-        for group in moment.candidates:
+        for group in moment.groups:
             for transition in group:
                 for use in of_transition(transition.definition):
                     keys |= names(use.tree).context

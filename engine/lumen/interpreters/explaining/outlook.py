@@ -5,13 +5,14 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from lumen.interpreters.explaining.conditions import awaits_event, parts, values
+from lumen.interpreters.explaining.hearing import heard_row
 from lumen.interpreters.explaining.words import of_transition, prefix_of, shown
 from lumen.interpreters.expressions import Scope
 from lumen.interpreters.expressions.scope import no_draw
 from lumen.interpreters.statechart.chart import CompiledTransition
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.plans import Configuration
+from lumen.interpreters.statechart.plans import Configuration, in_order
 from lumen.interpreters.statechart.values import Snapshot, Timer
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
@@ -92,13 +93,13 @@ def _ranked(
     rivals: dict[CompiledTransition, CompiledTransition | None] = {}
     for leaf in configuration.leaves:
         sure: list[CompiledTransition] = []
-        for node in (leaf, *leaf.ancestors):
-            for transition in node.transitions:
-                rival = next((one for one in sure if _covers(one.definition, transition.definition)), None)
-                if rivals.get(transition, rival) is not None or transition not in rivals:
-                    rivals[transition] = rival
-                if asked.truth(transition) is True:
-                    sure.append(transition)
+        found = [t for node in (leaf, *leaf.ancestors) for t in in_order(node.transitions)]
+        for transition in sorted(found, key=lambda t: t.is_otherwise):
+            rival = next((one for one in sure if _covers(one.definition, transition.definition)), None)
+            if rivals.get(transition, rival) is not None or transition not in rivals:
+                rivals[transition] = rival
+            if asked.truth(transition) is True:
+                sure.append(transition)
     yield from rivals.items()
 
 
@@ -130,8 +131,11 @@ class _Asked:
 
     def truth(self, transition: CompiledTransition) -> bool | None:
         """Whether its guard holds; None where that is for the event to say."""
-        guard, _ = self._guard(transition)
-        return guard.holds if guard else True
+        guard, why = self._guard(transition)
+        hears = transition.definition.hears
+        if hears and hears.way != "else" and not why:
+            return None
+        return not why and (guard.holds if guard else True)
 
     def way(self, transition: CompiledTransition, rival: CompiledTransition | None) -> WayOut:
         wanted, (guard, why) = transition.definition, self._guard(transition)
@@ -155,11 +159,15 @@ class _Asked:
         return found
 
     def _looked_at(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
-        guard = transition.definition.guard
+        wanted, guard = transition.definition, transition.definition.guard
+        scope = self._scope._replace(state=transition.source.view(*self._view))
+        if wanted.hears and self._brought:
+            row = heard_row(self._one.machine, wanted, scope)
+            if row.fate not in ("taken", "guard"):
+                return None, row.why
         if guard is None:
             return None, ""
-        scope = self._scope._replace(state=transition.source.view(*self._view))
-        named = bool(transition.definition.event) and not transition.definition.timed
+        named = bool(wanted.event) and not wanted.timed
         later = _awaiting(guard.source) if named and not self._brought else ()
         looked = parts(guard, scope)
         open_parts = later if len(later) == len(looked) else (any(later),) * len(looked)
@@ -184,6 +192,7 @@ def _waits(wanted: Transition, timer: Timer | None, guard: GuardTruth | None, at
         return "when that is done" if wanted.event.startswith("done.") else "when that fails"
     if not wanted.event:
         return "taken as soon as something happens"
+    when = f"when it {wanted.hears.title}" if wanted.hears else f"when {wanted.event} comes"
     if guard and guard.holds is None:
-        return f"when {wanted.event} comes and {guard.text}"
-    return f"when {wanted.event} comes" if wanted.event != "*" else "when anything comes"
+        return f"{when} and {guard.text}"
+    return when if wanted.event != "*" else "when anything comes"

@@ -1,23 +1,26 @@
 """Why a transition was not taken: whether its state, its event or its guard stood against it, and what would help."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from lumen.errors import LumenError
 from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import GuardPart, first_false
+from lumen.interpreters.explaining.hearing import HeardRow, heard_row
 from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
 from lumen.interpreters.explaining.insides import within
 from lumen.interpreters.explaining.searching import Happens, smallest_change, taken
 from lumen.interpreters.explaining.tracing import Moment
 from lumen.interpreters.explaining.words import awaited, of_transition, prefix_of
 from lumen.interpreters.exploration.samples import samples
-from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions import Scope, parse_expression
 from lumen.interpreters.statechart.chart import CompiledTransition
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.interpreters.statechart.stepping import due
 from lumen.interpreters.statechart.values import Snapshot
+from lumen.interpreters.talk.hearing import said_in
+from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.diagnostics import Place
 from lumen.language.events import ROBOT_EVENTS, Event
 from lumen.language.machines import MachineDefinition, Transition
@@ -75,7 +78,7 @@ class TransitionRefusals:
             for moment in reversed(self.history.trace(number).moments):
                 if moment.owner != owner or moment.machine.chart.definition is not machine:
                     continue
-                found = next((t for group in moment.candidates for t in group if t.definition is transition), None)
+                found = next((t for group in moment.groups for t in group if t.definition is transition), None)
                 if found and not self._was_taken(number, moment, transition):
                     return self._decided(number, moment, found)
         return self._waits(owner, machine, transition)
@@ -87,9 +90,13 @@ class TransitionRefusals:
     def _decided(self, number: int, moment: Moment, found: CompiledTransition) -> Reason:
         """It was looked at, and its guard was false, or another one was taken."""
         one, wanted, machine = self.history.steps[number], found.definition, moment.machine.chart.definition
-        false = first_false(wanted.guard, moment.scope_of(found.source)) if wanted.guard else None
+        scope = moment.scope_of(found.source)
+        false = first_false(wanted.guard, scope) if wanted.guard else None
+        row = heard_row(machine, wanted, scope) if wanted.hears else None
+        if row:
+            false = _dropped(row, false, scope)
         rival = None if false else self._rival(number, moment, found)
-        around = next((group for group in moment.candidates if found in group), ())
+        around = next((group for group in moment.groups if found in group), ())
         earlier = tuple(t.definition for t in around[: around.index(found)])
         rivals = (*earlier, *((rival,) if rival and rival not in earlier else ()))
         change = None
@@ -102,6 +109,8 @@ class TransitionRefusals:
         at = one.step.snapshot.epoch + one.at
         if false:
             what = f"{after}, but {false.text} was false" + (f" ({false.error})" if false.error else "")
+            if row and row.fate != "guard":
+                what = f"{after}, but {false.error}"
             place = one.place(machine, wanted.guard.where if wanted.guard else wanted.where)
             note = "" if change else _no_change(false)
             return Reason("guard", what, at, place, false, change, note, number)
@@ -109,6 +118,8 @@ class TransitionRefusals:
         who = (
             f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"
         )
+        if row and not rival:
+            who = "what runs within it listens, too"
         note = (
             "" if change else "no other value of the event or the context was found with which this one would be taken"
         )
@@ -117,7 +128,7 @@ class TransitionRefusals:
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
         """What was taken in its place: a state within, one before it in the same state, or one in a region beside."""
         taken_then = [t for s in self.history.trace(number).microsteps if s.moment is moment for t in s.transitions]
-        group = next((group for group in moment.candidates if found in group), ())
+        group = next((group for group in moment.groups if found in group), ())
         own = [t.definition for t in group]
         return next((t for t in taken_then if t in own), next(iter(taken_then), None))
 
@@ -163,12 +174,24 @@ def _coming(
     for name in _names(machine, wanted.event):
         schema = machine.events.get(name, ROBOT_EVENTS.get(name))
         trees = [parse_expression(wanted.guard.source)] if wanted.guard else []
-        tried = samples(machine, schema, trees, inner.context if inner else {})
+        context = inner.context if inner else {}
+        tried: Iterable[Any] = samples(machine, schema, trees, context)
+        if wanted.hears:
+            tried = ({"result": text} for text in of_row(machine, wanted.hears, context))
         for _, data in zip(range(MAX_SAMPLES), tried, strict=False):
             change = {"event": name, **_fields(data)}
             if happens(standing.edited(change)):
                 return change
     return None
+
+
+def _dropped(row: HeardRow, false: GuardPart | None, scope: Scope) -> GuardPart | None:
+    """What was not true of a row of `hears`: its guard, or what is asked of its phrases; None if another went first."""
+    if row.fate == "guard":
+        return false
+    if row.fate in ("taken", "better row"):
+        return None
+    return GuardPart(row.row.title, False, {"event.data.result": said_in(scope.event)}, row.why)
 
 
 def _fields(data: Any) -> Mapping[str, Any]:

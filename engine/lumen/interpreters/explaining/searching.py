@@ -14,12 +14,18 @@ from lumen.interpreters.expressions import Scope
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.nesting import entered_names
 from lumen.interpreters.statechart.type_checks import fits
+from lumen.interpreters.talk.hearing import said_in
+from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.machines import MachineDefinition, Transition
 
 MAX_TRIED = 40
 """Steps that are taken to find a change."""
 MAX_EDITS = 1_000
 """Sets of values with which a guard is evaluated."""
+
+MAX_SAID = 12
+"""Sentences that are tried for a row of `hears`."""
+_SAID = ("event", "data", "result")
 
 Happens = Callable[[StepSituation], bool]
 
@@ -67,6 +73,11 @@ def _proposals(
     scope = moment.scope_of(node)
     guards = [t.guard.source for t in (wanted, *others) if t.guard]
     values = boundaries(definition, guards, scope)
+    if wanted.hears:
+        said = islice(of_row(definition, wanted.hears, scope.context), MAX_SAID)
+        values[_SAID] = [
+            text for text in dict.fromkeys((*said, *values.get(_SAID, ()))) if text != said_in(scope.event)
+        ]
     values = {
         path: [v for v in found if path[0] == "event" or len(path) > 2 or fits(v, checks.get(path[1]))]
         for path, found in values.items()

@@ -13,7 +13,7 @@ from lumen.interpreters.statechart.execution_context import ExecutionContext, In
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.invocations import Invocations
 from lumen.interpreters.statechart.macrostep import enter_machine
-from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, Configuration
+from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, Configuration, Group
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command
 from lumen.language.diagnostics import NodePath
@@ -41,12 +41,19 @@ class Moment(NamedTuple):
 
     @property
     def candidates(self) -> Candidates:
-        """Those among which was chosen, for each active atomic state the innermost first."""
+        """Those among which was chosen, for each active atomic state the innermost first; late ones apart."""
         if self.eventless or self.event is None:
             return self.configuration.eventless
         if timed := self.configuration.timed(self.event.name):
             return timed if self.event.sendid else NO_CANDIDATES
         return self.configuration.candidates(self.event.name)
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """The candidates of each active atomic state in the order in which they are asked: late ones last."""
+        chosen = self.candidates
+        passes = zip(chosen, *chosen.later, strict=True)
+        return tuple(tuple(dict.fromkeys(t for group in groups for t in group)) for groups in passes)
 
 
 @dataclass(eq=False, slots=True)

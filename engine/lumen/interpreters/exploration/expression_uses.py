@@ -5,6 +5,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression, split_template
+from lumen.interpreters.talk.hearing import ENTRY
 from lumen.language.actions import (
     AskQuestion,
     Assign,
@@ -44,7 +45,9 @@ def property_trees(properties: Iterable[Property]) -> Iterator[ExpressionNode]:
 
 
 def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
-    """What a transition reads: its guard, how long it waits, and what its actions do."""
+    """What a transition reads: its phrases in a list's entry, its guard, how long it waits, and what its actions do."""
+    if transition.hears:
+        yield from (use for name in transition.hears.names if name.startswith(ENTRY) for use in _of(Expression(name)))
     if transition.guard:
         yield from _of(transition.guard)
     yield from _of_delay(transition.delay)

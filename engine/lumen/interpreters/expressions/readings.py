@@ -1,14 +1,26 @@
 """What an expression looked at, and what it found there: for who asks why it was true or false."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.compiler import compile_expression
+from lumen.interpreters.expressions.functions import CAUGHT
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.printer import unparse
 from lumen.interpreters.expressions.scope import Scope
-from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, children, path_of
+from lumen.interpreters.expressions.tree import (
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    IndexAccess,
+    Literal,
+    children,
+    path_of,
+)
+
+_CAUGHT = re.compile(rf"\b{CAUGHT}\(\d+\)")
 
 
 def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
@@ -20,17 +32,30 @@ def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
     found: dict[str, Any] = {}
     for node in _looked_at(parse_expression(source)):
         text = unparse(node)
-        if text in (shown or source).replace('"', "'"):
+        written = as_written(text)
+        if written in (shown or source).replace('"', "'"):
             try:
-                found[text] = compile_expression(text)(scope)
+                found[written] = compile_expression(text)(scope)
             except ExpressionError:
                 continue
     return found
 
 
+def as_written(source: str) -> str:
+    """An expression of a row of `hears` with `heard`, as the author wrote it, in place of the engine's own function."""
+    return _CAUGHT.sub("heard", source)
+
+
+def looks_at_what_was_heard(node: ExpressionNode) -> bool:
+    """Whether it is `heard` of a row of `hears`, or something in it."""
+    while isinstance(node, FieldAccess | IndexAccess):
+        node = node.base
+    return isinstance(node, FunctionCall) and node.function == CAUGHT
+
+
 def _looked_at(node: ExpressionNode) -> Iterator[ExpressionNode]:
     constant = isinstance(node, FunctionCall) and all(isinstance(one, Literal) for one in node.arguments)
-    if path_of(node) or constant:
+    if path_of(node) or constant or looks_at_what_was_heard(node):
         yield node
         return
     for child in children(node):

@@ -94,7 +94,7 @@ class Configuration:
             return NO_CANDIDATES
         groups: list[Group] = []
         for leaf in self.leaves:
-            found = [t for node in (leaf, *leaf.ancestors) for t in _in_order(node.transitions) if wanted(t)]
+            found = [t for node in (leaf, *leaf.ancestors) for t in in_order(node.transitions) if wanted(t)]
             if found:
                 groups.append(tuple(found))
         if not any(t.rows for group in groups for t in group):
@@ -180,7 +180,7 @@ class MicrostepPlanner:
         return self._names.setdefault(names, names)
 
 
-def _in_order(transitions: tuple[CompiledTransition, ...]) -> Sequence[CompiledTransition]:
+def in_order(transitions: tuple[CompiledTransition, ...]) -> Sequence[CompiledTransition]:
     """The transitions of a state in the order in which they are asked: rows of `hears` after `heard`, before `*`."""
     if not any(t.rows for t in transitions):
         return transitions

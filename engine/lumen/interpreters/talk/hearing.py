@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from lumen.interpreters.talk.finder import Find, Finder, Reading
 from lumen.interpreters.talk.patterns import Form, Slot, forms
@@ -16,7 +16,11 @@ ALWAYS = ("text", "phrase", "answer")
 MATCHER = 1
 """The version of the rules by which a sentence finds its row; a journal holds it."""
 _MAX_READINGS = 64
-_ENTRY = "context."
+ENTRY = "context."
+"""How a name begins that is the path of phrases of a list's entry."""
+
+Dropped = Literal["", "negated", "not negated", "part", "question", "no question", "refusal"]
+"""Why a find does not count for a row; empty if it counts."""
 
 
 class Taken(NamedTuple):
@@ -83,7 +87,7 @@ class Hearing:
         found: Order | None = reading.kept.get(key)
         if found is None:
             found = self._order(reading, block, context)
-            if not any(name.startswith(_ENTRY) for row in block for name in row.names):
+            if not any(name.startswith(ENTRY) for row in block for name in row.names):
                 reading.kept[key] = found
         return found
 
@@ -101,8 +105,14 @@ class Hearing:
             found.update(find.caught)
         return found
 
+    def nearest(self, number: int, text: str, context: Mapping[str, Any]) -> tuple[Find, Dropped] | None:
+        """The best find of the row of this number whether or not it counts, and why it does not; None without any."""
+        reading, row, asked = self.read(text), self.rows[number], asked_in(self.blocks[number])
+        find = self.best(reading, row, asked, context) or self.best(reading, row, asked, context, counting=False)
+        return (find, dropped(reading, find, row.way, find.entry.name in asked) or "refusal") if find else None
+
     def _order(self, reading: Reading, block: Sequence[Hears], context: Mapping[str, Any]) -> Order:
-        asked = {name for row in block if row.way == "asked" for name in row.names}
+        asked = asked_in(block)
         found = {row.number: self.best(reading, row, asked, context) for row in block if reading.words}
         refused = {reading.negation(find) for row in block if row.way == "not" and (find := found.get(row.number))}
         first: list[tuple[int, Taken]] = []
@@ -121,19 +131,24 @@ class Hearing:
         first.sort(key=lambda one: one[0])
         return Order(tuple(taken for _, taken in first), (*late, *otherwise))
 
-    def best(self, reading: Reading, row: Hears, asked: set[str], context: Mapping[str, Any]) -> Find | None:
-        """The find that counts for a row: the strongest, of equals the one of the upper answer, then the last."""
+    def best(
+        self, reading: Reading, row: Hears, asked: set[str], context: Mapping[str, Any], *, counting: bool = True
+    ) -> Find | None:
+        """The find for a row: the strongest, of equals the one of the upper answer, then the last.
+
+        Only finds that count are considered, unless `counting` is false.
+        """
         best: Find | None = None
         rank = (-1, 0, 0, 0)
         for name in row.names:
             for find in self._finds(reading, name, context):
                 its = (find.strength, -find.entry.row, find.end, -find.start)
-                if its > rank and counts(reading, find, row.way, name in asked):
+                if its > rank and not (counting and dropped(reading, find, row.way, name in asked)):
                     best, rank = find, its
         return best
 
     def _finds(self, reading: Reading, name: str, context: Mapping[str, Any]) -> Iterator[Find]:
-        if name.startswith(_ENTRY):
+        if name.startswith(ENTRY):
             found = self._entry_finder(name, context)
             if found is None:
                 return
@@ -167,13 +182,22 @@ class Hearing:
         return kept[1]
 
 
-def counts(reading: Reading, find: Find, way: str, asks: bool) -> bool:
-    """Whether a find counts in that way: found, negated or asked; `asks` if another row takes questions for it."""
+def dropped(reading: Reading, find: Find, way: str, asks: bool) -> Dropped:
+    """Why a find does not count in that way: found, negated or asked; `asks` if a row takes questions for it."""
     if reading.negation(find) is not None:
-        return way == "not"
-    if way == "not" or (find.entry.alone and not reading.is_whole(find)):
-        return False
-    return (asks and reading.is_asked(find)) == (way == "asked")
+        return "" if way == "not" else "negated"
+    if way == "not":
+        return "not negated"
+    if find.entry.alone and not reading.is_whole(find):
+        return "part"
+    if asks and reading.is_asked(find):
+        return "" if way == "asked" else "question"
+    return "no question" if way == "asked" else ""
+
+
+def asked_in(block: Sequence[Hears]) -> set[str]:
+    """The names that rows of a state take questions for."""
+    return {name for row in block if row.way == "asked" for name in row.names}
 
 
 def hearing_of(machine: MachineDefinition) -> Hearing:

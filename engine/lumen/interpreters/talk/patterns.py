@@ -68,10 +68,26 @@ def forms(phrase: str) -> tuple[Form, ...]:
 @lru_cache(maxsize=8192)
 def read_pattern(phrase: str) -> tuple[Form, ...]:
     """Return the forms of a phrase; raise PatternError if it is no sound pattern."""
+    return _formed(*_expanded(phrase), phrase)
+
+
+def written_forms(phrase: str) -> Iterator[tuple[str | Slot, ...]]:
+    """The forms of a phrase as they are written, texts and slots in order; the phrase if it is no sound pattern."""
+    try:
+        texts, slots = _expanded(phrase)
+    except PatternError:
+        texts, slots = [phrase], []
+    for text in dict.fromkeys(texts):
+        pieces = text.split("\0")
+        yield tuple(slots[int(piece)] if i % 2 else " ".join(piece.split()) for i, piece in enumerate(pieces))
+
+
+def _expanded(phrase: str) -> tuple[list[str], list[Slot]]:
+    """The texts of the forms of a phrase, in which `\\0number\\0` stands for a slot."""
     if not _SIGNS.search(phrase):
-        return _formed([phrase], [], phrase)
+        return [phrase], []
     reader = _Reader(phrase)
-    return _formed(reader.read(), reader.slots, phrase)
+    return reader.read(), reader.slots
 
 
 def _formed(texts: list[str], slots: list[Slot], phrase: str) -> tuple[Form, ...]:

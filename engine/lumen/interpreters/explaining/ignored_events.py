@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from lumen.interpreters.explaining.hearing import heard_row, heard_rows
 from lumen.interpreters.expressions import Scope
 from lumen.interpreters.expressions.readings import readings
 from lumen.interpreters.expressions.scope import no_draw
@@ -23,23 +24,28 @@ _OWN = (*_TIMED, "done.do.", "done.state.", "done.invoke.", "error.do.", "error.
 
 
 class FalseGuard(NamedTuple):
-    """A guard of a transition of `state` that was false, and the values that it looked at, by how they are written."""
+    """A guard of a transition of `state` that was false, and the values that it looked at, by how they are written.
+
+    For a row of `hears` whose phrase was found and does not count, `guard` is the row and `why` says why.
+    """
 
     state: str
     guard: Expression
     values: Mapping[str, Any]
+    why: str = ""
 
 
 class IgnoredEvent(NamedTuple):
     """An event that changed nothing.
 
     `deaf` are the innermost states of those regions that listen to it, but not where they are now; `refused` the
-    guards that were false.
+    guards that were false; `unheard` states with `hears` for which nothing was found in it.
     """
 
     event: Event
     deaf: tuple[str, ...]
     refused: tuple[FalseGuard, ...]
+    unheard: tuple[str, ...] = ()
 
 
 def ignored(machine: MachineDefinition, step: Step) -> IgnoredEvent | None:
@@ -60,10 +66,12 @@ def ignored(machine: MachineDefinition, step: Step) -> IgnoredEvent | None:
         return None
     deaf: list[str] = []
     refused: list[FalseGuard] = []
+    unheard: list[str] = []
     for prefix, definition, part in parts:
         deaf += [prefix + name for name in _deaf(definition, part, event.name)]
         refused += _refused(prefix, definition, part, event)
-    return IgnoredEvent(event, tuple(deaf), tuple(refused)) if deaf or refused else None
+        unheard += _unheard(prefix, definition, part, event)
+    return IgnoredEvent(event, tuple(deaf), tuple(refused), tuple(unheard)) if deaf or refused or unheard else None
 
 
 def _deaf(machine: MachineDefinition, step: Step, name: str) -> Iterator[str]:
@@ -90,11 +98,29 @@ def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
     chart, standing = planner.chart, planner.configuration(step.snapshot.configuration)
     timed = event.name.startswith(_TIMED) and event.sendid
     groups = standing.timed(event.name) if timed else standing.candidates(event.name)
-    for transition in dict.fromkeys(t for t in groups.all):
-        if guard := transition.definition.guard:
-            scope = _scope(chart, transition.source, standing, step.snapshot, event)
+    for transition in dict.fromkeys(groups.all):
+        wanted, state = transition.definition, prefix + (transition.source.name or machine.id)
+        scope = _scope(chart, transition.source, standing, step.snapshot, event)
+        row = heard_row(machine, wanted, scope) if wanted.hears else None
+        if row and row.fate != "guard":
+            if row.fate != "not found":
+                why = "what runs within it listens, too" if row.fate == "taken" else row.why
+                yield FalseGuard(state, Expression(row.row.title), {}, why)
+        elif guard := wanted.guard:
             values = readings(guard.source, scope, guard.shown)
-            yield FalseGuard(prefix + (transition.source.name or machine.id), guard, values)
+            yield FalseGuard(state, guard, values)
+
+
+def _unheard(prefix: str, machine: MachineDefinition, step: Step, event: Event) -> Iterator[str]:
+    """Active states with `hears` for which nothing was found in what was said."""
+    planner = compiled(machine).planner
+    standing = planner.configuration(step.snapshot.configuration)
+    groups = standing.candidates(event.name)
+    rows = (t for t in groups.all if t.definition.hears)
+    for node in dict.fromkeys(t.source for t in rows):
+        scope = _scope(planner.chart, node, standing, step.snapshot, event)
+        if all(row.fate == "not found" for row in heard_rows(machine, node.path, scope)):
+            yield prefix + (node.name or machine.id)
 
 
 def _scope(chart: Chart, node: StateNode, standing: Configuration, now: Snapshot, event: Event) -> Scope:

@@ -3,8 +3,8 @@
 from typing import Any
 
 from lumen.app.ignoring import BURST, IgnoredEvents
+from lumen.interpreters.explaining.ignored_events import ignored
 from lumen.interpreters.statechart import initial, step
-from lumen.interpreters.statechart.ignored_events import ignored
 from lumen.language.events import Event
 from lumen.statechart import Machine
 from tests.tables import for_each

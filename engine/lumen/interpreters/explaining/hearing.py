@@ -1,0 +1,115 @@
+"""What becomes of each row of `hears` of a state when a sentence is heard, and why the others are not taken."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal, NamedTuple
+
+from lumen.interpreters.explaining.conditions import holds
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.talk.finder import Find
+from lumen.interpreters.talk.hearing import Dropped, hearing_of, said_in
+from lumen.language.machines import Hears, MachineDefinition, Transition
+
+RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
+"""What becomes of a row; a row is `taken` unless another state takes the sentence."""
+MAX_QUOTED = 80
+"""Characters of a sentence that are shown."""
+
+
+class HeardRow(NamedTuple):
+    """A row of `hears`, what was found for it in a sentence, and what becomes of it.
+
+    `words` are those of its phrase as they were said, in `clause`; both are empty if nothing was found. `name` is that
+    of the phrase, `strength` the number of its words. A `late` row is asked only if no state has taken another.
+    `better` is the row that is taken instead. `caught` is what `heard` holds besides the text, by how expressions
+    call it.
+    """
+
+    transition: Transition
+    row: Hears
+    fate: RowFate
+    words: str = ""
+    clause: str = ""
+    name: str = ""
+    strength: int = 0
+    late: bool = False
+    better: Hears | None = None
+    caught: Mapping[str, Any] = {}
+
+    @property
+    def why(self) -> str:
+        """What was found, and why it does not count: `“dance” is negated in “Please don't dance”`."""
+        words, clause = _quoted(self.words), _quoted(self.clause)
+        match self.fate:
+            case "taken":
+                return f"{words} in {clause}" if self.words else ""
+            case "not found":
+                return f"none of its phrases is in {clause}"
+            case "negated":
+                return f"{words} is negated in {clause}"
+            case "not negated":
+                return f"{words} is not negated in {clause}"
+            case "part":
+                return f"{words} counts alone only, and is part of {clause}"
+            case "question":
+                return f"{words} is part of the question {clause}"
+            case "no question":
+                return f"{words} is part of no question in {clause}"
+            case "refusal":
+                return f"{words} refuses something that another row names"
+            case "guard":
+                found = f"{words} is in {clause}" if self.words else "nothing else was heard"
+                return f"{found}, but its guard is false"
+        assert self.better is not None
+        return f"{self.better.title} goes first"
+
+
+def heard_rows(machine: MachineDefinition, state: str, scope: Scope) -> tuple[HeardRow, ...]:
+    """What becomes of each row of the state at that path, in the order written; `scope` is what guards see there."""
+    return tuple(_rows(machine, state, scope))
+
+
+def heard_row(machine: MachineDefinition, transition: Transition, scope: Scope) -> HeardRow:
+    """What becomes of a row of `hears`, which the transition is."""
+    return next(row for row in heard_rows(machine, transition.source, scope) if row.row is transition.hears)
+
+
+def _rows(machine: MachineDefinition, state: str, scope: Scope) -> Iterator[HeardRow]:
+    rows = [(t, t.hears) for t in machine.states[state].transitions if t.hears]
+    if not rows:
+        return
+    hearing, text = hearing_of(machine), said_in(scope.event)
+    order = hearing.order(rows[0][1].number, text, scope.context)
+    finds = {one.number: one.find for one in (*order.first, *order.late)}
+    late = {one.number for one in order.late}
+    true = {row.number for transition, row in rows if row.number in finds and holds(transition.guard, scope)}
+    best = next((one.number for one in (*order.first, *order.late) if one.number in true), None)
+    better = next((row for _, row in rows if row.number == best), None)
+    for transition, row in rows:
+        number = row.number
+        if number not in finds:
+            nearest = hearing.nearest(number, text, scope.context)
+            if nearest is None:
+                yield HeardRow(transition, row, "not found", clause=text)
+            else:
+                yield _found(machine, HeardRow(transition, row, nearest[1]), nearest[0], text)
+            continue
+        fate: RowFate = "taken" if number == best else "guard" if number not in true else "better row"
+        one = HeardRow(transition, row, fate, late=number in late, better=better if fate == "better row" else None)
+        if find := finds[number]:
+            caught = hearing.caught(number, scope.event, scope.context, scope.language)
+            values = {f"heard.{k}": value for k, value in caught.items() if k != "text" and value is not None}
+            one = _found(machine, one._replace(caught=values), find, text)
+        yield one
+
+
+def _found(machine: MachineDefinition, row: HeardRow, find: Find, text: str) -> HeardRow:
+    """The row with what was found for it; of a row that counts the whole sentence is shown, else the clause."""
+    reading = hearing_of(machine).read(text)
+    inside = [i for i, clause in enumerate(reading.clauses) if clause == reading.clauses[find.start]]
+    clause = text if row.fate in ("taken", "guard", "better row") else reading.said(inside[0], inside[-1] + 1)
+    words = reading.said(find.start, find.end)
+    return row._replace(words=words, clause=clause, name=find.entry.name, strength=find.strength)
+
+
+def _quoted(text: str) -> str:
+    return f"“{text if len(text) <= MAX_QUOTED else f'{text[: MAX_QUOTED - 1]}…'}”"

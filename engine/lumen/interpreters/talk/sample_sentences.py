@@ -1,0 +1,106 @@
+"""Sentences that visitors may say: forms of phrases with something in their slots, and what takes a row of `hears`."""
+
+from collections.abc import Iterator, Mapping
+from itertools import chain
+from typing import Any, NamedTuple
+
+from lumen.interpreters.talk.finder import Languages
+from lumen.interpreters.talk.hearing import ENTRY, by_language, phrases_in
+from lumen.interpreters.talk.patterns import Slot, forms, written_forms
+from lumen.interpreters.talk.speech import NEGATIONS, NEGATIONS_AFTER, QUESTIONS
+from lumen.language.machines import Hears, MachineDefinition
+
+NONSENSE = ("lorem ipsum dolor sit amet", "")
+"""Texts that take `else`: no phrase is in them, and the first is too long for a name."""
+SAMPLES: Mapping[str, tuple[str, Any]] = {
+    "name": ("Budi", "Budi"),
+    "name?": ("Budi", "Budi"),
+    "number": ("3", 3),
+    "text": ("something", "something"),
+}
+"""For the types of slots that are not lists: what is said, and what is caught."""
+
+_Lists = Mapping[str, tuple[Mapping[str, Any], ...]]
+
+
+class SampleSentence(NamedTuple):
+    """A sentence in which a phrase is found, and what its slots catch."""
+
+    text: str
+    caught: Mapping[str, Any]
+
+
+def of_phrase(phrase: str, lists: _Lists) -> Iterator[SampleSentence]:
+    """A sentence for each form of a phrase, in the order written; none for a form with a list that has no phrases."""
+    for form in written_forms(phrase):
+        caught: dict[str, Any] = {}
+        said: list[str] = []
+        for part in form:
+            if isinstance(part, str):
+                said.append(part)
+            elif (sample := _sample(part, lists)) is not None:
+                said.append(sample[0])
+                caught[part.name] = sample[1]
+            else:
+                break
+        else:
+            yield SampleSentence(" ".join(filter(None, said)).rstrip(" ."), caught)
+
+
+def of_row(machine: MachineDefinition, row: Hears, context: Mapping[str, Any]) -> Iterator[str]:
+    """Sentences that a row may be taken by, the plainest first; another row of its state may have more words."""
+    if row.way == "else":
+        yield from NONSENSE
+        return
+    tables = [table for name in row.names for table in _tables(machine, name, context)]
+    seen: set[str] = set()
+    for first in (True, False):
+        for table in tables:
+            for language, phrases in table.items():
+                for phrase in phrases[:1] if first else phrases[1:]:
+                    for sentence in of_phrase(phrase, machine.lists):
+                        if sentence.text not in seen:
+                            seen.add(sentence.text)
+                            yield from _in_way(machine, row.way, language, sentence.text)
+
+
+def _tables(machine: MachineDefinition, name: str, context: Mapping[str, Any]) -> Iterator[Languages]:
+    """The phrases of a name, by language."""
+    if name.startswith(ENTRY):
+        value: Any = {"context": context}
+        for key in name.split("."):
+            value = value.get(key) if isinstance(value, Mapping) else None
+        if isinstance(value, str | list | tuple | Mapping):
+            yield by_language(value)
+    elif name in machine.phrases:
+        yield machine.phrases[name]
+    else:
+        yield from (row.phrases for row in machine.answers.get(name, ()))
+
+
+def _in_way(machine: MachineDefinition, way: str, language: str, text: str) -> Iterator[str]:
+    """The sentence as it is, refused, or within a question."""
+    if way == "":
+        yield text
+    elif way == "not":
+        yield from (f"{word} {text}" for word in _words(machine, NEGATIONS, language)[:2])
+        yield from (f"{text} {word}" for word in _words(machine, NEGATIONS_AFTER, language)[:1])
+    else:
+        yield from (f"{word} {text}" for word in _words(machine, QUESTIONS, language)[:2])
+
+
+def _words(machine: MachineDefinition, name: str, language: str) -> tuple[str, ...]:
+    lists = machine.phrases.get(name, {})
+    return lists.get(language) or tuple(chain.from_iterable(lists.values()))
+
+
+def _sample(slot: Slot, lists: _Lists) -> tuple[str, Any] | None:
+    """What is said for a slot, and what it catches then."""
+    if slot.type in SAMPLES:
+        return SAMPLES[slot.type]
+    for entry in lists.get(slot.type, ()):
+        for phrases in phrases_in(entry).values():
+            for phrase in phrases:
+                if any(form.plain for form in forms(phrase)):
+                    return next(of_phrase(phrase, lists)).text, entry
+    return None
