@@ -6,6 +6,7 @@ from typing import Any, assert_never
 
 from lumen.formats.durations import duration
 from lumen.interpreters.expressions import unparse
+from lumen.interpreters.expressions.readings import as_written
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import (
     Action,
@@ -53,12 +54,19 @@ def plain_value(value: ComputedValue) -> Any:
     """A value: its expressions are texts."""
     match value:
         case Expression(source):
-            return source
+            return as_written(source)
         case tuple():
             return [plain_value(item) for item in value]
         case Mapping():
             return {key: plain_value(item) for key, item in value.items()}
     return value
+
+
+def plain_phrases(table: Mapping[str, Iterable[str]], *, anyhow: bool = False) -> Any:
+    """Phrases by language, or the list of those of every language; `anyhow` if they count though they are negated."""
+    if set(table) == {""} and not anyhow:
+        return list(table[""])
+    return {language: list(rows) for language, rows in table.items()} | ({"anyhow": True} if anyhow else {})
 
 
 def plain_properties(machine: MachineDefinition) -> dict[str, dict[str, Any]]:
@@ -91,12 +99,12 @@ def plain_action(action: Action) -> ActionData:
         case Wait(seconds):
             return {"wait": duration(seconds * 1000)}
         case LogText(template):
-            return {"log": template.text}
+            return {"log": as_written(template.text)}
         case If(guard, then, otherwise):
-            block: dict[str, Any] = {"if": guard.source, "then": plain_block(then)}
+            block: dict[str, Any] = {"if": as_written(guard.source), "then": plain_block(then)}
             return block | ({"else": plain_block(otherwise)} if otherwise else {})
         case AskQuestion(question, within, otherwise):
-            row = {"question": question.source, "within": duration(within * 1000)}
+            row = {"question": as_written(question.source), "within": duration(within * 1000)}
             return {"ask": row | {"else": plain_block(otherwise)}}
         case Parallel(branches):
             return {"parallel": plain_block(branches)}
@@ -140,7 +148,10 @@ def _event(event: str, data: ComputedValue) -> Any:
 
 
 def _say(texts: Mapping[str, tuple[Any, ...]]) -> dict[str, Any]:
-    table = {language or "any": [template.text for template in templates] for language, templates in texts.items()}
+    table = {
+        language or "any": [as_written(template.text) for template in templates]
+        for language, templates in texts.items()
+    }
     return {language: said[0] if len(said) == 1 else said for language, said in table.items()}
 
 

@@ -158,8 +158,8 @@ class ScriptTranslator:
             if name not in ("name", "data"):
                 raise ScriptError(f"an event has no `{name}` here, only `name` and `data`")
             return FieldAccess(Identifier("event"), name)
-        if base == Identifier("_x") and name == "state":
-            return Identifier("state")
+        if base == Identifier("_x") and name in ("state", "heard"):
+            return Identifier(name)
         if isinstance(base, Identifier) and base.name in ("_ioprocessors", "_x", "Math"):
             raise ScriptError(f"`{base.name}.{name}` has no counterpart")
         read = self.value(base)

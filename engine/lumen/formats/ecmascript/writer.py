@@ -9,6 +9,7 @@ from lumen.formats.ecmascript.methods import EQUIVALENT_METHODS
 from lumen.formats.ecmascript.script_tokens import ScriptError
 from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.kinds import LIST, MAP, TEXT
+from lumen.interpreters.expressions.readings import as_written
 from lumen.interpreters.expressions.tree import (
     Binary,
     Conditional,
@@ -48,7 +49,7 @@ class Vocabulary(NamedTuple):
 def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:
     """One of our expressions in ECMAScript; raises ScriptError where it uses the context or the event as a whole."""
     writer = _ScriptWriter(vocabulary)
-    text = unparse(writer.node(parse_expression(source)))
+    text = unparse(writer.node(parse_expression(as_written(source))))
     return WrittenScript(text, tuple(dict.fromkeys(writer.foreign)))
 
 
@@ -97,10 +98,10 @@ class _ScriptWriter:
                 return self._call(node)
 
     def _name(self, name: str) -> ExpressionNode:
-        if name != "state":
+        if name not in ("state", "heard"):
             raise ScriptError(f"`{name}` as a whole has no counterpart")
-        self.foreign.append("state")
-        return FieldAccess(Identifier("_x"), "state")
+        self.foreign.append(name)
+        return FieldAccess(Identifier("_x"), name)
 
     def _binary(self, node: Binary) -> ExpressionNode:
         left, right = self.node(node.left), self.node(node.right)

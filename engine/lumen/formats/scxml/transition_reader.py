@@ -12,9 +12,11 @@ from lumen.formats.event_descriptors import normal, overlap
 from lumen.formats.foreign_states import ForeignState
 from lumen.formats.scxml.action_reader import ScxmlActionReader
 from lumen.formats.scxml.candidates import arrange
+from lumen.formats.scxml.heard_conditions import guard_in
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
 from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
 from lumen.formats.xml_elements import XmlElement
+from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.diagnostics import Place
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")
@@ -30,10 +32,14 @@ class ScxmlTransitionReader:
         always: list[TransitionData] = []
         after: dict[str, list[TransitionData]] = {}
         rows: list[tuple[str, TransitionData]] = []
+        hears: dict[str, list[TransitionData]] = {}
         places: dict[int, Place] = {}
         for element in node.source.of("transition"):
             row = self._row(node, element)
             if row is None:
+                continue
+            if key := _heard(element):
+                hears.setdefault(key, []).append(row)
                 continue
             places[id(row)] = element.place
             for descriptor in self._descriptors(element):
@@ -50,6 +56,8 @@ class ScxmlTransitionReader:
             self.findings.lost(place, "the condition becomes too long", "put it into two")
 
         data: dict[str, Any] = {"on": arrange(rows, leave_out)} if rows else {}
+        if hears:
+            data["hears"] = {key: single(found) for key, found in hears.items()}
         if always:
             data["always"] = single(always)
         if after:
@@ -104,7 +112,9 @@ class ScxmlTransitionReader:
             return None
         if "cond" in element.attributes:
             try:
-                row["guard"] = self.contents.condition(element.get("cond"))
+                key, condition = _heard(element), element.get("cond")
+                if condition := guard_in(key, condition) if key else condition:
+                    row["guard"] = self.contents.condition(condition)
             except ScriptError as error:
                 hint = "the transition is left out"
                 self.findings.lost(element.place, f"the condition `{_short(element.get('cond'))}`: {error}", hint)
@@ -132,6 +142,11 @@ class ScxmlTransitionReader:
     def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:
         names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
         return names[0] if len(names) == 1 else names
+
+
+def _heard(element: XmlElement) -> str:
+    """The key of the row of `hears` that a transition was written from; empty for none."""
+    return element.get(f"{{{LUMEN_NAMESPACE}}}hears") if element.get("event") == HEARD else ""
 
 
 def _short(source: str) -> str:

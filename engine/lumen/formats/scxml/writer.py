@@ -4,18 +4,20 @@ import json
 from collections.abc import Container, Iterator, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_block, plain_button, plain_properties
+from lumen.formats.behavior_data import plain_block, plain_button, plain_phrases, plain_properties
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary
 from lumen.formats.ecmascript.kind_inference import kinds_of
 from lumen.formats.ecmascript.script_parser import is_reserved
+from lumen.formats.heard_rows import LOST_ELSEWHERE, as_guard, in_asked_order, key_of
 from lumen.formats.scxml.action_writer import ScxmlActionWriter
+from lumen.formats.scxml.heard_conditions import HEARS, row_condition
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
 from lumen.formats.scxml.xml_tags import XmlTag
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
 
 _TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HISTORY: "history"}
 
@@ -75,9 +77,9 @@ class _ScxmlWriter:
     def _own(self) -> Iterator[XmlTag]:
         """What a whole machine has that SCXML has not."""
         machine = self.machine
-        phrases = {name: _listed(table) for name, table in machine.phrases.items()}
+        phrases = {name: plain_phrases(table, anyhow=name in machine.anyhow) for name, table in machine.phrases.items()}
         answers = {
-            name: [{"phrases": _listed(row.phrases), "value": row.value} for row in rows]
+            name: [{"phrases": plain_phrases(row.phrases), "value": row.value} for row in rows]
             for name, rows in machine.answers.items()
         }
         types = {self.vocabulary.keys.get(key, key): schema for key, schema in machine.types.items()}
@@ -171,7 +173,7 @@ class _ScxmlWriter:
         return event.removesuffix(state.name) + self.ids[state.path] if event.endswith(f".{state.name}") else event
 
     def _transitions(self, state: State) -> Iterator[XmlTag]:
-        for transition in state.transitions:
+        for transition in in_asked_order(state.transitions):
             if transition.schedule:
                 message = f"`at: {transition.schedule.text}` is left out: SCXML knows no time of day"
                 self.report.lost(message, transition.where)
@@ -181,13 +183,15 @@ class _ScxmlWriter:
                 self.report.lost(message, transition.where)
                 continue
             attributes = {"event": self._event(state, transition.event) if transition.exact else transition.event}
-            if transition.guard:
-                try:
+            try:
+                if transition.hears:
+                    attributes |= self._heard(transition, transition.hears)
+                elif transition.guard:
                     attributes["cond"] = self.orders.expression(transition.guard)
-                except ScriptError as error:
-                    message = f"the transition on `{transition.event}` is left out: {error}"
-                    self.report.lost(message, transition.where)
-                    continue
+            except ScriptError as error:
+                what = f"`{transition.hears.title}`" if transition.hears else f"the transition on `{transition.event}`"
+                self.report.lost(f"{what} is left out: {error}", transition.where)
+                continue
             if transition.offer:
                 self.report.changed("`offer` is left out: SCXML asks no language model", transition.where)
             if transition.approve:
@@ -196,6 +200,21 @@ class _ScxmlWriter:
             if self._inside(state, transition) and not transition.reenter:
                 attributes["type"] = "internal"
             yield XmlTag("transition", attributes, self.orders.block(transition.actions))
+
+    def _heard(self, transition: Transition, row: Hears) -> dict[str, str]:
+        """The attributes of a row of `hears`: what takes it is a condition that only Lumen understands.
+
+        Raises ScriptError if there is no such condition.
+        """
+        if key := key_of(row):
+            guard = self.orders.expression(transition.guard) if transition.guard else ""
+            self.report.changed(f"`{row.title}` becomes a condition `{HEARS}`", transition.where, LOST_ELSEWHERE)
+            return {"lumen:hears": key, "cond": row_condition(key, guard)}
+        condition = as_guard(transition)
+        if condition is None:
+            raise ScriptError(f"`{row.way}` of phrases in an entry of a list has no counterpart")
+        self.report.changed(f"`{row.title}` becomes the guard `{condition.source}`", transition.where, LOST_ELSEWHERE)
+        return {"cond": self.orders.expression(condition)}
 
     def _wrapped(self, state: XmlTag) -> Iterator[XmlTag]:
         """The root as a state in the document; with its end the document ends."""
@@ -229,11 +248,6 @@ def _free(key: str, others: Container[str]) -> str:
     while is_reserved(name) or (name != key and name in others):
         name += "_"
     return name
-
-
-def _listed(table: Any) -> Any:
-    """Phrases by language; those of every language without one."""
-    return list(table[""]) if set(table) == {""} else {language: list(rows) for language, rows in table.items()}
 
 
 def _json(name: str, data: Any) -> XmlTag:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.formats.behavior_data import ActionData
+from lumen.formats.behavior_data import ActionData, TransitionData
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration
 from lumen.formats.xstate.descriptors import invoke_id
@@ -18,6 +18,7 @@ from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
 
 EXPRESSION_GUARD = "lumen.expression"
+HEARS_GUARD = "lumen.hears"
 DO_ACTOR = "lumen.do"
 ACTION_PREFIX = "lumen."
 _UNFIT = re.compile(r"\W+", re.ASCII)
@@ -29,6 +30,8 @@ class XStateActionReader:
     def __init__(self, source: JsonSource, context: dict[str, Any], findings: ConversionFindings) -> None:
         self.source, self.context, self.findings = source, context, findings
         self.surroundings: dict[str, Any] = {}
+        self.row = ""
+        """The key of the row of `hears` whose actions are read, empty for other transitions."""
         self._guards: dict[str, str] = {}
 
     def lost(self, where: NodePath, message: str, hint: str = "") -> None:
@@ -69,7 +72,8 @@ class XStateActionReader:
             action = params
         else:
             action = {verb: params["value"] if isinstance(params, dict) and set(params) == {"value"} else params}
-        return action if self.fits({"entry": [action]}) else None
+        around = {"hears": {self.row: {"actions": [action]}}} if self.row else {"entry": [action]}
+        return action if self.fits(around) else None
 
     def _raise(self, data: Mapping[str, Any]) -> ActionData | None:
         body = _sent(data)
@@ -111,6 +115,17 @@ class XStateActionReader:
             self.lost(where, f"the condition `{params['source']}` can't be read")
             return None
         return f"context.{self._placeholder(kind, params, where)}"
+
+    def heard(self, data: Any, where: NodePath) -> TransitionData | None:
+        """The key of a row of `hears`, and its own guard, from the guard that Lumen wrote; None if that is broken."""
+        params = data.get("params") if isinstance(data, dict) else None
+        key, source = (params.get("row"), params.get("source")) if isinstance(params, dict) else (None, None)
+        if isinstance(key, str) and key:
+            guard = {} if source is None else {"guard": source}
+            if self.fits({"hears": {key: {"target": "a", **guard}}}):
+                return {"hears": key, **guard}
+        self.lost(where, f"the row `{key}` of `hears` can't be read", 'write {"row": KEY}, and its guard as "source"')
+        return None
 
     def _placeholder(self, kind: str, params: Any, where: NodePath) -> str:
         named = kind if params is None else f"{kind} {json.dumps(params, ensure_ascii=False)}"

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
+from lumen.formats.heard_rows import in_asked_order
 from lumen.language.actions import AskQuestion, If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
@@ -56,14 +57,14 @@ class EventDescriptors:
         A more general candidate that comes before a particular one here is repeated among its own, where XState
         would try it later.
         """
-        rows = [t for t in state.transitions if t.event and not t.timed]
+        rows = [t for t in in_asked_order(state.transitions) if t.event and not t.timed]
         table: dict[str, list[Transition]] = {}
         for transition in rows:
             table.setdefault(self._named(transition), [])
         for descriptor in table:
             last = max(i for i, t in enumerate(rows) if self._named(t) == descriptor)
             event = bare(descriptor.removeprefix("!"))
-            found = [t for t in rows[: last + 1] if self._named(t) == descriptor or _covers(t, event)]
+            found = [t for t in rows[: last + 1] if self._named(t) == descriptor or (_covers(t, event) and not t.hears)]
             table[descriptor] = found
         keys = list(table)
         if _rivals(keys):

@@ -7,11 +7,12 @@ from lumen.formats.behavior_data import ActionData, TransitionData, quoted, sing
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.foreign_states import passing_key
 from lumen.formats.xstate.action_reader import XStateActionReader
-from lumen.formats.xstate.descriptors import descriptor_of, invoke_id, longest_first, translated
+from lumen.formats.xstate.descriptors import bare, descriptor_of, invoke_id, longest_first, translated
 from lumen.formats.xstate.invoke_reader import XStateInvokeReader
 from lumen.formats.xstate.json_source import parse_json
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
+from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import RESUME_WORDS
 
@@ -187,8 +188,7 @@ class _XStateReader:
             self.parts.lost((*state.where, "onDone"), "`onDone` of a state that has no states")
         elif "onDone" in state.source and (rows := self.transitions.rows(state, "onDone")):
             data["onDone"] = single(rows)
-        if on := self._on(state, invocations.waits):
-            data["on"] = on
+        data.update(self._on(state, invocations.waits))
         if always := self._always(state):
             data["always"] = single(always)
         if after := self._after(state):
@@ -196,8 +196,9 @@ class _XStateReader:
         return data
 
     def _on(self, state: XStateNode, waits: dict[str, list[TransitionData]]) -> dict[str, Any]:
-        """The candidates of each event, and those of the ends that are waited for."""
+        """The candidates of each event, and those of the ends that are waited for, as `on`; and the rows of `hears`."""
         rows: dict[str, list[TransitionData]] = {}
+        hears: dict[str, list[TransitionData]] = {}
         for event, data in self._table(state, "on").items():
             where = (*state.where, "on", event)
             descriptor = descriptor_of(translated(event, self._named))
@@ -208,12 +209,17 @@ class _XStateReader:
                 continue
             if descriptor.startswith("xstate."):
                 self.parts.lost(where, f"nothing says `{event}` here", "the transition stays, and is never taken")
-            if found := self.transitions.under(state, where, data):
-                rows.setdefault(descriptor, []).extend(found)
+            for row in self.transitions.under(state, where, data, heard=bare(descriptor) == HEARD):
+                if key := row.pop("hears", ""):
+                    hears.setdefault(key, []).append(row)
+                else:
+                    rows.setdefault(descriptor, []).append(row)
         for descriptor, found in waits.items():
             if found:
                 rows.setdefault(descriptor, []).extend(found)
-        return {descriptor: single(rows[descriptor]) for descriptor in longest_first(list(rows))}
+        on = {descriptor: single(rows[descriptor]) for descriptor in longest_first(list(rows))}
+        heard = {key: single(found) for key, found in hears.items()}
+        return ({"on": on} if on else {}) | ({"hears": heard} if heard else {})
 
     def _named(self, id: str) -> str:
         """What the state of that id is called here; the id itself where there is none."""

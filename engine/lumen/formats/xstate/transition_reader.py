@@ -3,7 +3,7 @@
 from typing import Any
 
 from lumen.formats.behavior_data import TransitionData
-from lumen.formats.xstate.action_reader import XStateActionReader
+from lumen.formats.xstate.action_reader import HEARS_GUARD, XStateActionReader
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
 
@@ -20,17 +20,19 @@ class XStateTransitionReader:
         """What stands under a key of the state."""
         return self.under(state, (*state.where, key), state.source[key], eventless=key == "always")
 
-    def under(self, state: XStateNode, where: NodePath, data: Any, *, eventless: bool = False) -> list[TransitionData]:
-        """A target, an object, or a list of these."""
+    def under(
+        self, state: XStateNode, where: NodePath, data: Any, *, eventless: bool = False, heard: bool = False
+    ) -> list[TransitionData]:
+        """A target, an object, or a list of these; where rows of `hears` may be, such a row has its key as `hears`."""
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
-        found = [self._row(state, place, {} if row is None else row) for place, row in rows]
+        found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
         kept = [row for row in found if row is not None]
         if eventless and any("target" not in row and "guard" not in row for row in kept):
             self.parts.lost(where, "a transition without event, guard and target runs for ever")
             kept = [row for row in kept if "target" in row or "guard" in row]
         return kept
 
-    def _row(self, state: XStateNode, where: NodePath, data: Any) -> TransitionData | None:
+    def _row(self, state: XStateNode, where: NodePath, data: Any, may_hear: bool) -> TransitionData | None:
         if isinstance(data, str):
             data = {"target": data}
         if not isinstance(data, dict):
@@ -42,7 +44,12 @@ class XStateTransitionReader:
             self.parts.changed((*where, "meta"), "`meta` is not carried over")
         row: TransitionData = {}
         guard = data.get("guard", data.get("cond"))
-        if guard is not None:
+        if may_hear and isinstance(guard, dict) and guard.get("type") == HEARS_GUARD:
+            heard = self.parts.heard(guard, (*where, "guard"))
+            if heard is None:
+                return None
+            row.update(heard)
+        elif guard is not None:
             source = self.parts.guard(guard, (*where, "guard"))
             if source is None:
                 return None
@@ -53,8 +60,10 @@ class XStateTransitionReader:
                 return None
             reenter = data.get("reenter") is True or data.get("internal") is False  # version 4's word for it
             row.update(self._way(state, where, targets, reenter))
+        self.parts.row = row.get("hears", "")
         if actions := self.parts.actions(data.get("actions"), (*where, "actions")):
             row["actions"] = actions
+        self.parts.row = ""
         return row
 
     def targets(self, state: XStateNode, data: Any, where: NodePath) -> list[XStateNode] | None:

@@ -4,15 +4,24 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_action, plain_block, plain_button, plain_properties, plain_value
+from lumen.formats.behavior_data import (
+    plain_action,
+    plain_block,
+    plain_button,
+    plain_phrases,
+    plain_properties,
+    plain_value,
+)
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
-from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD
+from lumen.formats.heard_rows import LOST_ELSEWHERE, as_guard, key_of
+from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD, HEARS_GUARD
 from lumen.formats.xstate.descriptors import EventDescriptors
 from lumen.interpreters.expressions import ExpressionError, parse_expression
+from lumen.interpreters.expressions.readings import as_written
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import ComputedValue, Expression, PlacedAction, Template
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.machines import Answer, Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.language.machines import Answer, Hears, Invoke, MachineDefinition, State, StateKind, Transition
 
 _HINT = "give XState an implementation of that name"
 
@@ -21,7 +30,8 @@ def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, l
     """The configuration, and what in it is missing or needs code.
 
     An action of ours is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
-    {"source": …}}`, and `do` an invocation of `lumen.do`: their code is for `setup`. What XState has no place for
+    {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`: their code is for
+    `setup`. What XState has no place for
     stands in `meta`.
     """
     report = ExportReport(place, _HINT)
@@ -122,7 +132,18 @@ class _XStateWriter:
     def _rows(self, state: State) -> dict[str, list[Any]]:
         """The transitions of `on`, and of the state's own events, by XState's descriptors."""
         table = self.descriptors.arranged(state)
-        return {event: [self._row(state, t) for t in found] for event, found in table.items()}
+        return {
+            event: rows for event, found in table.items() if (rows := [self._row(state, t) for t in self._kept(found)])
+        }
+
+    def _kept(self, found: list[Transition]) -> Iterator[Transition]:
+        """Those that can be written: of a row of `hears` that asks for phrases of an entry, only what it finds."""
+        for transition in found:
+            if transition.hears and not key_of(transition.hears) and as_guard(transition) is None:
+                message = f"`{transition.hears.title}` is left out: phrases in an entry of a list have no counterpart"
+                self.report.lost(message, transition.where)
+            else:
+                yield transition
 
     def _after(self, state: State) -> dict[str, list[Any]]:
         data: dict[str, list[Any]] = {}
@@ -164,14 +185,30 @@ class _XStateWriter:
             self.report.lost("`approve` is left out: in XState nothing waits for a person", transition.where)
         if transition.targets:
             row["target"] = self._targets(state, transition.targets)
-        if transition.guard:
-            self.report.foreign(f"the guard `{EXPRESSION_GUARD}`", transition.where)
-            row["guard"] = {"type": EXPRESSION_GUARD, "params": {"source": transition.guard.source}}
+        if transition.hears:
+            row["guard"] = self._heard(transition, transition.hears)
+        elif transition.guard:
+            row["guard"] = self._guard(transition.guard, transition)
         if transition.actions:
             row["actions"] = self._actions(transition.actions)
         if transition.targets and self._leaves_itself(state, transition):
             row["reenter"] = True
         return row
+
+    def _heard(self, transition: Transition, row: Hears) -> dict[str, Any]:
+        """The guard of a row of `hears`, whose code is for `setup`, or an expression that stands for it."""
+        if key := key_of(row):
+            self.report.changed(f"`{row.title}` becomes a guard `{HEARS_GUARD}`", transition.where, LOST_ELSEWHERE)
+            source = {"source": as_written(transition.guard.source)} if transition.guard else {}
+            return {"type": HEARS_GUARD, "params": {"row": key, **source}}
+        condition = as_guard(transition)
+        assert condition is not None  # others are left out
+        self.report.changed(f"`{row.title}` becomes the guard `{condition.source}`", transition.where, LOST_ELSEWHERE)
+        return self._guard(condition, transition)
+
+    def _guard(self, guard: Expression, transition: Transition) -> dict[str, Any]:
+        self.report.foreign(f"the guard `{EXPRESSION_GUARD}`", transition.where)
+        return {"type": EXPRESSION_GUARD, "params": {"source": guard.source}}
 
     def _leaves_itself(self, state: State, transition: Transition) -> bool:
         """Whether XState would stay in the state, and we leave it."""
@@ -210,7 +247,10 @@ class _XStateWriter:
         machine = self.machine
         yield from ((key, table) for key in ("types", "events", "renamed") if (table := getattr(machine, key)))
         if machine.phrases:
-            yield "phrases", {name: _phrases(table) for name, table in machine.phrases.items()}
+            yield (
+                "phrases",
+                {name: plain_phrases(table, anyhow=name in machine.anyhow) for name, table in machine.phrases.items()},
+            )
         if machine.answers:
             yield "answers", {name: [_answer(row) for row in rows] for name, rows in machine.answers.items()}
         if machine.lists:
@@ -219,12 +259,8 @@ class _XStateWriter:
             yield "properties", plain_properties(machine)
 
 
-def _phrases(table: Mapping[str, Sequence[str]]) -> Any:
-    return list(table[""]) if set(table) == {""} else {language: list(rows) for language, rows in table.items()}
-
-
 def _answer(row: Answer) -> dict[str, Any]:
-    return {"phrases": _phrases(row.phrases), "value": row.value}
+    return {"phrases": plain_phrases(row.phrases), "value": row.value}
 
 
 def _constant(value: ComputedValue) -> Any:
@@ -235,7 +271,7 @@ def _constant(value: ComputedValue) -> Any:
                 tree = parse_expression(source)
             except ExpressionError:
                 return source
-            return tree.value if isinstance(tree, Literal) else source
+            return tree.value if isinstance(tree, Literal) else as_written(source)
         case tuple():
             return [_constant(item) for item in value]
         case Mapping():

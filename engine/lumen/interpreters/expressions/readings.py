@@ -21,6 +21,7 @@ from lumen.interpreters.expressions.tree import (
 )
 
 _CAUGHT = re.compile(rf"\b{CAUGHT}\(\d+\)")
+_LOCALIZED = re.compile(r"\bin_language\((heard(?:\.\w+|\['\w+'\])*)\)")
 
 
 def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
@@ -43,7 +44,7 @@ def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
 
 def as_written(source: str) -> str:
     """An expression of a row of `hears` with `heard`, as the author wrote it, in place of the engine's own function."""
-    return _CAUGHT.sub("heard", source)
+    return _LOCALIZED.sub(r"\1", _CAUGHT.sub("heard", source)) if CAUGHT in source else source
 
 
 def looks_at_what_was_heard(node: ExpressionNode) -> bool:

@@ -1,6 +1,6 @@
 """Sentences that visitors may say: forms of phrases with something in their slots, and what takes a row of `hears`."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ SAMPLES: Mapping[str, tuple[str, Any]] = {
 }
 """For the types of slots that are not lists: what is said, and what is caught."""
 
-_Lists = Mapping[str, tuple[Mapping[str, Any], ...]]
+_Lists = Mapping[str, Sequence[Mapping[str, Any]]]
 
 
 class SampleSentence(NamedTuple):

@@ -1,0 +1,38 @@
+"""Rows of `hears` in charts of other tools: no other tool has them, so they become conditions with a name of ours."""
+
+from collections.abc import Sequence
+
+from lumen.interpreters.talk.hearing import ENTRY
+from lumen.language.actions import Expression
+from lumen.language.machines import Hears, Transition
+
+LOST_ELSEWHERE = (
+    "elsewhere it has to be written: which row has more words, what is negated or asked, and what was caught"
+)
+"""What a finding about a row of `hears` says is lost."""
+HEARD_TEXT = "event.data.result"
+
+
+def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
+    """The transitions as they are asked: rows of `hears` after `on`, and before what takes anything."""
+    if not any(t.hears for t in transitions):
+        return transitions
+    return sorted(transitions, key=lambda t: 2 if t.event == "*" else t.hears is not None)
+
+
+def key_of(row: Hears) -> str:
+    """The key of a row, as a file may have it; empty for one that asks for phrases of an entry of a `for`.
+
+    A chart has no `for`, so nothing could be called by its variable.
+    """
+    return "" if any(name.startswith(ENTRY) for name in row.names) else row.title.removeprefix("hears ")
+
+
+def as_guard(transition: Transition) -> Expression | None:
+    """A row as a guard of its own, with its own guard; None if that can't say it: only what is found can be said."""
+    row, guard = transition.hears, transition.guard
+    if row is None or row.way:
+        return None
+    asked = [f"heard({HEARD_TEXT}, {name if name.startswith(ENTRY) else repr(name)})" for name in row.names]
+    source = " || ".join(asked)
+    return Expression(f"({source}) && ({guard.source})" if guard else source, transition.where)

@@ -1,0 +1,27 @@
+"""The condition that a row of `hears` becomes in SCXML: `hears(_event.data.result, 'not dance') && (its guard)`."""
+
+from lumen.formats.ecmascript import ScriptError
+from lumen.interpreters.expressions import unparse
+from lumen.interpreters.expressions.tree import Literal
+
+HEARS = "hears"
+_AND, _END = " && (", ")"
+
+
+def row_condition(key: str, guard: str) -> str:
+    """The condition of the row of that key; `guard` is its own in ECMAScript, empty if it has none."""
+    return _asked(key) + (f"{_AND}{guard}{_END}" if guard else "")
+
+
+def guard_in(key: str, condition: str) -> str:
+    """The row's own guard in a condition as `row_condition` makes it, empty for none; else raises ScriptError."""
+    asked = _asked(key)
+    if condition == asked:
+        return ""
+    if condition.startswith(asked + _AND) and condition.endswith(_END):
+        return condition.removeprefix(asked + _AND).removesuffix(_END)
+    raise ScriptError(f"a row of `hears` begins with `{asked}`")
+
+
+def _asked(key: str) -> str:
+    return f"{HEARS}(_event.data.result, {unparse(Literal(key))})"
