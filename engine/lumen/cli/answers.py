@@ -8,6 +8,7 @@ from typing import Any
 
 BECAUSE = {
     "guard": "its guard was false",
+    "unheard": "it was not heard",
     "preempted": "something else was taken",
     "no-event": "nothing brought it about",
     "inactive": "its state was not active",

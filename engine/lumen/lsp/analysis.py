@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, gathered
+from lumen.loading.common_words import COMMON, COMMON_FILE, common_words, is_shipped
 from lumen.loading.document import Document
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.packaged import MAIN_FILE
@@ -28,11 +29,14 @@ class Analysis:
     """What can be said of these files; each part is worked out when it is first asked for. Nothing here raises.
 
     `before` is the same project some keys ago: what could be read of a file then stands for one that can't be read now.
+    The words that come with Lumen are none of the files, and known all the same.
     To another process it travels without what was worked out of it.
     """
 
     def __init__(self, root: Path, files: Mapping[str, bytes], before: "Analysis | None" = None) -> None:
-        self.root, self.files = root, dict(sorted(files.items()))
+        shipped = is_shipped(files, COMMON) and not (root / COMMON_FILE).is_file()
+        self.root = root
+        self.files = {file: files[file] for file in sorted(files) if not (shipped and file == COMMON_FILE)}
         self._before: Mapping[str, bytes] = before.__dict__.get("readable", before._before) if before else {}
         self._last_index = before.known_index if before else None
         self._known: Known = before.known if before else frozenset()
@@ -107,8 +111,9 @@ class Analysis:
 
     @cached_property
     def documents(self) -> Mapping[str, Document]:
-        """The files that can be read, with nothing taken out of them."""
-        read = {file: parse(file, content)[0] for file, content in self.readable.items() if kind_of(file)}
+        """The files that can be read, with nothing taken out of them, and Lumen's own words unless replaced."""
+        files = {COMMON_FILE: common_words(), **self.readable}
+        read = {file: parse(file, content)[0] for file, content in files.items() if kind_of(file)}
         return {file: document for file, document in read.items() if document}
 
     @cached_property

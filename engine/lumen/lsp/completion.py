@@ -5,22 +5,37 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.talk.patterns import TYPES, slots_of
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.routes import Route
 from lumen.loading.lending import shipped_message
+from lumen.loading.outline import THIS
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.cursor import Cursor, cursor
 from lumen.lsp.grammar import key_kind, kind_of, value_kind
-from lumen.lsp.index import NameIndex, stem
+from lumen.lsp.heard_rows import ELSE, is_phrase, names_in, row_around, texts_in
+from lumen.lsp.index import WORD_KINDS, NameIndex, stem
 from lumen.lsp.names import NameKind
 from lumen.lsp.schemas import keys_at, values_at
 from lumen.rules.events import BUILT_IN_FAMILIES, hears
 
 _CALL = re.compile(r"\b(heard|lookup|In)\([^()]*?(?:\([^()]*\)[^()]*?)*['\"](\w*)$")
 _NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}
-_FIELD = re.compile(r"\b(context|event\.data|event|state)\.(\w*)$")
+_FIELD = re.compile(r"\b(context|event\.data|event|state|heard)\.(\w*)$")
+_SLOT = re.compile(r"\{([\w?]*)$")
+_PART = re.compile(r"[^\s|]*$")
+
+
+_WAYS = {"not": "refused, as in “don't dance”", "asked": "within a who, why or when question"}
+_SLOTS = {
+    "name": "one to four words, as they were said",
+    "name?": "a name, unless it may be something else",
+    "number": "a number, in digits or words",
+    "text": "everything that follows",
+}
 
 
 class Item(NamedTuple):
@@ -69,7 +84,15 @@ class _Completion:
         path, here = self.here.path, self.here
         if here.key:
             named = key_kind(self.kind, path)
-            yield from self.keys(path[:-1]) if named is None else self.names(named, path, key=True)
+            if named is NameKind.ROW:
+                yield from self.rows(path)
+                return
+            yield from self.names(named, path, key=True) if named else ()
+            yield from self.keys(path[:-1]) if named is None or path[:1] == ("phrases",) else ()
+            return
+        if is_phrase(self.kind, path) and (slot := _SLOT.search(here.before)):
+            names = dict.fromkeys((*TYPES, *self.lists()))
+            yield from (Item(f"{name}}}", self.slot_detail(name), len(slot[1])) for name in names)
             return
         named = value_kind(self.kind, path)
         match named:
@@ -95,6 +118,63 @@ class _Completion:
         for key, schema in keys_at(self.kind, path).items():
             if key not in taken:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
+
+    def rows(self, path: NodePath) -> Iterator[Item]:
+        """What a key of `hears` may be, or go on with."""
+        before, there = self.here.before, self.value(path[:-1])
+        part = _PART.search(before)
+        wide = len(part[0]) if part else 0
+        for kind in (NameKind.PHRASE, NameKind.ANSWERS):
+            for name in self.index.known(kind, self.scope):
+                if name not in (*WORD_LISTS, *TABLES):
+                    yield Item(f"{name}: ", str(kind), wide)
+        yield from (Item(f"{name}: ", "of the list's entry", wide) for name in self.entry_fields(path))
+        if not before[: len(before) - wide].strip():
+            yield from (Item(f"{way} ", detail, wide) for way, detail in _WAYS.items())
+            if ELSE not in there:
+                yield Item(f"{ELSE}: ", "what no other row hears", wide)
+
+    def entry_fields(self, path: NodePath) -> Iterator[str]:
+        """`question.right` for the fields of entries of each `for` around a node."""
+        around = self.index.data(self.scope)
+        steps = [*_steps(path), ""]
+        for step in steps:
+            loop = around.get("for") if isinstance(around, dict) else None
+            states = around.get("states") if isinstance(around, dict) else None
+            around = states.get(step) if isinstance(states, dict) else None
+            if isinstance(loop, dict) and isinstance(loop.get("as"), str):
+                found = re.fullmatch(r"\s*lists\.(\w+)\s*", str(loop.get("each", "")))
+                entries = self.lists().get(found[1]) if found else ()
+                keys = dict.fromkeys(key for entry in entries or () if isinstance(entry, dict) for key in entry)
+                yield from (f"{loop['as']}.{key}" for key in keys)
+
+    def lists(self) -> Mapping[str, Any]:
+        """The lists that are known here, by name; in a words file those of behaviours that name it, too."""
+        found: dict[str, Any] = {}
+        users = [name for name, words in self.index.words.items() if self.scope in (name, *words)]
+        for scope in dict.fromkeys((self.scope, *(s for name in users for s in (name, *self.index.words[name])))):
+            data = self.index.data(scope)
+            own = data.get("lists") if isinstance(data, dict) else None
+            found = {**(own if isinstance(own, dict) else {}), **found}
+        return found
+
+    def slot_detail(self, name: str) -> str:
+        return _SLOTS.get(name, "an entry of the list, by its `phrases`")
+
+    def caught(self, path: NodePath) -> list[str]:
+        """What `heard` has in the row of `hears` around a node; nothing elsewhere."""
+        key = row_around(path)
+        if not key:
+            return []
+        found = ["text", "phrase"]
+        for name, _ in names_in(key):
+            kind = self.index.row_kind(name, self.scope)
+            found += ["answer"] if kind is NameKind.ANSWERS else []
+            data = self.index.data(self.index.home(kind, name, self.scope))
+            table = data.get(WORD_KINDS[kind]) if isinstance(data, dict) else None
+            phrases = texts_in(table.get(name) if isinstance(table, dict) else None)
+            found += [slot.name for phrase in phrases for slot in slots_of(phrase)]
+        return list(dict.fromkeys(found))
 
     def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
         wide, end = len(self.here.word), ": " if key else ""
@@ -137,6 +217,8 @@ class _Completion:
         if path[-1] == "initial" or (len(path) > 1 and path[-2] == "initial"):
             yield from ((key, child.path) for key, child in entry.children.items())
             return
+        if path[-1] != "onReload":
+            yield THIS, "this state again"
         if entry.parent:
             yield from ((key, other.path) for key, other in entry.parent.children.items())
         yield from ((f".{key}", child.path) for key, child in entry.children.items())
@@ -179,12 +261,14 @@ class _Completion:
                 "event": ["name", "data"],
                 "event.data": self.event_fields(path),
                 "state": ["path", "language", "place"],
+                "heard": self.caught(path),
             }
             yield from (Item(name, f"of {found[1]}", len(found[2])) for name in named[found[1]])
         else:
             part = re.search(r"\w*$", before)
             wide = len(part[0]) if part else 0
-            yield from (Item(name, "", wide) for name in ("context", "event", "state"))
+            known = ("context", "event", "state", *(["heard"] if row_around(path) else []))
+            yield from (Item(name, "", wide) for name in known)
             yield from (Item(f"{name}(", "function", wide) for name in FUNCTIONS)
 
     def event_fields(self, path: NodePath) -> list[str]:

@@ -5,9 +5,13 @@ from lumen.lsp.analysis import Analysis
 
 
 def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
-    """Where what stands at a line and column, from 1, is made known; a state by its key rather than its id."""
+    """Where what stands at a line and column, from 1, is made known; a state by its key rather than its id.
+
+    What comes with Lumen is made known in none of the project's files.
+    """
     use = analysis.index.at(file, line, column)
-    return [other.place for other in analysis.index.of(use) if other.defines] if use else []
+    places = [other.place for other in analysis.index.of(use) if other.defines] if use else []
+    return [place for place in places if place.file in analysis.files]
 
 
 def uses(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:

@@ -8,6 +8,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.verbs import VERBS
 from lumen.loading.files import FLEET_FILE
 from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.words import ANYHOW
 from lumen.lsp.names import NameKind
 
 FOLDER_KINDS: Mapping[str, str] = {
@@ -60,6 +61,7 @@ _KEYS: Mapping[str, Table] = {
     "behavior": {
         ("states", "*"): NameKind.STATE,
         ("on", "*"): NameKind.EVENT,
+        ("hears", "*"): NameKind.ROW,
         ("assign", "*"): NameKind.CONTEXT,
         ("say", "*"): NameKind.LANGUAGE,
         **_pair_names(),
@@ -89,6 +91,7 @@ _ROOT_KEYS: Mapping[str, Table] = {
 _VALUES: Mapping[str, Table] = {
     "behavior": {
         ("on", "*"): NameKind.STATE,
+        ("hears", "*"): NameKind.STATE,
         ("after", "*"): NameKind.STATE,
         ("at", "*"): NameKind.STATE,
         ("assign", "*"): NameKind.EXPRESSION,
@@ -194,6 +197,8 @@ def key_kind(kind: str, path: NodePath) -> NameKind | None:
     """What the key at the end of a path names, in a file of that kind."""
     steps = _steps(path)
     if kind == "behavior" and steps[:1] in (("types",), ("events",)) and len(steps) > 2:
+        return None
+    if steps[:1] == ("phrases",) and steps[-1] == ANYHOW:
         return None
     if found := _found(_ROOT_KEYS.get(kind, {}), steps, whole=True):
         return found

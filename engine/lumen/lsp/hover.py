@@ -1,22 +1,31 @@
 """What there is to know about the name under a cursor, in Markdown."""
 
+from collections.abc import Sequence
 from math import degrees
 from pathlib import PurePosixPath
 
-from lumen.language.diagnostics import Diagnostic, NodePath
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.common_words import COMMON, COMMON_FILE
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.words import WORDS_FOLDER
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
+from lumen.lsp.heard_rows import is_phrase
 from lumen.lsp.index import WORDS_SCOPE
+from lumen.lsp.locating import key_at
 from lumen.lsp.names import NameKind, NameUse, covers
 from lumen.lsp.schemas import description_at
+from lumen.lsp.sentences import of_patterns, of_phrase_at, of_row_at
 from lumen.rules.codes import CODES
 from lumen.rules.pages import page
+
+MAX_PHRASES = 20
+"""How many phrases of a language are shown."""
 
 
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
     """What to show for a line and column, from 1; empty where there is nothing to say."""
-    parts = []
+    parts = [of_row_at(analysis, file, line, column)]
     use = analysis.index.at(file, line, column)
     if use:
         parts.append(describe(analysis, use))
@@ -30,6 +39,8 @@ def describe(analysis: Analysis, use: NameUse) -> str:
     """What a name stands for: a state's path, a motion's duration, a joint's limits."""
     title = f"{use.kind} `{use.name}`"
     facts = _facts(analysis, use)
+    if use.scope == WORDS_SCOPE + COMMON and COMMON_FILE not in analysis.files:
+        facts += f"\n\nIt comes with Lumen: phrases of the same name in a file of {WORDS_FOLDER}/ take its place."
     uses = sum(1 for other in analysis.index.of(use) if not other.defines and other.text)
     return "\n\n".join(filter(None, [f"**{title}**", facts, f"used {uses} times" if uses > 1 else ""]))
 
@@ -69,7 +80,8 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
         case NameKind.PHRASE:
             holder = draft.words.get(use.scope.removeprefix(WORDS_SCOPE)) or draft.behaviors.get(use.scope)
             rows = holder.phrases.get(use.name, {}) if holder else {}
-            return "\n".join(f"- {language or 'any'}: {', '.join(said)}" for language, said in rows.items())
+            said = [f"- {language or 'any'}: {_some(texts)}" for language, texts in rows.items()]
+            return "\n".join([*said, *of_patterns(draft, [text for texts in rows.values() for text in texts])])
         case NameKind.EVENT:
             routes = draft.settings.routes.values() if draft.settings else ()
             return "\n".join(f"from the route `{r.name}` (`{r.key}`)" for r in routes if r.event == use.name)
@@ -77,6 +89,12 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
             schema = draft.messages.get(use.name, {})
             return str(schema.get("description", schema.get("title", "")))
     return ""
+
+
+def _some(texts: Sequence[str]) -> str:
+    """The first texts, and how many there are more."""
+    more = len(texts) - MAX_PHRASES
+    return ", ".join(texts[:MAX_PHRASES]) + (f" and {more} more" if more > 0 else "")
 
 
 def _state(draft: ProjectDraft, use: NameUse) -> str:
@@ -101,13 +119,13 @@ def _joint(draft: ProjectDraft, name: str) -> str:
 
 
 def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """What the schema says of the key at a place."""
+    """What the schema says of the key at a place, or what is said where a phrase is found."""
     document = analysis.documents.get(file)
     if document is None or PurePosixPath(file).suffix != ".yaml":
         return ""
-    found: NodePath = ()
-    for path, span in document.spans.items():
-        if span.key and covers(span.key, line, column):
-            found = path
-    text = description_at(kind_of(file), found) if found else ""
-    return f"`{found[-1]}`: {text}" if text else ""
+    kind = kind_of(file)
+    if found := key_at(document, line, column):
+        text = description_at(kind, found)
+        return f"`{found[-1]}`: {text}" if text else ""
+    phrases = (p for p, span in document.spans.items() if is_phrase(kind, p) and covers(span.value, line, column))
+    return next(filter(None, (of_phrase_at(analysis, file, path) for path in phrases)), "")

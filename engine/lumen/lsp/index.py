@@ -13,6 +13,7 @@ from lumen.loading.memoization import memoize
 from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
+from lumen.lsp.heard_rows import names_in
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
 from lumen.lsp.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
 
@@ -26,7 +27,8 @@ WORD_KINDS: Mapping[NameKind, str] = {NameKind.PHRASE: "phrases", NameKind.ANSWE
 class NameIndex:
     """All uses of names in a project, from its documents by file; files that are no YAML have none.
 
-    `files` are the names of all files, for those that can't be read are there all the same.
+    `files` are the names of all files, for those that can't be read are there all the same. Documents of which there is
+    no file come with Lumen: their names are known, and stand nowhere.
     """
 
     def __init__(self, documents: Mapping[str, Document], files: frozenset[str], main: str) -> None:
@@ -36,8 +38,11 @@ class NameIndex:
     @cached_property
     def uses(self) -> tuple[NameUse, ...]:
         """All of them, in the order of the files."""
-        found = [use for document in self.documents.values() for use in self._within(document)]
-        for file in sorted(filter(kind_of, self.files)):
+        found = list[NameUse]()
+        for file, document in self.documents.items():
+            uses = self._within(document)
+            found += uses if file in self.files else [use._replace(text="") for use in uses if use.defines]
+        for file in sorted(filter(kind_of, {*self.files, *self.documents})):
             folder = str(PurePosixPath(file).parent)
             found += [
                 NameUse(kind, "", stem(file), "", Place(file), True) for kind, f in KIND_FOLDERS.items() if f == folder
@@ -83,6 +88,13 @@ class NameIndex:
             return scope
         return next((w for w in self.words.get(scope, ()) if name in _entries(self.data(w), kind)), scope)
 
+    def row_kind(self, name: str, scope: str) -> NameKind:
+        """What a name in a key of `hears` is: a table of answers, or phrases, also if nothing has that name."""
+        found = (
+            k for k in WORD_KINDS for s in (scope, *self.words.get(scope, ())) if name in _entries(self.data(s), k)
+        )
+        return next(found, NameKind.PHRASE)
+
     def data(self, scope: str) -> Any:
         """The data of the behaviour or words file whose scope that is."""
         document = self.documents.get(f"behaviors/{scope}.yaml")
@@ -90,8 +102,13 @@ class NameIndex:
 
     @cached_property
     def words(self) -> Mapping[str, tuple[str, ...]]:
-        """The scopes of the words files that each behaviour names."""
-        return {stem(file): _words(d.data) for file, d in self.documents.items() if kind_of(file) == "behavior"}
+        """The scopes of the words files that each behaviour names; the one that comes with Lumen gives way to all."""
+        shipped = {WORDS_SCOPE + stem(file) for file in self.documents.keys() - self.files}
+        return {
+            stem(file): tuple(sorted(_words(d.data), key=lambda scope: scope in shipped))
+            for file, d in self.documents.items()
+            if kind_of(file) == "behavior"
+        }
 
     @cached_property
     def own_bodies(self) -> frozenset[str]:
@@ -135,7 +152,7 @@ class _Reader:
     def uses(self) -> Iterator[NameUse]:
         for path, span in self.document.spans.items():
             if span.key and isinstance(path[-1], str) and (kind := key_kind(self.kind, path)):
-                yield from self.named(kind, path, key=True)
+                yield from self.row(path) if kind is NameKind.ROW else self.named(kind, path, key=True)
             if span.key and path[-2:-1] == ("after",):
                 yield from self.parts(path, str(path[-1]), in_template(str(path[-1])), key=True)
             value = _value(self.document.data, path)
@@ -153,6 +170,12 @@ class _Reader:
             return
         name = _state_at(path) if kind is NameKind.STATE else text
         yield self.use(kind, name, text, place, defining=defines(self.kind, path, kind))
+
+    def row(self, path: NodePath) -> Iterator[NameUse]:
+        """The names in a key of `hears`."""
+        key = str(path[-1])
+        names = (NameInText(self.index.row_kind(name, self.scope), name, offset) for name, offset in names_in(key))
+        yield from self.parts(path, key, names, key=True)
 
     def valued(self, kind: NameKind, path: NodePath, value: str) -> Iterator[NameUse]:
         match kind:
@@ -196,7 +219,7 @@ class _Reader:
         steps = dotted.split(".")
         for i in range(1, len(steps) + 1):
             entry: OutlinedState | None = find(".".join(steps[:i]))
-            if entry is None or not entry.path:
+            if entry is None or not entry.path or not dotted:
                 continue
             text = ".".join(steps[done:i])
             at = offset + len(".".join(steps[:done])) + (done > 0)

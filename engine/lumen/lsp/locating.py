@@ -10,7 +10,7 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.tokens import Token, tokenize
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document import Document
-from lumen.lsp.names import NameKind
+from lumen.lsp.names import NameKind, covers
 
 _TEMPLATE = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)
 _NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}
@@ -67,6 +67,15 @@ class DocumentText:
         for step in path:
             node = node[step]
         return node
+
+
+def key_at(document: Document, line: int, column: int) -> NodePath:
+    """The path of the key at a line and column, from 1; empty for none."""
+    found: NodePath = ()
+    for path, span in document.spans.items():
+        if span.key and covers(span.key, line, column):
+            found = path
+    return found
 
 
 def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:

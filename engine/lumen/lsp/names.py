@@ -7,7 +7,7 @@ from lumen.language.diagnostics import Place
 
 
 class NameKind(StrEnum):
-    """What a name can stand for; `EXPRESSION`, `TEMPLATE` and `FIELD` hold other names."""
+    """What a name can stand for; `EXPRESSION`, `TEMPLATE`, `FIELD` and `ROW` hold other names."""
 
     STATE = "state"
     CONTEXT = "context key"
@@ -31,6 +31,7 @@ class NameKind(StrEnum):
     EXPRESSION = "expression"
     TEMPLATE = "text"
     FIELD = "field"
+    ROW = "row"
 
 
 KIND_FOLDERS = {

@@ -5,9 +5,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from lumen.errors import UsageError
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.routes import MEANINGS
 from lumen.lsp.analysis import Analysis
+from lumen.lsp.heard_rows import ELSE, WAYS
+from lumen.lsp.index import WORD_KINDS
 from lumen.lsp.names import KIND_FOLDERS, NameKind, NameUse
 from lumen.rules.fixes import Edit, edited
 
@@ -40,7 +43,7 @@ class Renaming(NamedTuple):
 def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse | None:
     """The use of a name at a line and column, from 1, where it can be renamed."""
     use = analysis.index.at(file, line, column)
-    defined = use is not None and any(other.defines for other in analysis.index.of(use))
+    defined = use is not None and any(o.defines and o.place.file in analysis.files for o in analysis.index.of(use))
     return use if use and use.kind in _NAMES and defined else None
 
 
@@ -55,6 +58,10 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
     pattern, look = _NAMES[use.kind]
     if not re.fullmatch(pattern, name) or _RESERVED.fullmatch(name):
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has to be {look}")
+    if use.kind in WORD_KINDS and name in (*WAYS, ELSE, *WORD_LISTS, *TABLES):
+        what = "it is a word list by which `hears` reads sentences"
+        what = "it means something in the keys of `hears`" if name in (*WAYS, ELSE) else what
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: {what}")
     if use.kind is NameKind.ROUTE and use.name in MEANINGS:
         raise UsageError(f"the route `{use.name}` means something to Lumen itself: {MEANINGS[use.name]}")
     if _taken(analysis, use, name):

@@ -30,7 +30,7 @@ def search(analysis: Analysis, query: str) -> Iterator[NameUse]:
     """Where things are made known in whose names the letters asked for are found, in their order."""
     for use in analysis.index.uses:
         letters = iter(use.name.lower())
-        if use.defines and all(letter in letters for letter in query.lower()):
+        if use.defines and use.place.file in analysis.files and all(letter in letters for letter in query.lower()):
             yield use
 
 

@@ -25,8 +25,8 @@ from lumen.language.diagnostics import Place
 from lumen.language.events import ROBOT_EVENTS, Event
 from lumen.language.machines import MachineDefinition, Transition
 
-Because = Literal["inactive", "no-event", "preempted", "guard"]
-ORDER: tuple[Because, ...] = ("guard", "preempted", "no-event", "inactive")
+Because = Literal["inactive", "no-event", "preempted", "unheard", "guard"]
+ORDER: tuple[Because, ...] = ("guard", "unheard", "preempted", "no-event", "inactive")
 MAX_SAMPLES = 40
 """Data of an event of which each is tried."""
 
@@ -108,12 +108,12 @@ class TransitionRefusals:
         after = f"{text}; {moment.event.name} came" if moment.event else text
         at = one.step.snapshot.epoch + one.at
         if false:
-            what = f"{after}, but {false.text} was false" + (f" ({false.error})" if false.error else "")
-            if row and row.fate != "guard":
-                what = f"{after}, but {false.error}"
-            place = one.place(machine, wanted.guard.where if wanted.guard else wanted.where)
+            unheard = row is not None and row.fate != "guard"
+            why = false.error if unheard else f"{false.text} was false" + (f" ({false.error})" if false.error else "")
+            place = one.place(machine, wanted.guard.where if wanted.guard and not unheard else wanted.where)
             note = "" if change else _no_change(false)
-            return Reason("guard", what, at, place, false, change, note, number)
+            because: Because = "unheard" if unheard else "guard"
+            return Reason(because, f"{after}, but {why}", at, place, false, change, note, number)
         place = one.place(machine, rival.where) if rival else None
         who = (
             f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"

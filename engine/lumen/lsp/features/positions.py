@@ -9,7 +9,7 @@ from lumen.lsp import completion, definitions, hover
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.language_server import LanguageServer
 
-TRIGGERS = lsp.CompletionOptions(trigger_characters=[".", "#", "'", "{", " ", ":"])
+TRIGGERS = lsp.CompletionOptions(trigger_characters=[".", "#", "'", "{", " ", ":", "|"])
 
 
 def complete(server: LanguageServer, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:

@@ -1,0 +1,48 @@
+"""Keys of `hears` as they are written: `not dance|sing`, `question.right`, `else`; and the row around a node."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.language.diagnostics import NodePath
+from lumen.loading.words import ANYHOW
+
+WAYS = ("not", "asked")
+ELSE = "else"
+_WORD = re.compile(r"[^\s|]+")
+
+
+def names_in(key: str) -> Iterator[tuple[str, int]]:
+    """The names of phrases and answers in a key, each with its offset; none for `else` and `ENTRY.FIELD`."""
+    found = [(word[0], word.start()) for word in _WORD.finditer(key)]
+    if len(found) > 1 and found[0][0] in WAYS:
+        found = found[1:]
+    yield from ((name, offset) for name, offset in found if "." not in name and (name, len(found)) != (ELSE, 1))
+
+
+def row_around(path: NodePath) -> str:
+    """The key of the row of `hears` in which a node lies; empty if it lies in none."""
+    at = next((i for i in reversed(range(len(path) - 2)) if path[i] == "hears"), None)
+    return "" if at is None else str(path[at + 1])
+
+
+def is_phrase(kind: str, path: NodePath) -> bool:
+    """Whether the text at a path of a file of that kind is a phrase: of `phrases`, or of a row of `answers`."""
+    if kind not in ("behavior", "words"):
+        return False
+    steps = tuple(step for step in path if isinstance(step, str))
+    return (steps[:1] == ("phrases",) and len(steps) in (2, 3)) or (
+        steps[:1] == ("answers",) and steps[2:3] == ("phrases",) and len(steps) in (3, 4)
+    )
+
+
+def texts_in(data: Any) -> Iterator[str]:
+    """The phrases in what stands under a name: for each language, or in each row of a table of answers."""
+    match data:
+        case str():
+            yield data
+        case list():
+            yield from (text for item in data for text in texts_in(item))
+        case dict():
+            inside = [data["phrases"]] if "phrases" in data else [v for key, v in data.items() if key != ANYHOW]
+            yield from (text for item in inside for text in texts_in(item))
