@@ -26,13 +26,16 @@ PHRASES = {
     "refusal": {"en": ["no."]},
     "named": {"en": ["my name is {name}"]},
     "about": {"en": ["tell me about {exhibits}"]},
+    "numbered": {"en": ["exhibit {number:n}"]},
     "anything": {"en": ["{text}"]},
     "fillers": {"en": ["please", "well"], "id": []},
     "negations": {"en": ["no", "dont", "do not"], "id": ["jangan"]},
     "questions": {"en": ["who", "why"], "id": ["mengapa"]},
 }
 """Word lists of their own, whatever those that come with Lumen hold."""
-LISTS = {"exhibits": [{"id": "rex", "phrases": {"en": ["the rex", "rex"]}}]}
+LISTS: dict[str, list[Any]] = {
+    "exhibits": [{"id": "rex", "phrases": {"en": ["the rex", "rex"]}}, {"id": "organ", "phrases": {"en": ["organ"]}}]
+}
 ANSWERS = {"faq": [{"phrases": {"en": ["how tall"]}, "value": {"en": "57 cm"}}]}
 ROWS: dict[str, Any] = {
     "dance": {"target": "dance", "guard": "context.n < 3"},
@@ -43,7 +46,7 @@ ROWS: dict[str, Any] = {
     "faq": "answered",
     "else": "lost",
 }
-TARGETS = ("dance", "sorry", "asked", "sing", "named", "answered", "lost", "out")
+TARGETS = ("dance", "sorry", "asked", "sing", "named", "met", "answered", "lost", "out")
 
 
 def chart(hears: dict[str, Any] = ROWS, **keys: Any) -> dict[str, Any]:
@@ -194,6 +197,32 @@ def test_why_not_of_a_false_guard_proposes_what_makes_it_true() -> None:
     assert reason["false"] == {"text": "context.n < 3", "values": {"context.n": 5}}
     assert reason["change"] == {"context.n": 2}
     assert reason["proved"]
+
+
+@for_each(
+    ("name", "guard", "said", "values", "change"),
+    [
+        ("named", "heard.name == 'Ani'", "my name is Budi", {"heard.name": "Budi"}, "my name is Ani"),
+        ("numbered", "heard.n >= 12", "exhibit 3", {"heard.n": 3}, "exhibit 12"),
+        ("about", "heard.exhibits.id == 'organ'", "tell me about the rex", {"heard.exhibits.id": "rex"}, "tell me about organ"),
+    ],
+)
+def test_why_not_proposes_what_a_guard_wants_to_be_caught(
+    name: str, guard: str, said: str, values: dict[str, Any], change: str
+) -> None:
+    play = Play(chart({name: {"target": "met", "guard": guard}}))
+    play.happen("heard", {"result": said})
+    reason = refused(play, "met")
+    assert reason["false"] == {"text": guard, "values": values}
+    assert (reason["change"], reason["proved"]) == ({"event.data.result": change}, True)
+
+
+def test_a_guard_on_what_was_caught_depends_on_what_is_said() -> None:
+    play = Play(chart({"named": {"target": "met", "guard": "size(heard.name) > 900"}}))
+    play.happen("heard", {"result": "my name is Budi"})
+    assert refused(play, "met")["note"] == (
+        "no other value of heard.name was found with which it would have been taken"
+    )
 
 
 def test_why_not_of_a_sentence_that_was_never_said_proposes_one() -> None:

@@ -201,7 +201,7 @@ def test_a_renaming_reaches_the_keys_of_hears(file: str, text: str, name: str, r
     ("name", "reason"),
     [
         ("not", "keys of `hears`"), ("asked", "keys of `hears`"), ("else", "keys of `hears`"),
-        ("fillers", "word list"), ("numbers", "word list"),
+        ("fillers", "word list"), ("not_names", "word list"),
     ],
 )  # fmt: skip
 def test_what_means_something_to_hears_is_no_name(name: str, reason: str) -> None:
@@ -229,3 +229,44 @@ def test_lumens_words_are_known_before_a_behaviour_can_be_read() -> None:
     text = "words: [common]\nstates:\n  a:\n    hears:\n      y"
     plain = Analysis(PROJECT.root, {**FILES, T: text.encode()})
     assert "yes: " in {item.text for item in complete(plain, T, 5, 8)}
+
+
+SAYINGS = """\
+tour:
+  offer:
+    dance: {en: ["Dance, please."]}
+    not  dance|sing: {en: [Please don't sing]}
+    no: {en: [Never]}
+  dance.quiz: {else: {en: [Hm]}}
+"""
+S = "behaviors/sayings/visitors.yaml"
+WITH_SAYINGS = Analysis(PROJECT.root, {**FILES, S: SAYINGS.encode()})
+
+
+@for_each(
+    ("file", "text", "name", "lines"),
+    [
+        (T, "      dan¦ce: dance", "moves", ["    moves: {en: ", "    not  moves|sing: {en: "]),
+        (S, "dance|si¦ng:", "song", ["    not  dance|song: {en: "]),
+        (S, "  off¦er:", "asking", ["  asking:\n"]),
+        (T, "  dan¦ce:\n", "moving", ["  moving.quiz: {else: ", "    dance: {en: "]),
+    ],
+)
+def test_a_renaming_reaches_sayings(file: str, text: str, name: str, lines: list[str]) -> None:
+    use = renamable(WITH_SAYINGS, *place(WITH_SAYINGS, file, text))
+    assert use
+    after = applied(WITH_SAYINGS, rename(WITH_SAYINGS, use, name))
+    assert [line for line in lines if line not in after.text(S)] == [], after.text(S)
+    assert rows_of(after) == rows_of(PROJECT)
+
+
+def test_the_keys_of_sayings_are_completed() -> None:
+    keys = (
+        ("  offer:\n", "  ¦:\n", {"ask: ", "offer: ", "dance.quiz: "}),
+        ("    no: ", "    n¦: ", {"no: ", "sing: "}),
+    )
+    for old, new, some in keys:
+        text = SAYINGS.replace(old, new.replace("¦", ""))
+        analysis = WITH_SAYINGS.changed(S, text)
+        line = text[: SAYINGS.index(old)].count("\n") + 1
+        assert some <= {item.text for item in complete(analysis, S, line, new.index("¦") + 1)}

@@ -78,7 +78,7 @@ class _Completion:
     def __init__(self, analysis: Analysis, kind: str, file: str, here: Cursor, at: tuple[int, int]) -> None:
         self.analysis, self.kind, self.file, self.here, self.at = analysis, kind, file, here, at
         self.index: NameIndex = analysis.names(file)
-        self.scope = self.index.behavior(file)
+        self.scope = str(here.path[0]) if kind == "sayings" and here.path else self.index.behavior(file)
 
     def items(self) -> Iterator[Item]:
         path, here = self.here.path, self.here
@@ -189,7 +189,7 @@ class _Completion:
     def candidates(self, kind: NameKind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
         match kind:
             case NameKind.STATE:
-                yield from self.states(path) if not key else ()
+                yield from self.states(path) if not key or self.kind == "sayings" else ()
             case NameKind.EVENT:
                 yield from self.events(waits=key)
             case NameKind.FIELD:
@@ -208,7 +208,7 @@ class _Completion:
         tree = self.index.outlines.get(self.scope)
         if tree is None:
             return
-        if self.kind == "story":
+        if self.kind in ("story", "sayings"):
             yield from ((entry.name, entry.path) for entry in tree.entries.values() if entry.path)
             return
         entry = tree.entries.get(".".join(str(step) for step in _steps(path)))

@@ -15,6 +15,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
     "behaviors/words": "words",
+    "behaviors/sayings": "sayings",
     "knowledge": "knowledge",
     "knowledge/questions": "questions",
     "fuzzy": "controller",
@@ -176,6 +177,8 @@ _DEFINING = {
     "motion": frozenset(("poses",)),
     "body": frozenset(("joints", "postures", "tactile")),
 }
+_SAYINGS = (NameKind.BEHAVIOR, NameKind.STATE, NameKind.ROW, NameKind.LANGUAGE)
+"""What the keys of a file of sayings name, from the outside to the inside."""
 _DATA = {"behavior": ("data", "body"), "story": ("data", "body"), "lumen": (), "controller": ()}
 _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "renamed"))
 """Roots of a behaviour below which texts stand for themselves."""
@@ -196,6 +199,8 @@ def kind_of(file: str) -> str:
 def key_kind(kind: str, path: NodePath) -> NameKind | None:
     """What the key at the end of a path names, in a file of that kind."""
     steps = _steps(path)
+    if kind == "sayings":
+        return _SAYINGS[len(steps) - 1] if len(steps) <= len(_SAYINGS) else None
     if kind == "behavior" and steps[:1] in (("types",), ("events",)) and len(steps) > 2:
         return None
     if steps[:1] == ("phrases",) and steps[-1] == ANYHOW:

@@ -51,15 +51,18 @@ class NameIndex:
 
     def _within(self, document: Document) -> tuple[NameUse, ...]:
         """The uses in one document; worked out anew where it, or what its names can mean, has changed."""
-        scope = self.behavior(document.file)
-        tree = self.outlines.get(scope)
-        states = (tuple(tree.entries), tuple((name, s.path) for name, s in tree.aliases.items())) if tree else None
+        scopes = tuple(self.scopes(document))
+        states = [
+            (tuple(tree.entries), tuple((name, s.path) for name, s in tree.aliases.items())) if tree else None
+            for tree in map(self.outlines.get, scopes)
+        ]
         known = [
             (w, kind, tuple(_entries(self.data(w), kind)))
+            for scope in scopes
             for w in (scope, *self.words.get(scope, ()))
             for kind in WORD_KINDS
         ]
-        given = document.text, scope, states, known, self.other_body(document.file)
+        given = document.text, scopes, states, known, self.other_body(document.file)
         return memoize(("uses", document.file), given, lambda: tuple(_Reader(self, document).uses()))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
@@ -127,6 +130,13 @@ class NameIndex:
         document = self.documents.get(file)
         return document.data if document and isinstance(document.data, dict) else {}
 
+    def scopes(self, document: Document) -> Iterator[str]:
+        """The behaviours that the names in a document are about: of sayings each that they are said to."""
+        if kind_of(document.file) == "sayings":
+            yield from map(str, document.data if isinstance(document.data, dict) else ())
+        else:
+            yield self.behavior(document.file)
+
     def behavior(self, file: str) -> str:
         """The behaviour that the names in a file are about: its own, or the one that a story plays."""
         if kind_of(file) == "words":
@@ -151,8 +161,11 @@ class _Reader:
 
     def uses(self) -> Iterator[NameUse]:
         for path, span in self.document.spans.items():
+            if self.kind == "sayings" and path:
+                self.scope = str(path[0])
+                self.outline = self.index.outlines.get(self.scope)
             if span.key and isinstance(path[-1], str) and (kind := key_kind(self.kind, path)):
-                yield from self.row(path) if kind is NameKind.ROW else self.named(kind, path, key=True)
+                yield from self.keyed(kind, path)
             if span.key and path[-2:-1] == ("after",):
                 yield from self.parts(path, str(path[-1]), in_template(str(path[-1])), key=True)
             value = _value(self.document.data, path)
@@ -160,6 +173,16 @@ class _Reader:
                 yield from self.valued(kind, path, value)
             elif isinstance(value, str) and path[-1:] == ("id",) and path[-3:-2] == ("states",):
                 yield from self.alias(path, value)
+
+    def keyed(self, kind: NameKind, path: NodePath) -> Iterator[NameUse]:
+        """The names in a key."""
+        key = str(path[-1])
+        if kind is NameKind.ROW:
+            yield from self.row(path)
+        elif kind is NameKind.STATE and self.kind == "sayings":
+            yield from self.segments(path, key, key, 0, self._named_state, key=True)
+        else:
+            yield from self.named(kind, path, key=True)
 
     def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
         """The name that a whole key or value is."""
@@ -213,9 +236,11 @@ class _Reader:
                 found = lambda text: outline.resolve(source, written[:begin] + text, path)  # noqa: E731
                 yield from self.segments(path, value, written[begin:], begin + shift, found)
 
-    def segments(self, path: NodePath, value: str, dotted: str, offset: int, find: Any) -> Iterator[NameUse]:
+    def segments(
+        self, path: NodePath, value: str, dotted: str, offset: int, find: Any, *, key: bool = False
+    ) -> Iterator[NameUse]:
         """A name for each step of a dotted name that leads to a state; an id may hold dots itself."""
-        place, done = self.document.place(path), 0
+        place, done = self.document.place(path, key=key), 0
         steps = dotted.split(".")
         for i in range(1, len(steps) + 1):
             entry: OutlinedState | None = find(".".join(steps[:i]))

@@ -30,6 +30,7 @@ _NAMES = {
     NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
 }
 """The kinds that can be renamed, and what their names look like."""
+_WORD_LISTS = {NameKind.PHRASE: WORD_LISTS, NameKind.ANSWERS: TABLES}
 _RESERVED = re.compile(r"(?i:null|true|false|yes|no|on|off|y|n|~|any)|[\d.+-].*")
 
 
@@ -58,10 +59,12 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
     pattern, look = _NAMES[use.kind]
     if not re.fullmatch(pattern, name) or _RESERVED.fullmatch(name):
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has to be {look}")
-    if use.kind in WORD_KINDS and name in (*WAYS, ELSE, *WORD_LISTS, *TABLES):
-        what = "it is a word list by which `hears` reads sentences"
-        what = "it means something in the keys of `hears`" if name in (*WAYS, ELSE) else what
-        raise UsageError(f"`{name}` can't be the name of a {use.kind}: {what}")
+    if use.kind in WORD_KINDS and name in (*WAYS, ELSE):
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: it means something in the keys of `hears`")
+    if name in _WORD_LISTS.get(use.kind, ()):
+        raise UsageError(
+            f"`{name}` can't be the name of a {use.kind}: it is a word list by which `hears` reads sentences"
+        )
     if use.kind is NameKind.ROUTE and use.name in MEANINGS:
         raise UsageError(f"the route `{use.name}` means something to Lumen itself: {MEANINGS[use.name]}")
     if _taken(analysis, use, name):

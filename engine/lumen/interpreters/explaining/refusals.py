@@ -10,7 +10,7 @@ from lumen.interpreters.explaining.conditions import GuardPart, first_false
 from lumen.interpreters.explaining.hearing import HeardRow, heard_row
 from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
 from lumen.interpreters.explaining.insides import within
-from lumen.interpreters.explaining.searching import Happens, smallest_change, taken
+from lumen.interpreters.explaining.searching import Happens, literals_in, smallest_change, taken
 from lumen.interpreters.explaining.tracing import Moment
 from lumen.interpreters.explaining.words import awaited, of_transition, prefix_of
 from lumen.interpreters.exploration.samples import samples
@@ -177,7 +177,8 @@ def _coming(
         context = inner.context if inner else {}
         tried: Iterable[Any] = samples(machine, schema, trees, context)
         if wanted.hears:
-            tried = ({"result": text} for text in of_row(machine, wanted.hears, context))
+            literals = literals_in(wanted.guard)
+            tried = ({"result": text} for text in of_row(machine, wanted.hears, context, literals))
         for _, data in zip(range(MAX_SAMPLES), tried, strict=False):
             change = {"event": name, **_fields(data)}
             if happens(standing.edited(change)):
@@ -243,7 +244,7 @@ def _no_event(transition: Transition) -> str:
 
 
 def _no_change(false: GuardPart) -> str:
-    changing = [text for text in false.values if text.startswith(("context.", "event.data"))]
+    changing = [text for text in false.values if text.startswith(("context.", "event.data", "heard."))]
     if not changing:
         return "it does not depend on the event's data or on the context"
     return f"no other value of {', '.join(changing)} was found with which it would have been taken"

@@ -10,12 +10,14 @@ from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import holds
 from lumen.interpreters.explaining.tracing import Moment, retaken
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.interpreters.expressions import Scope
+from lumen.interpreters.expressions import Scope, parse_expression
+from lumen.interpreters.expressions.tree import Literal, walk
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.nesting import entered_names
 from lumen.interpreters.statechart.type_checks import fits
 from lumen.interpreters.talk.hearing import said_in
 from lumen.interpreters.talk.sample_sentences import of_row
+from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition, Transition
 
 MAX_TRIED = 40
@@ -23,7 +25,7 @@ MAX_TRIED = 40
 MAX_EDITS = 1_000
 """Sets of values with which a guard is evaluated."""
 
-MAX_SAID = 12
+MAX_SAID = 24
 """Sentences that are tried for a row of `hears`."""
 _SAID = ("event", "data", "result")
 
@@ -74,7 +76,7 @@ def _proposals(
     guards = [t.guard.source for t in (wanted, *others) if t.guard]
     values = boundaries(definition, guards, scope)
     if wanted.hears:
-        said = islice(of_row(definition, wanted.hears, scope.context), MAX_SAID)
+        said = islice(of_row(definition, wanted.hears, scope.context, literals_in(wanted.guard)), MAX_SAID)
         values[_SAID] = [
             text for text in dict.fromkeys((*said, *values.get(_SAID, ()))) if text != said_in(scope.event)
         ]
@@ -93,6 +95,12 @@ def _proposals(
                 edits = dict(zip(chosen, given, strict=True))
                 if holds(wanted.guard, edited_scope(scope, edits)):
                     yield {_name(path, owner): value for path, value in edits.items()}
+
+
+def literals_in(guard: Expression | None) -> list[Any]:
+    """The values that a guard compares something with, and the numbers beside them."""
+    found = [n.value for n, _ in walk(parse_expression(guard.source)) if isinstance(n, Literal)] if guard else []
+    return [beside for value in found for beside in ((value, value + 1, value - 1) if type(value) is int else (value,))]
 
 
 def edited_scope(scope: Scope, edits: Mapping[tuple[str, ...], Any]) -> Scope:

@@ -1,7 +1,7 @@
 """Sentences that visitors may say: forms of phrases with something in their slots, and what takes a row of `hears`."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
+from itertools import chain, islice
 from typing import Any, NamedTuple
 
 from lumen.interpreters.talk.finder import Languages
@@ -30,25 +30,29 @@ class SampleSentence(NamedTuple):
     caught: Mapping[str, Any]
 
 
-def of_phrase(phrase: str, lists: _Lists) -> Iterator[SampleSentence]:
-    """A sentence for each form of a phrase, in the order written; none for a form with a list that has no phrases."""
+def of_phrase(phrase: str, lists: _Lists, literals: Sequence[Any] = ()) -> Iterator[SampleSentence]:
+    """A sentence for each form of a phrase, in the order written; none for a form with a list that has no phrases.
+
+    With `literals` there are more, with each of these in the slots that it fits, and with other entries of the lists.
+    """
     for form in written_forms(phrase):
-        caught: dict[str, Any] = {}
-        said: list[str] = []
-        for part in form:
-            if isinstance(part, str):
-                said.append(part)
-            elif (sample := _sample(part, lists)) is not None:
-                said.append(sample[0])
-                caught[part.name] = sample[1]
-            else:
-                break
-        else:
-            yield SampleSentence(" ".join(filter(None, said)).rstrip(" ."), caught)
+        slots = [part for part in form if isinstance(part, Slot)]
+        samples = [list(_samples(slot, lists, literals)) for slot in slots]
+        for number in range(max(map(len, samples), default=1) if all(samples) else 0):
+            chosen = [found[min(number, len(found) - 1)] for found in samples]
+            said = iter(chosen)
+            words = (part if isinstance(part, str) else next(said)[0] for part in form)
+            caught = {slot.name: value for slot, (_, value) in zip(slots, chosen, strict=True)}
+            yield SampleSentence(" ".join(filter(None, words)).rstrip(" ."), caught)
 
 
-def of_row(machine: MachineDefinition, row: Hears, context: Mapping[str, Any]) -> Iterator[str]:
-    """Sentences that a row may be taken by, the plainest first; another row of its state may have more words."""
+def of_row(
+    machine: MachineDefinition, row: Hears, context: Mapping[str, Any], literals: Sequence[Any] = ()
+) -> Iterator[str]:
+    """Sentences that a row may be taken by, the plainest first; another row of its state may have more words.
+
+    `literals` are tried in its slots, too: its guard may compare them with what is caught.
+    """
     if row.way == "else":
         yield from NONSENSE
         return
@@ -58,7 +62,7 @@ def of_row(machine: MachineDefinition, row: Hears, context: Mapping[str, Any]) -
         for table in tables:
             for language, phrases in table.items():
                 for phrase in phrases[:1] if first else phrases[1:]:
-                    for sentence in of_phrase(phrase, machine.lists):
+                    for sentence in of_phrase(phrase, machine.lists, literals):
                         if sentence.text not in seen:
                             seen.add(sentence.text)
                             yield from _in_way(machine, row.way, language, sentence.text)
@@ -94,13 +98,19 @@ def _words(machine: MachineDefinition, name: str, language: str) -> tuple[str, .
     return lists.get(language) or tuple(chain.from_iterable(lists.values()))
 
 
-def _sample(slot: Slot, lists: _Lists) -> tuple[str, Any] | None:
-    """What is said for a slot, and what it catches then."""
+def _samples(slot: Slot, lists: _Lists, literals: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+    """What may be said for a slot, and what it catches then."""
     if slot.type in SAMPLES:
-        return SAMPLES[slot.type]
-    for entry in lists.get(slot.type, ()):
-        for phrases in phrases_in(entry).values():
-            for phrase in phrases:
-                if any(form.plain for form in forms(phrase)):
-                    return next(of_phrase(phrase, lists)).text, entry
-    return None
+        yield SAMPLES[slot.type]
+        kind = int if slot.type == "number" else str
+        yield from ((str(value), value) for value in literals if type(value) is kind and value != "")
+        return
+    entries = lists.get(slot.type, ())
+    found = ((text, entry) for entry in entries for text in _plain(phrases_in(entry), lists))
+    yield from found if literals else islice(found, 1)
+
+
+def _plain(table: Languages, lists: _Lists) -> Iterator[str]:
+    """The first sentence that has no slots, of the phrases of an entry."""
+    phrases = (phrase for several in table.values() for phrase in several if any(form.plain for form in forms(phrase)))
+    yield from (next(of_phrase(phrase, lists)).text for phrase in islice(phrases, 1))
