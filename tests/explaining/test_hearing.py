@@ -204,7 +204,13 @@ def test_why_not_of_a_false_guard_proposes_what_makes_it_true() -> None:
     [
         ("named", "heard.name == 'Ani'", "my name is Budi", {"heard.name": "Budi"}, "my name is Ani"),
         ("numbered", "heard.n >= 12", "exhibit 3", {"heard.n": 3}, "exhibit 12"),
-        ("about", "heard.exhibits.id == 'organ'", "tell me about the rex", {"heard.exhibits.id": "rex"}, "tell me about organ"),
+        (
+            "about",
+            "heard.exhibits.id == 'organ'",
+            "tell me about rex",
+            {"heard.exhibits.id": "rex"},
+            "tell me about organ",
+        ),
     ],
 )
 def test_why_not_proposes_what_a_guard_wants_to_be_caught(

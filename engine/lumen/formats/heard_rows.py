@@ -9,7 +9,7 @@ from lumen.language.machines import Hears, Transition
 LOST_ELSEWHERE = (
     "elsewhere it has to be written: which row has more words, what is negated or asked, and what was caught"
 )
-"""What a finding about a row of `hears` says is lost."""
+"""The hint of a finding about a row of `hears`: what is lost."""
 HEARD_TEXT = "event.data.result"
 
 
@@ -29,7 +29,7 @@ def key_of(row: Hears) -> str:
 
 
 def as_guard(transition: Transition) -> Expression | None:
-    """A row as a guard of its own, with its own guard; None if that can't say it: only what is found can be said."""
+    """Return a row and its own guard as one guard; None for `not`, `asked` and `else`, which expressions lack."""
     row, guard = transition.hears, transition.guard
     if row is None or row.way:
         return None

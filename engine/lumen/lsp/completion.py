@@ -120,7 +120,7 @@ class _Completion:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
 
     def rows(self, path: NodePath) -> Iterator[Item]:
-        """What a key of `hears` may be, or go on with."""
+        """Yield names for a key of `hears`, and the words that it may begin with."""
         before, there = self.here.before, self.value(path[:-1])
         part = _PART.search(before)
         wide = len(part[0]) if part else 0
@@ -162,7 +162,7 @@ class _Completion:
         return _SLOTS.get(name, "an entry of the list, by its `phrases`")
 
     def caught(self, path: NodePath) -> list[str]:
-        """What `heard` has in the row of `hears` around a node; nothing elsewhere."""
+        """Return the members of `heard` in the row of `hears` around a node; none elsewhere."""
         key = row_around(path)
         if not key:
             return []

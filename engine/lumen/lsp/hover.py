@@ -20,7 +20,7 @@ from lumen.rules.codes import CODES
 from lumen.rules.pages import page
 
 MAX_PHRASES = 20
-"""How many phrases of a language are shown."""
+"""Phrases of a language that are shown."""
 
 
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
@@ -119,7 +119,7 @@ def _joint(draft: ProjectDraft, name: str) -> str:
 
 
 def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """What the schema says of the key at a place, or what is said where a phrase is found."""
+    """Return the schema's description of the key at a place, or sentences for the phrase there."""
     document = analysis.documents.get(file)
     if document is None or PurePosixPath(file).suffix != ".yaml":
         return ""

@@ -92,7 +92,7 @@ class NameIndex:
         return next((w for w in self.words.get(scope, ()) if name in _entries(self.data(w), kind)), scope)
 
     def row_kind(self, name: str, scope: str) -> NameKind:
-        """What a name in a key of `hears` is: a table of answers, or phrases, also if nothing has that name."""
+        """Return the kind of a name in a key of `hears`: answers or phrases; phrases if nothing has that name."""
         found = (
             k for k in WORD_KINDS for s in (scope, *self.words.get(scope, ())) if name in _entries(self.data(s), k)
         )

@@ -1,4 +1,4 @@
-"""Sentences that are shown for a row of `hears` and for a phrase: what takes it, and what is caught."""
+"""Sentences shown on hover, for a row of `hears` and for a phrase, with the values that they catch."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -17,7 +17,7 @@ from lumen.lsp.index import stem
 from lumen.lsp.locating import key_at
 
 MAX_SENTENCES, MAX_TRIED = 4, 40
-"""How many sentences are shown for a row or a phrase, and how many are tried."""
+"""Sentences that are shown for a row or a phrase, and those that are tried."""
 _TAKEN = {
     "": "taken if one of its phrases is said",
     "not": "taken if it is refused",
@@ -27,7 +27,7 @@ _TAKEN = {
 
 
 def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """When the row of `hears` is taken whose key stands there, with sentences that take it; empty for no such key."""
+    """Describe the row of `hears` whose key is there, with sentences for it; empty if no such key is there."""
     document, machine = analysis.documents.get(file), analysis.draft.behaviors.get(stem(file))
     at = document and key_at(document, line, column)
     if not at or machine is None or kind_of(file) != "behavior" or at[-2:-1] != ("hears",):
@@ -63,7 +63,7 @@ def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
 
 
 def _taken(machine: MachineDefinition, row: Hears) -> Iterator[SampleSentence]:
-    """Sentences by which the state of a row takes it, and what is caught."""
+    """Yield sentences for which the state of a row takes this row."""
     hearing = hearing_of(machine)
     for text in islice(of_row(machine, row, machine.context), MAX_TRIED):
         order = hearing.order(row.number, text, machine.context)
@@ -77,7 +77,7 @@ def _taken(machine: MachineDefinition, row: Hears) -> Iterator[SampleSentence]:
 
 
 def _listed(sentences: Iterable[SampleSentence]) -> Iterator[str]:
-    """A line for each sentence, with what is caught: `- “exhibit 3”: `heard.n` is 3`."""
+    """Yield a line for each sentence with the caught values: `- “exhibit 3”: `heard.n` is 3`."""
     for text, caught in sentences:
         values = ", ".join(f"`heard.{name}` is {shown(value)}" for name, value in caught.items())
         yield f"- “{text}”" + (f": {values}" if values else "")

@@ -202,7 +202,7 @@ class _ScxmlWriter:
             yield XmlTag("transition", attributes, self.orders.block(transition.actions))
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, str]:
-        """The attributes of a row of `hears`: what takes it is a condition that only Lumen understands.
+        """Return the attributes of a row of `hears`: its condition is one that only Lumen understands.
 
         Raises ScriptError if there is no such condition.
         """

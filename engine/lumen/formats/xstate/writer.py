@@ -196,7 +196,7 @@ class _XStateWriter:
         return row
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, Any]:
-        """The guard of a row of `hears`, whose code is for `setup`, or an expression that stands for it."""
+        """Return the guard of a row of `hears`: one that `setup` has to implement, or an expression."""
         if key := key_of(row):
             self.report.changed(f"`{row.title}` becomes a guard `{HEARS_GUARD}`", transition.where, LOST_ELSEWHERE)
             source = {"source": as_written(transition.guard.source)} if transition.guard else {}

@@ -115,7 +115,7 @@ def _comparable(value: Any) -> Any:
 
 
 def _moved(was: str, now: str) -> str:
-    """What is said of a trigger that is another one now: `waits 15 s, not 12 s`; empty if the two are not alike."""
+    """Return how a trigger changed: `waits 15 s, not 12 s`; empty if the two are not of one kind."""
     for begin, verb, quote in (("after ", "waits", ""), (_ROW, "hears", "`")):
         if was.startswith(begin) and now.startswith(begin):
             return f"{verb} {quote}{now.removeprefix(begin)}, not {quote}{was.removeprefix(begin)}"

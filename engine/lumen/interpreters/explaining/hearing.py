@@ -1,4 +1,4 @@
-"""What becomes of each row of `hears` of a state when a sentence is heard, and why the others are not taken."""
+"""The rows of `hears` of a state and a sentence: the row that is taken, and why the others are not."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
@@ -10,7 +10,7 @@ from lumen.interpreters.talk.hearing import Dropped, hearing_of, said_in
 from lumen.language.machines import Hears, MachineDefinition, Transition
 
 RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
-"""What becomes of a row; a row is `taken` unless another state takes the sentence."""
+"""The fate of a row; one that its state takes is `taken`, even if another state goes first."""
 MAX_QUOTED = 80
 """Characters of a sentence that are shown."""
 
@@ -37,7 +37,7 @@ class HeardRow(NamedTuple):
 
     @property
     def why(self) -> str:
-        """What was found, and why it does not count: `“dance” is negated in “Please don't dance”`."""
+        """The words that were found, and why they do not count: `“dance” is negated in “Please don't dance”`."""
         words, clause = _quoted(self.words), _quoted(self.clause)
         match self.fate:
             case "taken":
@@ -64,12 +64,12 @@ class HeardRow(NamedTuple):
 
 
 def heard_rows(machine: MachineDefinition, state: str, scope: Scope) -> tuple[HeardRow, ...]:
-    """What becomes of each row of the state at that path, in the order written; `scope` is what guards see there."""
+    """Return the fate of each row of the state at that path, in the order written; guards there see `scope`."""
     return tuple(_rows(machine, state, scope))
 
 
 def heard_row(machine: MachineDefinition, transition: Transition, scope: Scope) -> HeardRow:
-    """What becomes of a row of `hears`, which the transition is."""
+    """Return the fate of one row: the transition is a row of `hears`."""
     return next(row for row in heard_rows(machine, transition.source, scope) if row.row is transition.hears)
 
 
@@ -103,7 +103,7 @@ def _rows(machine: MachineDefinition, state: str, scope: Scope) -> Iterator[Hear
 
 
 def _found(machine: MachineDefinition, row: HeardRow, find: Find, text: str) -> HeardRow:
-    """The row with what was found for it; of a row that counts the whole sentence is shown, else the clause."""
+    """Return the row with the find. A row that counts shows the whole sentence, another one the clause."""
     reading = hearing_of(machine).read(text)
     inside = [i for i, clause in enumerate(reading.clauses) if clause == reading.clauses[find.start]]
     clause = text if row.fate in ("taken", "guard", "better row") else reading.said(inside[0], inside[-1] + 1)

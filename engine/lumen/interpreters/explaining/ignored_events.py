@@ -26,7 +26,7 @@ _OWN = (*_TIMED, "done.do.", "done.state.", "done.invoke.", "error.do.", "error.
 class FalseGuard(NamedTuple):
     """A guard of a transition of `state` that was false, and the values that it looked at, by how they are written.
 
-    For a row of `hears` whose phrase was found and does not count, `guard` is the row and `why` says why.
+    If a phrase of a row of `hears` was found and does not count, `guard` is the row and `why` the reason.
     """
 
     state: str
@@ -112,7 +112,7 @@ def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
 
 
 def _unheard(prefix: str, machine: MachineDefinition, step: Step, event: Event) -> Iterator[str]:
-    """Active states with `hears` for which nothing was found in what was said."""
+    """Yield active states with `hears` none of whose phrases was said."""
     planner = compiled(machine).planner
     standing = planner.configuration(step.snapshot.configuration)
     groups = standing.candidates(event.name)

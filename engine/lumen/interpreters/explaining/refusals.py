@@ -187,7 +187,7 @@ def _coming(
 
 
 def _dropped(row: HeardRow, false: GuardPart | None, scope: Scope) -> GuardPart | None:
-    """What was not true of a row of `hears`: its guard, or what is asked of its phrases; None if another went first."""
+    """Return the false part of a row of `hears`: its guard, or the search for its phrases; None if it has none."""
     if row.fate == "guard":
         return false
     if row.fate in ("taken", "better row"):

@@ -83,7 +83,7 @@ def written_forms(phrase: str) -> Iterator[tuple[str | Slot, ...]]:
 
 
 def _expanded(phrase: str) -> tuple[list[str], list[Slot]]:
-    """The texts of the forms of a phrase, in which `\\0number\\0` stands for a slot."""
+    """Return the texts of the forms of a phrase, each slot as `\\0number\\0`, and the slots."""
     if not _SIGNS.search(phrase):
         return [phrase], []
     reader = _Reader(phrase)

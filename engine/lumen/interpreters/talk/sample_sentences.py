@@ -1,4 +1,4 @@
-"""Sentences that visitors may say: forms of phrases with something in their slots, and what takes a row of `hears`."""
+"""Sentences that visitors may say: phrases with their slots filled, and sentences for a row of `hears`."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, islice
@@ -18,7 +18,7 @@ SAMPLES: Mapping[str, tuple[str, Any]] = {
     "number": ("3", 3),
     "text": ("something", "something"),
 }
-"""For the types of slots that are not lists: what is said, and what is caught."""
+"""For the types of slots that are not lists: a text, and the value that it catches."""
 
 _Lists = Mapping[str, Sequence[Mapping[str, Any]]]
 
@@ -99,7 +99,7 @@ def _words(machine: MachineDefinition, name: str, language: str) -> tuple[str, .
 
 
 def _samples(slot: Slot, lists: _Lists, literals: Sequence[Any]) -> Iterator[tuple[str, Any]]:
-    """What may be said for a slot, and what it catches then."""
+    """Yield texts for a slot, each with the value that it catches."""
     if slot.type in SAMPLES:
         yield SAMPLES[slot.type]
         kind = int if slot.type == "number" else str
