@@ -102,10 +102,14 @@ class Liveness:
     def _left_and_entered_again(self, leaf: str) -> Iterator[str]:
         """The leaves to which a history may lead back that remembers this one, or what it lies in."""
         around = list(self._around(leaf))
-        homes = {state.parent for state in self._machine.states.values() if state.kind is StateKind.HISTORY}
+        histories = [state for state in self._machine.states.values() if state.kind is StateKind.HISTORY]
+        homes = {state.parent for state in histories}
+        shallow = {state.parent for state in histories if not state.deep}
         for inner, outer in pairwise(around):
-            if outer in homes:
+            if outer in shallow:
                 yield from self._below(inner)
+            elif outer in homes:
+                yield leaf
 
     def _below(self, path: str) -> Iterator[str]:
         state = self._machine.states[path]
