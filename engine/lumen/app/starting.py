@@ -47,6 +47,7 @@ MEANINGS = {
     MAIN_FILE: "who performs, which languages, which messages come and go",
     "behaviors": "what it does: states; below `stories` visitors that follow a script, and what must happen",
     "behaviors/words": "what it says and listens for, by language",
+    "behaviors/sayings": "what visitors say, and what should come of it: `lumen test` prints how much does",
     "knowledge": "what visitors ask, and what is answered: a passage a file",
     "knowledge/questions": "how visitors ask, to try the passages with: `lumen test` says how many are answered",
     "fuzzy": "controllers, as that which lets the head follow a face",

@@ -19,6 +19,7 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "lumen": (MAIN_FILE,),
     "behavior": ("behaviors/*.yaml",),
     "words": ("behaviors/words/*.yaml",),
+    "sayings": ("behaviors/sayings/*.yaml",),
     "story": ("behaviors/stories/*.yaml",),
     "knowledge": ("knowledge/*.yaml",),
     "questions": ("knowledge/questions/*.yaml",),

@@ -21,6 +21,7 @@ from lumen.language.retention import JournalRetention, RecordingSettings
 from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.routing_keys import default_key
+from lumen.language.sayings import SayingSet
 from lumen.language.shared import SharedKey
 from lumen.language.show import Show
 from lumen.language.stories import Story
@@ -50,8 +51,8 @@ class Project:
     desks; `journal` is how long it is kept what happened, `record` what is recorded of the bus, `console` where its
     pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their
     aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot,
-    `knowledge` the passages by name, `questions` what they are tried with, `shared` what the robots of the house have
-    in common.
+    `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is tried with,
+    `shared` what the robots of the house have in common.
     """
 
     root: str
@@ -69,6 +70,7 @@ class Project:
     gestures: Mapping[str, GestureLibrary] = field(default_factory=dict)
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)
+    sayings: Mapping[str, SayingSet] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     languages: tuple[str, ...] = ("en",)
     timezone: str = ""

@@ -16,6 +16,7 @@ from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
+from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.language.words import Words
 from lumen.loading.document_report import DocumentReport
@@ -50,6 +51,7 @@ class ProjectDraft:
     life: dict[str, LifeStyle] = field(default_factory=dict)
     gestures: dict[str, GestureLibrary] = field(default_factory=dict)
     stories: dict[str, Story] = field(default_factory=dict)
+    sayings: dict[str, SayingSet] = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)
     reports: dict[str, DocumentReport] = field(default_factory=dict)

@@ -33,6 +33,7 @@ LEADS_OUT = b"it is a link that leads out of the project"
 MISTAKEN_FOLDERS: Mapping[str, str] = {
     "stories": "behaviors/stories",
     "words": "behaviors/words",
+    "sayings": "behaviors/sayings",
     "behaviours": "behaviors",
     "behavior": "behaviors",
     "motion": "motions",
@@ -46,6 +47,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors": (".yaml", ".yml"),
     "behaviors/stories": (".yaml", ".yml"),
     "behaviors/words": (".yaml", ".yml"),
+    "behaviors/sayings": (".yaml", ".yml"),
     "knowledge": (".yaml", ".yml", ".md"),
     "knowledge/questions": (".yaml", ".yml"),
     "fuzzy": (".yaml", ".yml"),

@@ -34,7 +34,7 @@ class _Kind(NamedTuple):
         """Whether data, which belongs somewhere else, is of this kind."""
         if self.only:
             return self.owns(data) and bool(data)
-        return self.marks <= data.keys() or self.alone in data
+        return (bool(self.marks) and self.marks <= data.keys()) or self.alone in data
 
 
 _KINDS: Mapping[str, _Kind] = {
@@ -43,6 +43,7 @@ _KINDS: Mapping[str, _Kind] = {
     "words": _Kind(
         "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers", "lists"))
     ),
+    "sayings": _Kind("a file of sayings", "behaviors/sayings/", frozenset()),
     "knowledge": _Kind("a passage of knowledge", "knowledge/", frozenset(("questions", "answer"))),
     "questions": _Kind(
         "questions to try knowledge with", "knowledge/questions/", frozenset(), only=frozenset(("asked", "unanswered"))

@@ -13,6 +13,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
+from lumen.language.sayings import SAYINGS_FOLDER
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
@@ -41,6 +42,7 @@ from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.passages import belongs_to
+from lumen.loading.sayings import build_sayings
 from lumen.loading.settings import Settings, build_settings, other_vocabulary
 from lumen.loading.stories import build_story
 from lumen.loading.used_routes import used_routes
@@ -59,6 +61,7 @@ FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
     WORDS_FOLDER: "words",
+    SAYINGS_FOLDER: "sayings",
     KNOWLEDGE_FOLDER: "knowledge",
     QUESTIONS_FOLDER: "questions",
     "fuzzy": "controller",
@@ -101,6 +104,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         robots = tuple(found.settings.robots)
         found.behaviors = {name: with_robots(machine, robots) for name, machine in found.behaviors.items()}
     found.stories = _built(_each(found, "behaviors/stories", build_story))
+    found.sayings = _built(_each(found, SAYINGS_FOLDER, build_sayings))
     found.knowledge = _built(_each(found, KNOWLEDGE_FOLDER, build_passage))
     found.questions = _built(_each(found, QUESTIONS_FOLDER, build_questions))
     if body := found.body:
@@ -162,6 +166,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         gestures=found.gestures,
         routes=settings.routes,
         stories=found.stories,
+        sayings=found.sayings,
         messages=found.messages,
         languages=settings.languages,
         timezone=settings.timezone,

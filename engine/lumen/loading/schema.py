@@ -20,6 +20,7 @@ FILE_KINDS = (
     "lumen",
     "behavior",
     "words",
+    "sayings",
     "story",
     "knowledge",
     "questions",

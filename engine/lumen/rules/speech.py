@@ -11,6 +11,7 @@ from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.machines import Answer, MachineDefinition
+from lumen.language.sayings import SAYINGS_FOLDER
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.settings import said_at
@@ -81,6 +82,10 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report("behaviors/stories", name)
         if story.language:
             speech.known(report, ("language",), story.language)
+    for name, sayings in draft.sayings.items():
+        report = draft.report(SAYINGS_FOLDER, name)
+        for where in dict.fromkeys(saying.where[:4] for saying in sayings.sayings):
+            speech.known(report, where, str(where[3]), key=True)
 
 
 def _silent(

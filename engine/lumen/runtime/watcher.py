@@ -25,7 +25,7 @@ EARLY = 5.0
 SWITCH_INTERVAL = 0.001
 """How long one thread may keep the others of an exhibition from their work [s]: a stop passes four on its way."""
 
-NESTED_FOLDERS = ("behaviors/stories", "behaviors/words", "schemas/messages")
+NESTED_FOLDERS = ("behaviors/stories", "behaviors/words", "behaviors/sayings", "schemas/messages")
 
 _log = logging.getLogger(__name__)
 WatchedFiles = Mapping[str, bytes]

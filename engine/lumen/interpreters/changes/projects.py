@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 _PARTS = (
     "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
-    "life", "gestures", "knowledge", "questions", "shared",
+    "life", "gestures", "knowledge", "questions", "sayings", "shared",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents")
 
@@ -78,6 +78,8 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from _named("questions", *asked, old.questions, new.questions)
     yield from _named("message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages)
     yield from _named("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
+    tried = "file of sayings", Risk.COSMETIC, "behaviors/sayings/{}.yaml"
+    yield from _named("sayings", *tried, old.sayings, new.sayings)
 
 
 def _settings(old: Project, new: Project) -> Iterator[Change]:

@@ -1,0 +1,201 @@
+"""A sentence in a state, row by row: what was found for each row of `hears`, and which one is taken."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, compile_guard
+from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.plans import in_order
+from lumen.interpreters.statechart.state_changes import names_of
+from lumen.interpreters.talk.hearing import HEARD, hearing_of
+from lumen.language.machines import Hears, MachineDefinition, State, Transition
+
+
+class FoundPhrase(NamedTuple):
+    """A phrase in a sentence: its name, its words as they were said, and how many of them count.
+
+    `alone` is whether it is a whole clause, None if it need not be. `counts` is whether it takes its row, its guard
+    aside.
+    """
+
+    name: str
+    said: str
+    words: int
+    alone: bool | None
+    negated: bool
+    asked: bool
+    counts: bool
+
+
+class ExplainedRow(NamedTuple):
+    """A row of `hears` in `state`, or another transition that waits for what is heard.
+
+    `found` is the phrase that counts most, or one that does not count. `guard` is None if there is no guard, or if it
+    is not asked; `error` is why it has no value. `caught` is what `heard` is in the row that is taken.
+    """
+
+    transition: Transition
+    state: str
+    found: FoundPhrase | None = None
+    guard: bool | None = None
+    error: str = ""
+    taken: bool = False
+    caught: Mapping[str, Any] = {}
+
+    @property
+    def key(self) -> str:
+        hears = self.transition.hears
+        return hears.key if hears else f"on {self.transition.event}"
+
+    @property
+    def slots(self) -> dict[str, Any]:
+        """What was caught beside the text and the phrase."""
+        return {k: v for k, v in self.caught.items() if k not in ("text", "phrase") and (k, v) != ("answer", None)}
+
+    def because(self, taken: "ExplainedRow | None") -> str:
+        """Return why this row is taken or not, in a few words; `taken` is the one that is."""
+        hears, found = self.transition.hears, self.found
+        if self.taken:
+            return "taken"
+        if hears and hears.way != "else":
+            if found is None:
+                return "not found"
+            if not found.counts:
+                return _why_not(found, hears)
+        if self.error:
+            return f"its guard fails: {self.error}"
+        if self.guard is False:
+            return "its guard is false"
+        return f"`{taken.key}` is taken before it" if taken else ""
+
+
+class ExplainedSentence(NamedTuple):
+    """All rows that a state could take a sentence by, in the order in which the file has them, inner states first."""
+
+    rows: tuple[ExplainedRow, ...]
+
+    @property
+    def taken(self) -> ExplainedRow | None:
+        return next((row for row in self.rows if row.taken), None)
+
+
+def explained(
+    machine: MachineDefinition, path: str, text: str, context: Mapping[str, Any], language: str = ""
+) -> ExplainedSentence:
+    """Return what a sentence does in the state at that path: its own rows, and those of the states around it.
+
+    Nothing is known of other regions, and of what else is active: `In()` is true for these states only.
+    """
+    return _Sentence(machine, path, text, context, language).explained()
+
+
+def first_context(machine: MachineDefinition) -> Mapping[str, Any]:
+    """Return the first values of the context; within a `for` the first entry of its list."""
+    context = dict(machine.context)
+    for loop in (state.for_each for state in machine.states.values() if state.for_each):
+        try:
+            entries = compile_expression(loop.each.source)(Scope(context, lists=machine.lists))
+        except ExpressionError:
+            continue
+        if isinstance(entries, list | tuple) and entries:
+            context[loop.key] = {"entry": entries[0], "left": entries[1:]}
+    return context
+
+
+def hearing_states(machine: MachineDefinition) -> list[State]:
+    """Return the states that have rows of `hears`, in document order."""
+    return [state for state in machine.states.values() if any(t.hears for t in state.transitions)]
+
+
+def rows_around(machine: MachineDefinition, path: str) -> list[Hears]:
+    """Return the rows of `hears` of a state and of those around it, inner states first."""
+    found: list[Hears] = []
+    at: str | None = path
+    while at is not None:
+        state = machine.states[at]
+        found += [t.hears for t in state.transitions if t.hears]
+        at = state.parent
+    return found
+
+
+class _Sentence:
+    def __init__(
+        self, machine: MachineDefinition, path: str, text: str, context: Mapping[str, Any], language: str
+    ) -> None:
+        self.machine, self.context, self.language = machine, context, language
+        self.event = {"name": HEARD, "data": {"result": text}}
+        self.hearing = hearing_of(machine)
+        self.reading = self.hearing.read(text)
+        node = compiled(machine).chart.nodes[path]
+        self.line = (node, *node.ancestors)
+        self.active = names_of(frozenset(self.line))
+
+    def explained(self) -> ExplainedSentence:
+        waiting = [t for node in self.line for t in in_order(node.transitions) if t.matches(HEARD)]
+        taken = self.first(waiting)
+        return ExplainedSentence(tuple(self.row(one, one is taken) for one in waiting))
+
+    def first(self, waiting: list[CompiledTransition]) -> CompiledTransition | None:
+        """The transition that is taken: `else`, and rows without words of their own, only if no other is."""
+        for one in waiting:
+            if not one.is_otherwise and self.holds(one.guard, one.source)[0]:
+                return one
+        return next((one for one in waiting if one.late and self.holds(one.late, one.source)[0]), None)
+
+    def row(self, one: CompiledTransition, taken: bool) -> ExplainedRow:
+        hears, guard = one.definition.hears, one.definition.guard
+        found = self.found(hears) if hears and hears.way != "else" else None
+        asks = guard is not None and (found.counts if found else hears is None or hears.way == "else")
+        holds, error = self.holds(compile_guard(guard.source), one.source) if guard and asks else (None, "")
+        caught: Mapping[str, Any] = {}
+        if taken and hears:
+            caught = self.hearing.caught(hears.number, self.event, self.context, self.language)
+        return ExplainedRow(one.definition, one.source.name, found, holds, error, taken, caught)
+
+    def found(self, row: Hears) -> FoundPhrase | None:
+        """What was found for a row: what counts most, else what has most words."""
+        hearing, reading = self.hearing, self.reading
+        questions = {name for other in hearing.blocks[row.number] if other.way == "asked" for name in other.names}
+        best = hearing.best(reading, row, questions, self.context)
+        finds = [best] if best else [find for name in row.names for find in reading.finds.get(name, ())]
+        if not finds:
+            return None
+        find = max(finds, key=lambda one: (one.strength, one.end))
+        alone = reading.is_whole(find) if find.entry.alone else None
+        negated, asked = reading.is_negated(find), reading.is_asked(find)
+        name = _written(row)[find.entry.name]
+        return FoundPhrase(
+            name, reading.said(find.start, find.end), find.strength, alone, negated, asked, best is not None
+        )
+
+    def holds(self, guard: CompiledGuard | None, node: StateNode) -> tuple[bool, str]:
+        """Whether a guard is true in its state, and why it has no value, if it has none."""
+        if guard is None:
+            return True, ""
+        machine = self.machine
+        scope = Scope(
+            self.context, self.event, node.view(self.language, ""), self.active.__contains__, language=self.language,
+            phrases=machine.phrases, answers=machine.answers, lists=machine.lists, machine=machine,
+        )  # fmt: skip
+        try:
+            return guard(scope), ""
+        except ExpressionError as error:
+            return False, str(error)
+
+
+def _written(row: Hears) -> dict[str, str]:
+    """The names of a row, each as its key has it."""
+    words = row.key.split()
+    return dict(zip(row.names, "".join(words[bool(row.way) :]).split("|"), strict=True))
+
+
+def _why_not(found: FoundPhrase, hears: Hears) -> str:
+    """Why a phrase that was found does not take its row."""
+    if found.negated:
+        return "negated"
+    if hears.way == "not":
+        return "not negated"
+    if found.alone is False:
+        return "not a whole clause"
+    return "not in a question" if hears.way == "asked" else "in a question"

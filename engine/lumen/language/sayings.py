@@ -1,0 +1,33 @@
+"""Sayings as tests: what visitors say in a state, and the row of `hears` that should take it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.language.diagnostics import NodePath
+
+SAYINGS_FOLDER = "behaviors/sayings"
+
+
+@dataclass(frozen=True)
+class Saying:
+    """What a visitor says in a `state` (its id or path), and the key of the row of `hears` that should take it.
+
+    `slots` are what that row should catch; a slot that is not among them may catch anything.
+    """
+
+    behavior: str
+    state: str
+    row: str
+    language: str
+    text: str
+    slots: Mapping[str, Any] = field(default_factory=dict)
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True)
+class SayingSet:
+    """The sayings of `behaviors/sayings/NAME.yaml`, in the order of the file."""
+
+    name: str
+    sayings: tuple[Saying, ...]

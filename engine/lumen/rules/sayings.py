@@ -1,0 +1,72 @@
+"""Sayings as tests: the behaviour, state, row and slots that they name."""
+
+from lumen.interpreters.explaining.sayings import path_of
+from lumen.interpreters.explaining.sentences import hearing_states, rows_around
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.interpreters.talk.patterns import slots_of
+from lumen.language.diagnostics import ERROR, Code, did_you_mean
+from lumen.language.machines import Hears, MachineDefinition
+from lumen.language.sayings import SAYINGS_FOLDER, Saying
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.lookups import References
+
+UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying is for a row that `hears` does not have there")
+UNKNOWN_SLOT = Code("unknown-slot", "references", ERROR, "a saying names a slot that no phrase of its row has")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what sayings name and is not there."""
+    references = References(draft)
+    for name, each in draft.sayings.items():
+        report = draft.report(SAYINGS_FOLDER, name)
+        for behavior in dict.fromkeys(saying.behavior for saying in each.sayings):
+            references.look_up(report, (behavior,), "behavior", behavior, key=True)
+        refused: set[tuple[str, ...]] = set()
+        for saying in each.sayings:
+            machine, row = draft.behaviors.get(saying.behavior), (saying.behavior, saying.state, saying.row)
+            if machine and draft.report("behaviors", saying.behavior).whole and refused.isdisjoint((row, row[:2])):
+                refused |= _refused(report, machine, saying)
+
+
+def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying) -> set[tuple[str, ...]]:
+    """Report what is wrong with a saying; the paths that are reported, so that each is only once."""
+    behavior, state, key = where = saying.behavior, saying.state, saying.row
+    try:
+        rows = rows_around(machine, path_of(machine, state))
+    except KeyError:
+        names = [state.name for state in hearing_states(machine)]
+        message = f"`{behavior}` has no state that is called `{state}`"
+        cause = f"behaviors/{behavior}.yaml state {state}"
+        report(UNKNOWN_STATE, where[:2], message, did_you_mean(state, names, "these hear"), key=True, cause=cause)
+        return {where[:2]}
+    if not rows:
+        names = [state.name for state in hearing_states(machine)]
+        hint = did_you_mean(state, names, "these hear") if names else "give it `hears`"
+        message = f"neither `{state}` nor a state around it has `hears`"
+        report(UNKNOWN_ROW, where[:2], message, hint, key=True)
+        return {where[:2]}
+    found = [row for row in rows if row.key == key]
+    if not found:
+        hint = did_you_mean(key, [row.key for row in rows], "there are")
+        report(UNKNOWN_ROW, where, f"`hears` of `{state}` has no row `{key}`", hint, key=True)
+        return {where}
+    slots = {slot for row in found for slot in _slots(machine, row)}
+    for slot in saying.slots if all(name in _named(machine) for row in found for name in row.names) else ():
+        if slot not in slots:
+            hint = did_you_mean(slot, slots, "they have") if slots else "write the text alone"
+            report(UNKNOWN_SLOT, (*saying.where, slot), f"no phrase of `{key}` has a slot `{slot}`", hint, key=True)
+    return set()
+
+
+def _named(machine: MachineDefinition) -> set[str]:
+    """The names of phrases that are known: those of a list's entry are not."""
+    return {*machine.phrases, *machine.answers}
+
+
+def _slots(machine: MachineDefinition, row: Hears) -> set[str]:
+    """What a row may catch: its slots, and the answer of a table."""
+    answers = [answer.phrases for name in row.names for answer in machine.answers.get(name, ())]
+    tables = [*answers, *(machine.phrases[name] for name in row.names if name in machine.phrases)]
+    texts = [text for table in tables for several in table.values() for text in several]
+    return {slot.name for text in texts for slot in slots_of(text)} | ({"answer"} if answers else set())
