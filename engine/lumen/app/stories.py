@@ -1,21 +1,25 @@
-"""Which stories are meant: by name, by a pattern of names, or by file."""
+"""Which stories and sayings are meant: by name, by a pattern of names, or by file."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import TypeVar
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
+from lumen.language.sayings import SAYINGS_FOLDER, SayingSet
 from lumen.language.stories import Story
 from lumen.loading.packaged import MAIN_FILE
 
 FOLDER = Path("behaviors", "stories")
 
+T = TypeVar("T")
+
 
 def home_of(words: Iterable[str]) -> str | None:
-    """The project in whose `behaviors/stories/` the first of these files lies; None where none is such a file."""
+    """The project in whose `behaviors/stories/` or `sayings/` the first of these files lies; None if there is none."""
     for word in words:
         file = Path(os.path.abspath(word))
         if _is_file(word) and len(file.parents) > 2 and (file.parents[2] / MAIN_FILE).is_file():
@@ -28,28 +32,48 @@ def stories_of(project: Project, word: str) -> Iterator[Story]:
 
     Raises UsageError where it means none: a file elsewhere is no story of the project, whatever its name.
     """
-    if _is_file(word):
-        yield _by_file(project, word)
-        return
-    found = [name for name in sorted(project.stories) if name == word or fnmatchcase(name, word)]
+    found = _named(project, word, FOLDER, project.stories)
     if not found:
-        hint = did_you_mean(word, project.stories, "behaviors/stories/ has")
-        raise UsageError(f"no project or story `{word}`: {hint}")
-    yield from (project.stories[name] for name in found)
+        raise _nothing(project, word, project.stories, "behaviors/stories/ has")
+    yield from found
+
+
+def tests_of(project: Project, word: str) -> tuple[list[Story], list[SayingSet]]:
+    """Return the stories and the files of sayings that a word means, as `stories_of` reads it.
+
+    Raises UsageError if it means none.
+    """
+    found = (
+        _named(project, word, FOLDER, project.stories),
+        _named(project, word, Path(SAYINGS_FOLDER), project.sayings),
+    )
+    if not any(found):
+        known = {**project.stories, **project.sayings}
+        raise _nothing(project, word, known, "there are" if project.sayings else "behaviors/stories/ has")
+    return found
 
 
 def _is_file(word: str) -> bool:
     return word.endswith((".yaml", ".yml")) or "/" in word or os.sep in word
 
 
-def _by_file(project: Project, word: str) -> Story:
-    """The story in a file; its path is from here, from the project, or from its folder of stories."""
-    folder = Path(os.path.abspath(project.root)) / FOLDER
-    for base in (Path(), Path(project.root), folder):
+def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) -> list[T]:
+    """What of a folder a word means; the path of a file is from here, from the project, or from that folder."""
+    if not _is_file(word):
+        return [known[name] for name in sorted(known) if name == word or fnmatchcase(name, word)]
+    whole = Path(os.path.abspath(project.root)) / folder
+    for base in (Path(), Path(project.root), whole):
         file = Path(os.path.abspath(base / word))
-        if file.parent == folder and file.suffix == ".yaml" and file.stem in project.stories:
-            return project.stories[file.stem]
+        if file.parent == whole and file.suffix == ".yaml" and file.stem in known:
+            return [known[file.stem]]
+    return []
+
+
+def _nothing(project: Project, word: str, known: Iterable[str], what: str) -> UsageError:
+    """Why a word means nothing of a project."""
     if Path(word).is_file():
-        raise UsageError(f"{word} is not in {folder}: put it there, so that it is checked with the project")
-    hint = did_you_mean(Path(word).stem, project.stories, "behaviors/stories/ has")
-    raise UsageError(f"no story `{word}`: {hint}")
+        folder = Path(os.path.abspath(project.root)) / FOLDER
+        return UsageError(f"{word} is not in {folder}: put it there, so that it is checked with the project")
+    name = Path(word).stem if _is_file(word) else word
+    hint = did_you_mean(name, known, what)
+    return UsageError(f"no {'story' if _is_file(word) else 'project or story'} `{word}`: {hint}")

@@ -45,7 +45,7 @@ def _states(root: Path) -> Iterable[str]:
 
 PLACEHOLDERS: Mapping[str, Callable[[Path], Iterable[str]]] = {
     "STORY": _files("behaviors/stories"),
-    "[PROJECT] STORY": _files("behaviors/stories"),
+    "[PROJECT] STORY": lambda root: {*_files("behaviors/stories")(root), *_files("behaviors/sayings")(root)},
     "MOTION": _files("motions"),
     "BEHAVIOR": _files("behaviors"),
     "CODE": _codes,

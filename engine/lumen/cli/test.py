@@ -1,4 +1,4 @@
-"""`lumen test`: the stories of a project, played on the recording robot."""
+"""`lumen test`: the stories of a project, played on the recording robot, and its sayings."""
 
 import argparse
 import sys
@@ -10,17 +10,19 @@ import lumen
 from lumen.app.exploring import Explored, explored
 from lumen.app.kept_explorations import KeptExplorations
 from lumen.app.rehearsal import Rehearsal, rehearse
-from lumen.app.stories import home_of, stories_of
+from lumen.app.stories import home_of, tests_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
-from lumen.cli.verdict import Verdict
+from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.cli.verdicts import FORMATS, text
 from lumen.errors import UsageError
+from lumen.interpreters.explaining.sayings import tried as tried_sayings
 from lumen.interpreters.exploration import MAX_CONFIGURATIONS
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
+from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.loading.own_project import own_project
 from lumen.loading.packaged import MAIN_FILE
@@ -33,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         nargs="*",
         metavar="[PROJECT] STORY",
-        help="its folder, then stories: names, files or 'safety_*'; default: all",
+        help="its folder, then stories or files of sayings: names, files or 'safety_*'; default: all",
     )
     add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
     configure_model(parser)
@@ -55,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where all is well, 1 where a story failed or something was found."""
+    """0 if all is well, 1 if a story or a saying failed or something was found."""
     folder, names = _words(options.words)
     _check(options)
     root = own_project(folder)
@@ -65,8 +67,9 @@ def run(options: argparse.Namespace) -> int:
     live = options.format == "text" and options.output is None
     rehearsals: list[Rehearsal] = []
     coverage = Coverage(project) if options.coverage or options.fail_under is not None else None
+    sayings: list[SayingSet] = []
     if names or coverage or not options.explore:
-        stories = _stories(project, names)
+        stories, sayings = _chosen(project, names)
         with nullcontext(_untold) if live else progress() as tell:  # people see each story as it ends
             for story in stories:
                 tell(len(rehearsals), len(stories), f"stories, {story.name}")
@@ -78,8 +81,12 @@ def run(options: argparse.Namespace) -> int:
                     break
     walked = _explore(project, options) if options.explore else None
     trials = _tried(project) if project.questions and not names and not options.explore else ()
+    halted = options.exitfirst and any(rehearsal.failed for rehearsal in rehearsals)
+    judged = () if halted else _judged(project, sayings)
     took = time.perf_counter() - began
-    verdict = Verdict(project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took, trials)
+    verdict = Verdict(
+        project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took, trials, judged
+    )
     if live:
         _print("\n".join(text.conclusion(verdict, coloured=coloured())))
     else:
@@ -103,11 +110,21 @@ def _check(options: argparse.Namespace) -> None:
         raise UsageError("--behavior and --home are for --explore")
 
 
-def _stories(project: Project, names: list[str]) -> list[Story]:
-    if not project.stories:
+def _chosen(project: Project, names: list[str]) -> tuple[list[Story], list[SayingSet]]:
+    """The stories and the files of sayings of these names, each once."""
+    if not (project.stories or project.sayings):
         raise UsageError("there are no stories: write one into behaviors/stories/, as docs/stories.md shows")
-    chosen = [story for name in names or ["*"] for story in stories_of(project, name)]
-    return list({story.name: story for story in chosen}.values())
+    stories, sayings = zip(*(tests_of(project, name) for name in names or ["*"]), strict=True)
+    return (
+        list({story.name: story for each in stories for story in each}.values()),
+        list({each.name: each for several in sayings for each in several}.values()),
+    )
+
+
+def _judged(project: Project, sets: list[SayingSet]) -> tuple[JudgedSaying, ...]:
+    return tuple(
+        JudgedSaying(one, project.place(one.file, one.saying.where)) for one in tried_sayings(sets, project.behaviors)
+    )
 
 
 def _tried(project: Project) -> tuple[QuestionTrial, ...]:

@@ -1,11 +1,21 @@
-"""What `lumen test` found: how stories and questions went, what they left out, and what exploring came upon."""
+"""What `lumen test` found: how stories, sayings and questions went, what they left out, and what exploring found."""
 
 from dataclasses import dataclass
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
+from lumen.interpreters.explaining.sayings import TriedSaying
 from lumen.interpreters.retrieval.ranking import QuestionTrial
+from lumen.language.diagnostics import Place
 from lumen.runtime.coverage import Coverage
+
+
+@dataclass(frozen=True)
+class JudgedSaying:
+    """A saying that was tried, and its place in its file."""
+
+    tried: TriedSaying
+    place: Place
 
 
 @dataclass(frozen=True)
@@ -22,11 +32,17 @@ class Verdict:
     explored: Explored | None = None
     took: float = 0.0
     trials: tuple[QuestionTrial, ...] = ()
+    sayings: tuple[JudgedSaying, ...] = ()
 
     @property
     def failed(self) -> int:
         """How many stories failed."""
         return sum(r.failed is not None for r in self.rehearsals)
+
+    @property
+    def misheard(self) -> list[JudgedSaying]:
+        """The sayings that another row takes, or that something else is caught of."""
+        return [one for one in self.sayings if one.tried.wrong]
 
     @property
     def uncovered(self) -> bool:
@@ -36,4 +52,4 @@ class Verdict:
     @property
     def well(self) -> bool:
         """Whether nothing is wrong."""
-        return not (self.failed or self.uncovered or (self.explored and self.explored.findings))
+        return not (self.failed or self.misheard or self.uncovered or (self.explored and self.explored.findings))

@@ -5,19 +5,21 @@ from typing import Any
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
-from lumen.cli.verdict import Verdict
+from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
 from lumen.runtime.coverage import Coverage
 
 
 def render(verdict: Verdict) -> str:
-    """`{"stories": […], "failed": N, "took": s}`, and `questions`, `coverage` and `explore` where there are any."""
+    """`{"stories": […], "failed": N, "took": s}`, and `sayings`, `questions`, `coverage` and `explore` if any."""
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,
         "took": round(verdict.took, 3),
     }
+    if verdict.sayings:
+        found["sayings"] = [_saying(one) for one in verdict.sayings]
     if verdict.trials:
         found["questions"] = [_tried(trial) for trial in verdict.trials]
     if verdict.coverage:
@@ -45,6 +47,21 @@ def _story(rehearsal: Rehearsal) -> dict[str, Any]:
             "trace": [{"time": round(time, 3), "who": who, "what": what} for time, who, what in rehearsal.trace],
         }
     return found
+
+
+def _saying(one: JudgedSaying) -> dict[str, Any]:
+    said, wrong = one.tried.saying, one.tried.wrong
+    return {
+        **_place(one.place),
+        "said": said.text,
+        "behavior": said.behavior,
+        "state": said.state,
+        "language": said.language,
+        "row": said.row,
+        "took": one.tried.took or None,
+        "passed": not wrong,
+        **({"wrong": wrong} if wrong else {}),
+    }
 
 
 def _tried(trial: QuestionTrial) -> dict[str, Any]:

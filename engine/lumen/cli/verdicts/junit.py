@@ -5,16 +5,18 @@ from collections.abc import Iterator
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
 from lumen.cli.junit_xml import JunitCase, JunitFailure, JunitSuite, junit_xml
-from lumen.cli.verdict import Verdict
+from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.cli.verdicts import text
 
 
 def render(verdict: Verdict) -> str:
-    """A suite of the stories and, where the behaviour was explored, one of what was found."""
+    """A suite of the stories, one of the sayings, and one of what was found if the behaviour was explored."""
     suites = []
-    if verdict.rehearsals or not verdict.explored:
+    if verdict.rehearsals or not (verdict.explored or verdict.sayings):
         cases = [*map(_story, verdict.rehearsals), *_uncovered(verdict)]
         suites.append(JunitSuite("stories", cases, sum(r.took for r in verdict.rehearsals), _properties(verdict)))
+    if verdict.sayings:
+        suites.append(JunitSuite("sayings", [_saying(one) for one in verdict.sayings], 0.0))
     if verdict.explored:
         suites.append(JunitSuite("explore", list(_explored(verdict.explored)), verdict.explored.took))
     return junit_xml(verdict.name, suites, verdict.took)
@@ -28,6 +30,15 @@ def _story(rehearsal: Rehearsal) -> JunitCase:
     line = str(rehearsal.place.line if rehearsal.place else 1)
     failure = JunitFailure(rehearsal.failed.what, text.story(rehearsal))
     return case._replace(attributes={**case.attributes, "line": line}, failure=failure)
+
+
+def _saying(one: JudgedSaying) -> JunitCase:
+    said, place = one.tried.saying, one.place
+    name = f"{said.behavior}.{said.state}: {said.text}"
+    case = JunitCase(name, "sayings", {"time": "0", "file": place.file, "line": str(place.line)})
+    if not one.tried.wrong:
+        return case
+    return case._replace(failure=JunitFailure(one.tried.wrong, f"{place}: {text.misheard(one)}"))
 
 
 def _properties(verdict: Verdict) -> dict[str, str]:

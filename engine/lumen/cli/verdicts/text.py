@@ -6,7 +6,7 @@ from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
 from lumen.cli.printing import clock_time
 from lumen.cli.terminal import paint
-from lumen.cli.verdict import Verdict
+from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.interpreters.retrieval.ranking import QuestionTrial, WrongAnswer
 from lumen.runtime.coverage import Coverage
 
@@ -38,19 +38,35 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
 
 
 def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
-    """What comes after the stories: coverage, exploration, and the sum."""
+    """What comes after the stories: coverage, exploration, questions, sayings, and the sum."""
     if verdict.coverage:
         yield from _coverage(verdict, verdict.coverage, coloured)
     if verdict.explored:
         yield from _explored(verdict.explored, coloured)
     for trial in verdict.trials:
         yield from _tried(trial, coloured)
+    if verdict.sayings:
+        yield from _sayings(verdict, coloured)
     if verdict.rehearsals:
         lived = sum(r.time for r in verdict.rehearsals)
         sum_of = f"{count(len(verdict.rehearsals), 'story', 'stories')}, {verdict.failed} failed"
         colour = "red" if verdict.failed else "green"
         time = f"{clock_time(lived)} of simulated time in {verdict.took:.1f} s"
         yield f"\n{paint(sum_of, 'bold', colour, on=coloured)}: {time}"
+
+
+def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
+    """How many sayings are taken by the right row; below it those that are not."""
+    right, every = len(verdict.sayings) - len(verdict.misheard), len(verdict.sayings)
+    share = f"sayings: {right:,} of {every:,} ({int(100 * right / every)} %)"  # 100 % is all of them
+    yield f"\n{paint(share, 'bold', 'red' if verdict.misheard else 'green', on=coloured)}"
+    for one in verdict.misheard:
+        yield f"  {paint(str(one.place), 'bold', on=coloured)}: {misheard(one)}"
+
+
+def misheard(one: JudgedSaying) -> str:
+    """What is wrong with a saying, in one line."""
+    return f"“{one.tried.saying.text}” in `{one.tried.saying.state}`: {one.tried.wrong}"
 
 
 def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:

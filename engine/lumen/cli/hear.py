@@ -1,0 +1,140 @@
+"""`lumen hear TEXT`: what a sentence does in a state, row by row."""
+
+import argparse
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import lumen
+from lumen.cli.formats import configure_format, print_object
+from lumen.cli.tables import table
+from lumen.errors import UsageError
+from lumen.interpreters.explaining.sayings import caught_text, path_of
+from lumen.interpreters.explaining.sentences import (
+    ExplainedRow,
+    ExplainedSentence,
+    explained,
+    first_context,
+    hearing_states,
+    rows_around,
+)
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.machines import MachineDefinition
+from lumen.language.projects import Project
+
+HEAD = ("", "state", "row", "found", "words", "alone", "negated", "asked", "guard", "because")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Explain which row of `hears` takes a sentence, and why the others don't: which phrase was found, how many of"
+        " its words count, whether it is a whole clause, negated or part of a question, and what the guard is for the"
+        " first values of the context."
+    )
+    add = parser.add_argument
+    add("text", metavar="TEXT", help="what a visitor says")
+    add("--state", metavar="STATE", help="by its id, or by its path such as guide.talking; default: all that hear")
+    add("--behavior", metavar="BEHAVIOR", help="another one than the one that runs")
+    add("--language", metavar="LANG", help="the language that the robot speaks, in which answers are given")
+    add("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    configure_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 if a row takes the sentence in one of the states, 1 if none does."""
+    project = lumen.load(options.project)
+    machine = _machine(project, options.behavior)
+    language = options.language or project.languages[0]
+    if language not in project.languages:
+        raise UsageError(f"no language `{language}`: {did_you_mean(language, project.languages, 'it speaks')}")
+    context = first_context(machine)
+    found = {path: explained(machine, path, options.text, context, language) for path in _paths(machine, options.state)}
+    if options.format == "json":
+        states = [_state(machine, path, sentence) for path, sentence in found.items()]
+        print_object({"text": options.text, "language": language, "states": states})
+    else:
+        whole = bool(options.state)
+        print("\n\n".join("\n".join(_lines(machine, path, one, whole)) for path, one in found.items()))
+    return int(not any(sentence.taken for sentence in found.values()))
+
+
+def _machine(project: Project, name: str | None) -> MachineDefinition:
+    name = name or project.behavior
+    if name not in project.behaviors:
+        raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
+    machine = project.behaviors[name]
+    if not hearing_states(machine):
+        raise UsageError(f"no state of `{name}` has `hears`: write it into one")
+    return machine
+
+
+def _paths(machine: MachineDefinition, state: str | None) -> list[str]:
+    """The paths of the states that are asked about."""
+    hearing = hearing_states(machine)
+    if state is None:
+        return [one.path for one in hearing]
+    names = [one.name for one in hearing if one.path]
+    try:
+        path = path_of(machine, state)
+    except KeyError:
+        known = [one.name for one in machine.states.values() if one.path]
+        raise UsageError(f"no state `{state}`: {did_you_mean(state, known, 'there are')}") from None
+    if not rows_around(machine, path):
+        raise UsageError(f"neither `{state}` nor a state around it hears: {did_you_mean('', names, 'these do:')}")
+    return [path]
+
+
+def _lines(machine: MachineDefinition, path: str, sentence: ExplainedSentence, whole: bool) -> Iterator[str]:
+    """The rows in columns; unless the `whole` is wanted, only those that something was found for."""
+    shown = [row for row in sentence.rows if whole or row.taken or row.found]
+    yield machine.states[path].name
+    if shown:
+        cells = table(HEAD, [_cells(row, sentence.taken) for row in shown])
+        yield from (f"  {line}" for line in cells.splitlines())
+    taken = sentence.taken
+    if taken is None:
+        yield "  no row takes it"
+        return
+    yield f"  `{taken.key}` takes it and leads to {_targets(machine, taken) or 'no other state'}"
+    for name, value in taken.slots.items():
+        yield f"    {name}: {caught_text(value)}"
+
+
+def _cells(row: ExplainedRow, taken: ExplainedRow | None) -> tuple[str, ...]:
+    found = row.found
+    guard = "" if row.guard is None else "fails" if row.error else "true" if row.guard else "false"
+    about = (
+        (f"{found.name}: “{found.said}”", str(found.words), _yes(found.alone), _yes(found.negated), _yes(found.asked))
+        if found
+        else ("", "", "", "", "")
+    )
+    return ("→" if row.taken else "", row.state, row.key, *about, guard, row.because(taken))
+
+
+def _yes(value: bool | None) -> str:
+    return "" if value is None else "yes" if value else "no"
+
+
+def _targets(machine: MachineDefinition, row: ExplainedRow) -> str:
+    return ", ".join(f"`{machine.states[path].name}`" for path in row.transition.targets)
+
+
+def _state(machine: MachineDefinition, path: str, sentence: ExplainedSentence) -> dict[str, Any]:
+    return {
+        "state": machine.states[path].name,
+        "taken": sentence.taken.key if sentence.taken else None,
+        "rows": [_row(machine, row, sentence.taken) for row in sentence.rows],
+    }
+
+
+def _row(machine: MachineDefinition, row: ExplainedRow, taken: ExplainedRow | None) -> Mapping[str, Any]:
+    guard = row.transition.guard
+    return {
+        "state": row.state,
+        "row": row.key,
+        "found": row.found._asdict() if row.found else None,
+        "guard": {"text": guard.shown, "holds": row.guard, "error": row.error or None} if guard else None,
+        "taken": row.taken,
+        "because": row.because(taken),
+        "leads_to": [machine.states[target].name for target in row.transition.targets],
+        **({"caught": row.caught} if row.taken else {}),
+    }
