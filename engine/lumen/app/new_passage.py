@@ -25,9 +25,8 @@ def write_passage(root: Path, question: str, answer: str, language: str) -> Path
     No file is written over. Raises UsageError where that is no question, no answer or no language, or the folder can't
     be written.
     """
-    question, answer = _line(question, "question"), _line(answer, "answer")
-    if not _LANGUAGE.fullmatch(language):
-        raise UsageError("`language` is one such as `en`")
+    question, answer = one_line(question, "question"), one_line(answer, "answer")
+    check_language(language)
     data = {"questions": {language: [question]}, "answer": {language: answer}}
     text = HEADER + yaml.safe_dump(data, allow_unicode=True, sort_keys=False, width=110)
     folder = root / KNOWLEDGE_FOLDER
@@ -44,7 +43,14 @@ def write_passage(root: Path, question: str, answer: str, language: str) -> Path
     raise UsageError(f"{MAX_SAME} passages are called like this one: rename some of them")
 
 
-def _line(text: str, what: str) -> str:
+def check_language(language: str) -> None:
+    """Raise UsageError if that can't be the name of a language."""
+    if not _LANGUAGE.fullmatch(language):
+        raise UsageError("`language` is one such as `en`")
+
+
+def one_line(text: str, what: str) -> str:
+    """Return a text without line breaks and signs that nobody sees. Raises UsageError if it is none, or too long."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
     if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
         raise UsageError(f"`{what}` is a text of 1 to {MAX_TEXT} characters")

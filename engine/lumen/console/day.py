@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from lumen.app.recording.happenings import FALLEN
 from lumen.app.replaying.replay_report import iso
 from lumen.console.entry_words import ENDS, ENGLISH, MARK, OFTEN
+from lumen.console.heard_sentences import HeardSentence, heard_sentence
 from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.journal_clock import JournalClock
@@ -94,6 +95,8 @@ class Day:
     answers: Counter[str] = field(default_factory=Counter)
     languages: Counter[str] = field(default_factory=Counter)
     unanswered: Counter[tuple[str, str]] = field(default_factory=Counter)
+    said: Counter[HeardSentence] = field(default_factory=Counter)
+    rows: dict[str, list[str]] = field(default_factory=dict)
     asking: "dict[str, AwaitedAnswer]" = field(default_factory=dict)
     hours: Counter[int] = field(default_factory=Counter)
     falls: int = 0
@@ -113,6 +116,9 @@ class Day:
             {"text": text, "language": language, "count": count}
             for (text, language), count in self.unanswered.most_common(MAX_ROWS)
         ]
+        said = sorted(self.said.items(), key=lambda row: (row[0].understood, -row[1]))[:MAX_ROWS]
+        numbers["said"] = [{**sentence.to_json(), "count": count} for sentence, count in said]
+        numbers["rows"] = self.rows
         rows = {name: getattr(self, name).most_common(MAX_ROWS) for name in COUNTED}
         return {
             "date": self.day.isoformat(), "dates": [one.isoformat() for one in self.dates],
@@ -130,7 +136,9 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
     clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
     days: dict[date, Day] = {}
     visit: DayVisit | None = None
+    behavior = ""
     for entry in entries:
+        behavior = entry.behavior if isinstance(entry, JournalJump) else behavior
         at = clock.of(entry)
         here = clock.local(at)
         taken = replayer.take(entry)
@@ -148,7 +156,7 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
             visit = DayVisit(len(today.visits) + 1, entry.position, entry.position, at, at)
             today.visits.append(visit)
             today.hours[here.hour] += 1
-        _count(today, visit, taken)
+        _count(today, visit, taken, behavior)
         if visit:
             visit.last, visit.ended = entry.position, at
             _name(visit, taken)
@@ -188,7 +196,7 @@ def _is_told(entry: RecordedEntry) -> bool:
     return entry.event.name not in OFTEN and not entry.event.name.startswith(ENDS)
 
 
-def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep) -> None:
+def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep, behavior: str) -> None:
     """What was said, and whether it was understood."""
     entry = taken.entry
     if not isinstance(entry, JournalInput) or entry.redacted:
@@ -199,19 +207,22 @@ def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep) -> None:
     if asked:
         words = " ".join(str(text).lower().split())[:MAX_TEXT]
         day.asked[words] += 1
-        asks = any((found := started(command)) and found[1] == "Ask" for command in entry.commands)
+        asks = any((begun := started(command)) and begun[1] == "Ask" for command in entry.commands)
         missed = not asks and not understood(entry, taken)
         if missed:
             day.missed[words] += 1
+        if entry.event.name == HEARD and (found := heard_sentence(behavior, taken, str(text)[:MAX_TEXT])):
+            day.said[found[0]] += 1
+            day.rows |= found[1]
         if visit:
             visit.asked += 1
             visit.missed += missed
     _ask(day, visit, entry)
     for command in entry.commands:
-        if (found := started(command)) and found[1] == "Say":
-            day.answers[str(found[2].get("text", ""))[:MAX_TEXT]] += 1
+        if (begun := started(command)) and begun[1] == "Say":
+            day.answers[str(begun[2].get("text", ""))[:MAX_TEXT]] += 1
             if visit:
-                visit.language = str(found[2].get("language") or visit.language)
+                visit.language = str(begun[2].get("language") or visit.language)
 
 
 def _ask(day: Day, visit: DayVisit | None, entry: JournalInput) -> None:

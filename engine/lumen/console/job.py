@@ -28,6 +28,7 @@ from lumen.console.day_csv import day_csv
 from lumen.console.job_promises import JOB_TIME, NOTHING, OUT_OF_MEMORY, REFUSED
 from lumen.console.kept_days import KeptDays
 from lumen.errors import LumenError
+from lumen.language.sayings import Saying
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 
@@ -67,6 +68,13 @@ def replay(root: Path, robot: str) -> Iterator[bytes]:
         yield NOTHING
 
 
+def saying(root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str) -> Iterator[bytes]:
+    """Add to the sayings what a visitor said in a state, and the row that should have taken it."""
+    from lumen.app.new_saying import write_saying
+
+    yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})
+
+
 def shape(root: Path, robot: str) -> Iterator[bytes]:
     """What the robot's links look like, and its stage."""
     from lumen.console.drawing import Drawing
@@ -85,7 +93,7 @@ def poses(root: Path, robot: str) -> Iterator[bytes]:
 
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
-    "day": day, "why": why, "replay": replay, "shape": shape, "poses": poses
+    "day": day, "why": why, "replay": replay, "saying": saying, "shape": shape, "poses": poses
 }  # fmt: skip
 
 

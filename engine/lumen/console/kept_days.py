@@ -14,7 +14,7 @@ from lumen.interpreters.retrieval.words import words
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
-from lumen.loading.project import knowledge_parts
+from lumen.loading.project import knowledge_parts, sayings_parts
 from lumen.rules import check_files
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import each_entry
@@ -50,7 +50,7 @@ class KeptDays:
         return self._still_open(day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted))
 
     def _still_open(self, found: Day) -> Day:
-        """The day without those unanswered questions that stand in a passage by now."""
+        """The day without those unanswered questions that are in a passage by now, and sentences that are sayings."""
         if found.unanswered:
             known = knowledge_parts(read_files(self._root, self._robot)).knowledge.values()
             answered = {
@@ -62,6 +62,12 @@ class KeptDays:
             for text, language in [*found.unanswered]:
                 if (language, *words(text)) in answered:
                     del found.unanswered[text, language]
+        if found.said:
+            sayings = sayings_parts(read_files(self._root, self._robot)).sayings.values()
+            kept = {(one.behavior, one.state, *words(one.text)) for each in sayings for one in each.sayings}
+            for sentence in [*found.said]:
+                if any((*state, *words(sentence.text)) in kept for state in sentence.states):
+                    del found.said[sentence]
         return found
 
     def _machine(self, hash: str, behavior: str) -> MachineDefinition | None:

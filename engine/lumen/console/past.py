@@ -22,6 +22,9 @@ from lumen.errors import BusError, UsageError
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""
 MAX_QUESTION = 500
+ELSEWHERE = "this robot's files are elsewhere: open the console there"
+SAID = ("behavior", "state", "row", "language", "text")
+"""What is posted of a saying."""
 
 
 class Past:
@@ -39,6 +42,7 @@ class Past:
             Route("/api/entries", self._entries),
             Route("/api/files", self._files),
             Route("/api/passages", self._passage, methods=["POST"]),
+            Route("/api/sayings", self._saying, methods=["POST"]),
         ]
 
     async def _why(self, request: Request) -> Response:
@@ -124,13 +128,27 @@ class Past:
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         if not self._is_ours(self._reception.robot(data.get("robot"))):
-            raise DeniedError(400, "this robot's files are elsewhere: open the console there")
+            raise DeniedError(400, ELSEWHERE)
         question, answer, language = (str(data.get(key, "")) for key in ("question", "answer", "language"))
         try:
             file = write_passage(self._jobs.root, question, answer, language)
         except UsageError as error:
             raise DeniedError(400, str(error)) from None
         return as_json({"file": file.as_posix()})
+
+    async def _saying(self, request: Request) -> Response:
+        """What somebody said is saved as a saying, with the row of `hears` that should have taken it."""
+        self._reception.person(request, Role.AUTHOR)
+        data = await self._reception.posted(request)
+        view = self._reception.robot(data.get("robot"))
+        if not self._is_ours(view):
+            raise DeniedError(400, ELSEWHERE)
+        said = [str(data.get(key, "")) for key in SAID]
+        try:
+            saved = await self._jobs.do("saying", self._home(view), *said)
+        except DeniedError as error:
+            raise DeniedError(400 if error.status == 404 else error.status, error.reason) from None
+        return Response(saved, headers=NO_STORE, media_type="application/json")
 
     def _asked(self, request: Request, needs: Role) -> KnownRobot:
         self._reception.person(request, needs)

@@ -131,6 +131,11 @@ def knowledge_parts(files: Mapping[str, bytes]) -> ProjectDraft:
     return draft({file: content for file, content in files.items() if file.startswith(f"{KNOWLEDGE_FOLDER}/")})
 
 
+def sayings_parts(files: Mapping[str, bytes]) -> ProjectDraft:
+    """What of a project its sayings are, whatever is wrong with anything else."""
+    return draft({file: content for file, content in files.items() if file.startswith(f"{SAYINGS_FOLDER}/")})
+
+
 def main_settings(root: Path, robot: str = "") -> Settings | None:
     """What lumen.yaml says, however many errors it has, and without any other file; None where it can't be read.
 

@@ -25,7 +25,7 @@ def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str
             text = FileText(report.document.file, files[report.document.file])
             words = json.dumps(_to_do(by_language[source]), ensure_ascii=False)
             last = (*path, list(by_language)[-1])
-            edits.setdefault(text.file, []).append(_beside(report, text, path, last, f"{language}: {words}"))
+            edits.setdefault(text.file, []).append(beside(report, text, path, last, f"{language}: {words}"))
     main = draft.main
     if list(value_at(main, ("languages",))) == [source]:
         for report, path in plain_texts(draft):
@@ -37,7 +37,7 @@ def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str
     text = FileText(main.document.file, files[main.document.file])
     spoken = value_at(main, ("languages",))
     last = ("languages", len(spoken) - 1)
-    edits.setdefault(text.file, []).append(_beside(main, text, ("languages",), last, language, dash="- "))
+    edits.setdefault(text.file, []).append(beside(main, text, ("languages",), last, language, dash="- "))
     return {file: edited(files[file], changes) for file, changes in edits.items()}
 
 
@@ -45,10 +45,10 @@ def _to_do(value: Any) -> Any:
     return [TO_DO + str(text) for text in value] if isinstance(value, list) else TO_DO + str(value)
 
 
-def _beside(
+def beside(
     report: DocumentReport, text: FileText, around: NodePath, last: NodePath, entry: str, dash: str = ""
 ) -> Edit:
-    """The entry behind the last one: on its line between brackets, else on a line of its own at the same depth."""
+    """Return the edit that writes an entry behind the last one: between brackets on its line, else on the next line."""
     spans = report.document.spans
     whole, end = spans[around].value, spans[last].value
     if text.line(whole.line)[whole.column - 1 : whole.column] in ("{", "["):

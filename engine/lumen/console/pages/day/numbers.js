@@ -1,5 +1,6 @@
 // The day's numbers: each chart is a table whose rows have a bar, so that everybody reads the same.
 import { Part, fixed, html, span, t } from "../ui.js";
+import { Said } from "./said.js";
 import { Unanswered } from "./unanswered.js";
 
 const MOST = 8;
@@ -21,5 +22,5 @@ export function Numbers({ name, day }) {
     <div class="charts"><${Chart} title=${t("day.hours")} all rows=${(numbers.hours ?? []).map(([hour, count]) => [`${hour}:00`, count])} />
       <${Chart} title=${t("day.asked")} rows=${numbers.asked ?? []} /><${Chart} title=${t("day.missed")} rows=${numbers.missed ?? []} />
       <${Chart} title=${t("day.answers")} rows=${numbers.answers ?? []} /><${Chart} title=${t("day.languages")} rows=${numbers.languages ?? []} /></div>
-    <${Unanswered} name=${name} rows=${numbers.unanswered ?? []} /></${Part}>`;
+    <${Unanswered} name=${name} rows=${numbers.unanswered ?? []} /><${Said} name=${name} said=${numbers.said ?? []} rows=${numbers.rows ?? {}} /></${Part}>`;
 }

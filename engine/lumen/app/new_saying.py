@@ -1,0 +1,169 @@
+"""A saying that the console adds: one more entry of behaviors/sayings/day.yaml, which counts as any saved file."""
+
+import copy
+import json
+import os
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.app.new_passage import check_language, one_line
+from lumen.errors import UsageError
+from lumen.language.diagnostics import NodePath, Place, Severity
+from lumen.language.sayings import SAYINGS_FOLDER, Saying
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.files import Unreadable, read_files
+from lumen.loading.project import draft
+from lumen.loading.yaml_reader import parse
+from lumen.rules import sayings, speech
+from lumen.rules.fixes.edits import Edit, FileText, edited
+from lumen.rules.lookups import value_at
+from lumen.rules.new_language import beside
+
+DAY_FILE = f"{SAYINGS_FOLDER}/day.yaml"
+HEADER = "# yaml-language-server: $schema=../../schemas/sayings.schema.json"
+_PLAIN = re.compile(r"[A-Za-z_](?:[\w.| -]*\w)?")
+"""Keys that need no quotes."""
+_WORDS = frozenset(("null", "true", "false"))
+
+
+def write_saying(root: Path, saying: Saying, robot: str = "") -> Path:
+    """Add a saying to the file of the console; its path from the project's folder.
+
+    Everything else in the file stays as it is, to the byte. Raises UsageError if the file has errors before or
+    afterwards, or can't be written: nothing is written then.
+    """
+    check_language(saying.language)
+    text = one_line(saying.text, "text")
+    files = read_files(root, robot)
+    before = files.get(DAY_FILE, b"")
+    if isinstance(before, Unreadable):
+        raise UsageError(f"{DAY_FILE} can't be read: {before.decode('utf-8', 'replace')}")
+    if not _is_blank(before):
+        _refuse_errors({**files, DAY_FILE: before}, "correct that first")
+    after = with_saying(before, Saying(saying.behavior, saying.state, saying.row, saying.language, text))
+    _refuse_errors({**files, DAY_FILE: after}, "nothing was written")
+    if after != before:
+        _save(root, before, after)
+    return Path(DAY_FILE)
+
+
+def with_saying(content: bytes, saying: Saying) -> bytes:
+    """Return the content of a file of sayings with one more, unless it has it.
+
+    Raises UsageError if it is written in a way in which no place can be found for it.
+    """
+    keys = (saying.behavior, saying.state, saying.row, saying.language)
+    if _is_blank(content):
+        start = content or HEADER.encode()
+        ended = start if start.endswith(b"\n") else start + b"\n"
+        return ended + f"\n{_block(keys, saying.text, 0)}\n".encode()
+    document, _ = parse(DAY_FILE, content)
+    if document is None or not isinstance(document.data, Mapping) or not document.data:
+        raise UsageError(f"{DAY_FILE} holds no sayings: write one into it by hand, or delete it")
+    depth = next((n for n in range(len(keys)) if keys[n] not in _at(document.data, keys[:n])), len(keys))
+    if depth == len(keys) and saying.text in _at(document.data, keys):
+        return content
+    after = edited(content, [_edit(document, FileText(DAY_FILE, content), keys, depth, saying.text)])
+    read, found = parse(DAY_FILE, after)
+    if found or read is None or read.data != _expected(document.data, keys, saying.text):
+        entry = _flow(keys, saying.text)
+        raise UsageError(f"there is no place for it in {DAY_FILE} as that is written: add `{entry}` by hand")
+    return after
+
+
+def _edit(document: Document, text: FileText, keys: tuple[str, ...], depth: int, said: str) -> Edit:
+    """The edit that writes the saying behind the last entry of the deepest of its keys that is there."""
+    around = keys[:depth]
+    report, whole = DocumentReport(document), document.spans[around].value
+    last: NodePath = (*around, _last(_at(document.data, around)))
+    if _is_flow(text, whole):
+        return beside(report, text, around, last, _flow(keys[depth:], said))
+    while isinstance(node := value_at(report, last), Mapping | list) and not _is_flow(text, document.spans[last].value):
+        last = (*last, _last(node))
+    dash = "" if keys[depth:] else "- "
+    return beside(report, text, around, last, _block(keys[depth:], said, whole.column - 1), dash)
+
+
+def _is_blank(content: bytes) -> bool:
+    """Whether a file holds nothing but comments."""
+    return all(line.lstrip().startswith(b"#") for line in content.splitlines() if line.strip())
+
+
+def _refuse_errors(files: Mapping[str, bytes], what: str) -> None:
+    """Raise UsageError if lint finds an error in the file."""
+    found = draft(files)
+    sayings.check(found)
+    speech.check(found)
+    for one in found.diagnostics:
+        if one.place.file == DAY_FILE and one.severity is Severity.ERROR:
+            hint = f" ({one.hint})" if one.hint else ""
+            raise UsageError(f"{DAY_FILE}, line {one.place.line}: {one.message}{hint}: {what}")
+
+
+def _save(root: Path, before: bytes, after: bytes) -> None:
+    """Put the new content in place of the old one at once."""
+    file = root / DAY_FILE
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if file.parent.is_symlink() or file.is_symlink():
+            raise UsageError(f"{DAY_FILE} is a link: nothing is written there")
+        if (file.read_bytes() if file.exists() else b"") != before:
+            raise UsageError(f"{DAY_FILE} was saved meanwhile: try again")
+        handle, draft_name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+        with os.fdopen(handle, "wb") as opened:
+            opened.write(after)
+        os.chmod(draft_name, file.stat().st_mode & 0o7777 if file.exists() else 0o644)
+        os.replace(draft_name, file)
+    except OSError as error:
+        raise UsageError(f"{DAY_FILE} can't be written: {(error.strerror or str(error)).lower()}") from None
+
+
+def _at(data: Any, keys: tuple[str, ...]) -> Any:
+    for key in keys:
+        data = data[key]
+    return data
+
+
+def _last(node: Any) -> str | int:
+    return len(node) - 1 if isinstance(node, list) else [*node][-1]
+
+
+def _is_flow(text: FileText, place: Place) -> bool:
+    """Whether a node stands between brackets."""
+    return text.line(place.line)[place.column - 1 : place.column] in ("{", "[")
+
+
+def _key(key: str) -> str:
+    return key if _PLAIN.fullmatch(key) and key not in _WORDS else json.dumps(key, ensure_ascii=False)
+
+
+def _flow(keys: tuple[str, ...], text: str) -> str:
+    """The entry between brackets, with the keys that lead to it."""
+    said = json.dumps(text, ensure_ascii=False)
+    if not keys:
+        return said
+    inner = f"[{said}]"
+    for key in reversed(keys[1:]):
+        inner = f"{{{_key(key)}: {inner}}}"
+    return f"{_key(keys[0])}: {inner}"
+
+
+def _block(keys: tuple[str, ...], text: str, indent: int) -> str:
+    """The entry on lines of its own, with the keys that lead to it; the first line is not indented."""
+    lines = [f"{_key(key)}:" for key in keys]
+    lines.append(f"- {json.dumps(text, ensure_ascii=False)}" if keys else json.dumps(text, ensure_ascii=False))
+    return "\n".join(f"{' ' * (indent + 2 * i) if i else ''}{line}" for i, line in enumerate(lines))
+
+
+def _expected(data: Any, keys: tuple[str, ...], text: str) -> Any:
+    """The data with the saying."""
+    whole = copy.deepcopy(data)
+    node = whole
+    for key in keys[:-1]:
+        node = node.setdefault(key, {})
+    node.setdefault(keys[-1], []).append(text)
+    return whole
