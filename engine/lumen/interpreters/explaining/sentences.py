@@ -137,11 +137,14 @@ class _Sentence:
         return ExplainedSentence(tuple(self.row(one, one is taken) for one in waiting))
 
     def first(self, waiting: list[CompiledTransition]) -> CompiledTransition | None:
-        """The transition that is taken: `else`, and rows without words of their own, only if no other is."""
-        for one in waiting:
-            if not one.is_otherwise and self.holds(one.guard, one.source)[0]:
-                return one
-        return next((one for one in waiting if one.late and self.holds(one.late, one.source)[0]), None)
+        """The transition that is taken: rows of slots alone only if no other is, and `else` only after those."""
+        rows = [one for one in waiting if not one.is_otherwise]
+        passes = (
+            [(one, one.guard) for one in rows],
+            [(one, one.late) for one in rows if one.late],
+            [(one, one.late) for one in waiting if one.is_otherwise],
+        )
+        return next((one for each in passes for one, guard in each if self.holds(guard, one.source)[0]), None)
 
     def row(self, one: CompiledTransition, taken: bool) -> ExplainedRow:
         hears, guard = one.definition.hears, one.definition.guard
