@@ -1,4 +1,4 @@
-"""What visitors said is on the page Day: without names, with the row that took it and those that could have."""
+"""The page Day lists sentences of visitors, without names, with the row that took each and the rows that could have."""
 
 import json
 from collections.abc import Iterator
@@ -53,7 +53,7 @@ def day(machine: MachineDefinition, *texts: str) -> Day:
 
 
 def numbers(found: Day) -> Any:
-    """What the page gets, as JSON."""
+    """The numbers of the page, from JSON."""
     return json.loads(orjson.dumps(found.to_json()))["numbers"]
 
 

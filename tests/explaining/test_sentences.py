@@ -1,4 +1,4 @@
-"""What a sentence does in a state: what was found for each row, which row is taken, and why the others are not."""
+"""A sentence in a state: the phrase that was found for each row, the row that is taken, and why the others are not."""
 
 from typing import Any
 

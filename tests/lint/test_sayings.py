@@ -1,4 +1,4 @@
-"""What lint finds in files of sayings: names that are not there, at their places."""
+"""Lint of files of sayings: names that are not there, at their places."""
 
 from lumen.rules import check_files
 from tests.lint.spans import assert_marks_what_is_spoken_of

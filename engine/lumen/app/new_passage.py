@@ -50,7 +50,7 @@ def check_language(language: str) -> None:
 
 
 def one_line(text: str, what: str) -> str:
-    """Return a text without line breaks and signs that nobody sees. Raises UsageError if it is none, or too long."""
+    """Return a text without line breaks and invisible signs. Raises UsageError if nothing is left, or too much."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
     if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
         raise UsageError(f"`{what}` is a text of 1 to {MAX_TEXT} characters")

@@ -58,7 +58,7 @@ def _is_file(word: str) -> bool:
 
 
 def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) -> list[T]:
-    """What of a folder a word means; the path of a file is from here, from the project, or from that folder."""
+    """The files of a folder that a word means; a path is from here, from the project, or from that folder."""
     if not _is_file(word):
         return [known[name] for name in sorted(known) if name == word or fnmatchcase(name, word)]
     whole = Path(os.path.abspath(project.root)) / folder

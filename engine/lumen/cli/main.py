@@ -56,7 +56,7 @@ VERBS = {
     "language": "begin another language, and say what is missing in one",
     "schema": "print the JSON Schema of a kind of file, for editors",
     "upgrade": "rewrite a project's files for the vocabulary that this Lumen reads",
-    "test": "play the stories and try the sayings, and say which of them fail",
+    "test": "play the stories, try the sayings, and list those that fail",
     "hear": "explain what a sentence does in a state, row by row",
     "play": "show a motion on the simulated robot",
     "memory": "list the people and things that the robot remembers, and forget somebody",

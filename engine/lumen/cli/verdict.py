@@ -1,4 +1,4 @@
-"""What `lumen test` found: how stories, sayings and questions went, what they left out, and what exploring found."""
+"""The findings of `lumen test`: stories, sayings and questions, coverage, and exploration."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What visitors said while a state heard it: without names, with the states that heard it and the row that took it."""
+"""Sentences of visitors without names, with the states that heard them and the row that took them."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -40,7 +40,7 @@ class HeardSentence(NamedTuple):
 def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[HeardSentence, dict[str, list[str]]] | None:
     """Return a sentence as it was heard, and the keys of the rows of each of its states; None if none has rows.
 
-    What the behaviours held as names, before it or afterwards, is taken out of it. Rows are judged as they were then.
+    Names that the behaviours held before or afterwards are taken out of it. Guards see the context of that moment.
     """
     machine, before = taken.machine, taken.before
     if machine is None or before is None:

@@ -69,7 +69,7 @@ def replay(root: Path, robot: str) -> Iterator[bytes]:
 
 
 def saying(root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str) -> Iterator[bytes]:
-    """Add to the sayings what a visitor said in a state, and the row that should have taken it."""
+    """Add a sentence of a visitor to the sayings, with the row that should have taken it."""
     from lumen.app.new_saying import write_saying
 
     yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})

@@ -24,7 +24,7 @@ QUESTION_TIMEOUT = 20.0
 MAX_QUESTION = 500
 ELSEWHERE = "this robot's files are elsewhere: open the console there"
 SAID = ("behavior", "state", "row", "language", "text")
-"""What is posted of a saying."""
+"""The keys of a saying that is posted."""
 
 
 class Past:
@@ -137,7 +137,7 @@ class Past:
         return as_json({"file": file.as_posix()})
 
     async def _saying(self, request: Request) -> Response:
-        """What somebody said is saved as a saying, with the row of `hears` that should have taken it."""
+        """Save a sentence of a visitor as a saying, with the row of `hears` that should have taken it."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))

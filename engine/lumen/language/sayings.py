@@ -11,7 +11,7 @@ SAYINGS_FOLDER = "behaviors/sayings"
 
 @dataclass(frozen=True)
 class Saying:
-    """What a visitor says in a `state` (its id or path), and the key of the row of `hears` that should take it.
+    """A sentence of a visitor in a `state` (its id or path), and the key of the row of `hears` that should take it.
 
     `slots` are what that row should catch; a slot that is not among them may catch anything.
     """

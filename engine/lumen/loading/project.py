@@ -132,7 +132,7 @@ def knowledge_parts(files: Mapping[str, bytes]) -> ProjectDraft:
 
 
 def sayings_parts(files: Mapping[str, bytes]) -> ProjectDraft:
-    """What of a project its sayings are, whatever is wrong with anything else."""
+    """The sayings of a project, whatever is wrong with anything else."""
     return draft({file: content for file, content in files.items() if file.startswith(f"{SAYINGS_FOLDER}/")})
 
 

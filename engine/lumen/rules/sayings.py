@@ -65,7 +65,7 @@ def _named(machine: MachineDefinition) -> set[str]:
 
 
 def _slots(machine: MachineDefinition, row: Hears) -> set[str]:
-    """What a row may catch: its slots, and the answer of a table."""
+    """The slots of a row, and `answer` if it has a table of answers."""
     answers = [answer.phrases for name in row.names for answer in machine.answers.get(name, ())]
     tables = [*answers, *(machine.phrases[name] for name in row.names if name in machine.phrases)]
     texts = [text for table in tables for several in table.values() for text in several]

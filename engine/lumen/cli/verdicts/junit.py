@@ -10,7 +10,7 @@ from lumen.cli.verdicts import text
 
 
 def render(verdict: Verdict) -> str:
-    """A suite of the stories, one of the sayings, and one of what was found if the behaviour was explored."""
+    """A suite of the stories, one of the sayings, and one of the findings if the behaviour was explored."""
     suites = []
     if verdict.rehearsals or not (verdict.explored or verdict.sayings):
         cases = [*map(_story, verdict.rehearsals), *_uncovered(verdict)]

@@ -38,7 +38,7 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
 
 
 def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
-    """What comes after the stories: coverage, exploration, questions, sayings, and the sum."""
+    """The lines after the stories: coverage, exploration, questions, sayings, and the sum."""
     if verdict.coverage:
         yield from _coverage(verdict, verdict.coverage, coloured)
     if verdict.explored:
@@ -56,7 +56,7 @@ def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
 
 
 def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
-    """How many sayings are taken by the right row; below it those that are not."""
+    """The share of sayings that the right row takes, then the others."""
     right, every = len(verdict.sayings) - len(verdict.misheard), len(verdict.sayings)
     share = f"sayings: {right:,} of {every:,} ({int(100 * right / every)} %)"  # 100 % is all of them
     yield f"\n{paint(share, 'bold', 'red' if verdict.misheard else 'green', on=coloured)}"
@@ -65,7 +65,7 @@ def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
 
 
 def misheard(one: JudgedSaying) -> str:
-    """What is wrong with a saying, in one line."""
+    """Return in one line why a saying does not hold."""
     return f"“{one.tried.saying.text}” in `{one.tried.saying.state}`: {one.tried.wrong}"
 
 

@@ -50,7 +50,7 @@ class ExplainedRow(NamedTuple):
 
     @property
     def slots(self) -> dict[str, Any]:
-        """What was caught beside the text and the phrase."""
+        """The slots that were caught, and the answer."""
         return {k: v for k, v in self.caught.items() if k not in ("text", "phrase") and (k, v) != ("answer", None)}
 
     def because(self, taken: "ExplainedRow | None") -> str:
@@ -85,7 +85,7 @@ def explained(
 ) -> ExplainedSentence:
     """Return what a sentence does in the state at that path: its own rows, and those of the states around it.
 
-    Nothing is known of other regions, and of what else is active: `In()` is true for these states only.
+    Other regions are not looked at, and `In()` is true for these states only.
     """
     return _Sentence(machine, path, text, context, language).explained()
 
@@ -157,7 +157,7 @@ class _Sentence:
         return ExplainedRow(one.definition, one.source.name, found, holds, error, taken, caught)
 
     def found(self, row: Hears) -> FoundPhrase | None:
-        """What was found for a row: what counts most, else what has most words."""
+        """The phrase for a row that counts most, else the one with the most words."""
         hearing, reading = self.hearing, self.reading
         questions = {name for other in hearing.blocks[row.number] if other.way == "asked" for name in other.names}
         best = hearing.best(reading, row, questions, self.context)
