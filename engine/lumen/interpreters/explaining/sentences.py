@@ -8,15 +8,25 @@ from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransitio
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.plans import in_order
 from lumen.interpreters.statechart.state_changes import names_of
-from lumen.interpreters.talk.hearing import HEARD, hearing_of
+from lumen.interpreters.talk.hearing import HEARD, Dropped, hearing_of
 from lumen.language.machines import Hears, MachineDefinition, State, Transition
+
+_DROPPED: Mapping[Dropped, str] = {
+    "": "",
+    "negated": "negated",
+    "not negated": "not negated",
+    "part": "not a whole clause",
+    "question": "in a question",
+    "no question": "not in a question",
+    "refusal": "part of a refusal",
+}
 
 
 class FoundPhrase(NamedTuple):
     """A phrase in a sentence: its name, its words as they were said, and how many of them count.
 
-    `alone` is whether it is a whole clause, None if it need not be. `counts` is whether it takes its row, its guard
-    aside.
+    `alone` is whether it is a whole clause, None if it need not be. `dropped` is why it does not count for its row, its
+    guard aside; empty if it counts.
     """
 
     name: str
@@ -25,7 +35,11 @@ class FoundPhrase(NamedTuple):
     alone: bool | None
     negated: bool
     asked: bool
-    counts: bool
+    dropped: Dropped
+
+    @property
+    def counts(self) -> bool:
+        return not self.dropped
 
 
 class ExplainedRow(NamedTuple):
@@ -62,7 +76,7 @@ class ExplainedRow(NamedTuple):
             if found is None:
                 return "not found"
             if not found.counts:
-                return _why_not(found, hears)
+                return _DROPPED[found.dropped]
         if self.error:
             return f"its guard fails: {self.error}"
         if self.guard is False:
@@ -158,19 +172,14 @@ class _Sentence:
 
     def found(self, row: Hears) -> FoundPhrase | None:
         """The phrase for a row that counts most, else the one with the most words."""
-        hearing, reading = self.hearing, self.reading
-        questions = {name for other in hearing.blocks[row.number] if other.way == "asked" for name in other.names}
-        best = hearing.best(reading, row, questions, self.context)
-        finds = [best] if best else [find for name in row.names for find in reading.finds.get(name, ())]
-        if not finds:
+        nearest = self.hearing.nearest(row.number, self.reading.text, self.context)
+        if nearest is None:
             return None
-        find = max(finds, key=lambda one: (one.strength, one.end))
+        (find, dropped), reading = nearest, self.reading
         alone = reading.is_whole(find) if find.entry.alone else None
-        negated, asked = reading.is_negated(find), reading.is_asked(find)
-        name = _written(row)[find.entry.name]
-        return FoundPhrase(
-            name, reading.said(find.start, find.end), find.strength, alone, negated, asked, best is not None
-        )
+        negated, asked = reading.negation(find) is not None, reading.is_asked(find)
+        said, name = reading.said(find.start, find.end), _written(row)[find.entry.name]
+        return FoundPhrase(name, said, find.strength, alone, negated, asked, dropped)
 
     def holds(self, guard: CompiledGuard | None, node: StateNode) -> tuple[bool, str]:
         """Whether a guard is true in its state, and why it has no value, if it has none."""
@@ -191,14 +200,3 @@ def _written(row: Hears) -> dict[str, str]:
     """The names of a row, each as its key has it."""
     words = row.key.split()
     return dict(zip(row.names, "".join(words[bool(row.way) :]).split("|"), strict=True))
-
-
-def _why_not(found: FoundPhrase, hears: Hears) -> str:
-    """Why a phrase that was found does not take its row."""
-    if found.negated:
-        return "negated"
-    if hears.way == "not":
-        return "not negated"
-    if found.alone is False:
-        return "not a whole clause"
-    return "not in a question" if hears.way == "asked" else "in a question"

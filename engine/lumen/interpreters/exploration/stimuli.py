@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
+from itertools import islice
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
@@ -14,8 +15,8 @@ from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.interpreters.statechart.values import awaited
-from lumen.interpreters.talk.examples import examples_of
 from lumen.interpreters.talk.hearing import hearing_of, said_in
+from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
@@ -164,7 +165,7 @@ def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
     """A text for each name of each row of `hears`, and one that no row has."""
     for machine, transition, context in heard:
         if transition.hears:
-            yield from examples_of(hearing_of(machine), transition.hears, context)
+            yield from islice(of_row(machine, transition.hears, context), 1 + len(transition.hears.names))
 
 
 def _orders(heard: tuple[HeardTransition, ...], name: str, data: Any) -> Iterator[Any]:

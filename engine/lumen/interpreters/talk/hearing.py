@@ -109,7 +109,11 @@ class Hearing:
         """The best find of the row of this number whether or not it counts, and why it does not; None without any."""
         reading, row, asked = self.read(text), self.rows[number], asked_in(self.blocks[number])
         find = self.best(reading, row, asked, context) or self.best(reading, row, asked, context, counting=False)
-        return (find, dropped(reading, find, row.way, find.entry.name in asked) or "refusal") if find else None
+        if find is None:
+            return None
+        order = self.order(number, text, context)
+        counts = any(one.number == number for one in (*order.first, *order.late))
+        return find, dropped(reading, find, row.way, find.entry.name in asked) or ("" if counts else "refusal")
 
     def _order(self, reading: Reading, block: Sequence[Hears], context: Mapping[str, Any]) -> Order:
         asked = asked_in(block)
