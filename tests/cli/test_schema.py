@@ -77,7 +77,7 @@ def test_a_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
 def test_every_kind_has_its_files() -> None:
     assert FILES.keys() == set(FILE_KINDS)
     shown = {kind for kind, (one, *_) in FILES.items() if {*ROOT.glob(one), *ROOT.glob(f"examples/*/{one}")}}
-    assert FILES.keys() - shown <= {"sayings"}  # for the first shipped project that has `hears`
+    assert FILES.keys() == shown
 
 
 def test_settings_join_those_that_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
