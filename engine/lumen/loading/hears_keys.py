@@ -10,7 +10,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 
 BAD_ROW = Code("bad-row", "conversation", ERROR, "a key of `hears` can't be read")
-Way = Literal["", "not", "asked", "else"]
+RowWay = Literal["", "not", "asked", "else"]
 
 
 class HearsKeys:
@@ -21,12 +21,12 @@ class HearsKeys:
         tables = expressions.words.tables
         self.names = {*tables["phrases"], *tables["answers"]} - {*WORD_LISTS, *TABLES}
 
-    def read(self, key: str, where: NodePath) -> tuple[Way, tuple[str, ...]]:
+    def read(self, key: str, where: NodePath) -> tuple[RowWay, tuple[str, ...]]:
         """The way and the names of a key; no way and no names (and reported) if it can't be read."""
         if key == "else":
             return "else", ()
         words = key.split()
-        way: Way = ""
+        way: RowWay = ""
         if len(words) > 1 and words[0] in ("not", "asked"):
             way = "not" if words[0] == "not" else "asked"
         rest = "".join(words[bool(way) :])

@@ -12,7 +12,7 @@ from lumen.interpreters.expressions import ExpressionError, Scope
 from lumen.interpreters.talk.hearing import Taken, hearing_of, said_in
 from lumen.language.machines import MachineDefinition
 
-CompiledGuard = Callable[[Scope], bool]
+RowGuard = Callable[[Scope], bool]
 
 
 class RowBlock:
@@ -20,10 +20,10 @@ class RowBlock:
 
     __slots__ = ("_any", "_machine", "_own")
 
-    def __init__(self, machine: MachineDefinition, own: Mapping[int, CompiledGuard | None]) -> None:
+    def __init__(self, machine: MachineDefinition, own: Mapping[int, RowGuard | None]) -> None:
         self._machine, self._own, self._any = machine, own, next(iter(own))
 
-    def guards(self, number: int) -> tuple[CompiledGuard, CompiledGuard]:
+    def guards(self, number: int) -> tuple[RowGuard, RowGuard]:
         """The guard of a row, and its guard when it is late."""
         return partial(self._holds, number, False), partial(self._holds, number, True)
 

@@ -19,7 +19,7 @@ _MAX_FINDS = 500
 _MAX_WALKS = 10_000
 """Of one text: patterns with several slots have no end of ways to fit a long one."""
 
-Node: TypeAlias = dict[Any, Any]
+_Node: TypeAlias = dict[Any, Any]
 Languages: TypeAlias = Mapping[str, Sequence[str]]
 _PARTICLES = frozenset(
     (
@@ -56,7 +56,7 @@ class Find(NamedTuple):
     strength: int
 
 
-class Reading:
+class ReadSentence:
     """A text as it was read, and the forms found in it by name."""
 
     __slots__ = ("clauses", "filler", "finds", "kept", "marks", "slotted", "spans", "speech", "text", "walks", "words")
@@ -164,8 +164,8 @@ class Finder:
     ) -> None:
         self.speech, self.anyhow = speech, frozenset(anyhow)
         self._tables = (*tables.values(), *(table for several in (rows or {}).values() for table in several), *others)
-        self.root: Node = {}
-        self.leading: list[tuple[frozenset[str], Node]] = []
+        self.root: _Node = {}
+        self.leading: list[tuple[frozenset[str], _Node]] = []
         """Forms that begin with a slot, and words that such a form needs."""
         self.slots_only: list[tuple[Form, Entry]] = []
         self.lists = {name: self._list(entries) for name, entries in (lists or {}).items()}
@@ -181,8 +181,8 @@ class Finder:
         texts = {text for table in self._tables for several in table.values() for text in several}
         return frozenset(self.speech.same(form.literals) for text in texts for form in forms(text) if form.plain)
 
-    def _list(self, entries: Sequence[tuple[Languages, Any]]) -> Node:
-        root: Node = {}
+    def _list(self, entries: Sequence[tuple[Languages, Any]]) -> _Node:
+        root: _Node = {}
         for table, value in entries:
             for phrases in table.values():
                 for phrase in phrases:
@@ -220,15 +220,15 @@ class Finder:
         if not words:
             self.slots_only.append((form, entry))
         elif isinstance(parts[0], Slot):
-            node: Node = {}
+            node: _Node = {}
             _insert(node, parts, entry)
             self.leading.append((frozenset(words), node))
         else:
             _insert(self.root, parts, entry)
 
-    def read(self, text: str) -> Reading:
+    def read(self, text: str) -> ReadSentence:
         """Find all forms that have words of their own in a text."""
-        reading = Reading(text, self.speech)
+        reading = ReadSentence(text, self.speech)
         words, root = reading.words, self.root
         for start, word in enumerate(words):
             if word in root:
@@ -241,13 +241,13 @@ class Finder:
                         self._walk(reading, node, start, start, (), 0, reading.finds)
         return reading
 
-    def slotted(self, reading: Reading) -> dict[str, list[Find]]:
+    def slotted(self, reading: ReadSentence) -> dict[str, list[Find]]:
         """Find the forms that are slots only."""
         if reading.slotted is None:
             found: dict[str, list[Find]] = {}
             reading.slotted = found
             for form, entry in self.slots_only:
-                node: Node = {}
+                node: _Node = {}
                 _insert(node, form.parts, entry)
                 for start in range(len(reading.words)):
                     if start == 0 or reading.clauses[start] != reading.clauses[start - 1] or reading.filler[start - 1]:
@@ -256,8 +256,8 @@ class Finder:
 
     def _walk(
         self,
-        reading: Reading,
-        node: Node,
+        reading: ReadSentence,
+        node: _Node,
         position: int,
         start: int,
         caught: tuple[tuple[str, Any], ...],
@@ -290,7 +290,7 @@ class Finder:
             else:
                 return
 
-    def _catch(self, reading: Reading, slot: Slot, start: int, *, last: bool) -> Iterator[tuple[int, Any, int]]:
+    def _catch(self, reading: ReadSentence, slot: Slot, start: int, *, last: bool) -> Iterator[tuple[int, Any, int]]:
         """Yield the end, the value and the words that count of each catch of a slot, the longest first."""
         match slot.type:
             case "name" | "name?":
@@ -315,13 +315,13 @@ class Finder:
                 yield from reversed(found[-1:] if last else found)
 
     def _names(
-        self, reading: Reading, start: int, small: frozenset[str], *, careful: bool, last: bool
+        self, reading: ReadSentence, start: int, small: frozenset[str], *, careful: bool, last: bool
     ) -> Iterator[int]:
         """The ends of a name that begins with a word, the longest first: one to four words of one clause."""
         ends = self._name_ends(reading, start, small, careful=careful)
         yield from reversed(ends[-1:] if last else ends)
 
-    def _name_ends(self, reading: Reading, start: int, small: frozenset[str], *, careful: bool) -> list[int]:
+    def _name_ends(self, reading: ReadSentence, start: int, small: frozenset[str], *, careful: bool) -> list[int]:
         words, speech, capitals = reading.words, self.speech, _has_capitals(reading)
         found: list[int] = []
         several = False
@@ -361,7 +361,7 @@ class Finder:
             or word in speech.not_names or word in speech.contrasts
         )  # fmt: skip
 
-    def _is_sure(self, reading: Reading, start: int, end: int, small: frozenset[str], *, several: bool) -> bool:
+    def _is_sure(self, reading: ReadSentence, start: int, end: int, small: frozenset[str], *, several: bool) -> bool:
         words = tuple(reading.words[start:end])
         if words in self.phrases or (len(words) == 1 and reading.text[reading.spans[start][1] :].lstrip()[:1] == "?"):
             return False
@@ -375,7 +375,7 @@ def _spoken(part: str | Slot, language: str) -> str | Slot:
     return part._replace(language=language) if isinstance(part, Slot) else part
 
 
-def _insert(root: Node, parts: Sequence[str | Slot], entry: Any) -> None:
+def _insert(root: _Node, parts: Sequence[str | Slot], entry: Any) -> None:
     node = root
     for part in parts:
         if isinstance(part, Slot):
@@ -387,13 +387,13 @@ def _insert(root: Node, parts: Sequence[str | Slot], entry: Any) -> None:
     node.setdefault(_ENDS, []).append(entry)
 
 
-def _appended(slots: list[tuple[Slot, Node]], slot: Slot) -> Node:
-    node: Node = {}
+def _appended(slots: list[tuple[Slot, _Node]], slot: Slot) -> _Node:
+    node: _Node = {}
     slots.append((slot, node))
     return node
 
 
-def _has_capitals(reading: Reading) -> bool:
+def _has_capitals(reading: ReadSentence) -> bool:
     """Whether the speaker's words come with capitals, beyond those with which every sentence begins and "I"."""
     found = reading.kept.get("capitals")
     if found is None:
@@ -406,7 +406,7 @@ def _has_capitals(reading: Reading) -> bool:
     return bool(found)
 
 
-def _begins_with_capital(reading: Reading, position: int) -> bool:
+def _begins_with_capital(reading: ReadSentence, position: int) -> bool:
     return reading.text[reading.spans[position][0]].isupper() and reading.words[position] not in ("i",)
 
 
@@ -415,5 +415,5 @@ def _caseless(said: str) -> bool:
     return said.upper() == said.lower()
 
 
-def _text_end(reading: Reading, end: int) -> int:
+def _text_end(reading: ReadSentence, end: int) -> int:
     return len(reading.text.rstrip()) if end == len(reading.words) else reading.spans[end - 1][1]

@@ -139,7 +139,7 @@ def _is_title(word: str, text: str, end: int) -> bool:
     return word in _TITLES and text[end : end + 2] == ". "
 
 
-class Words(NamedTuple):
+class SplitText(NamedTuple):
     """A text as words: as they are compared, where each is in the text, and the clause that it is in, from 0."""
 
     text: str
@@ -148,7 +148,7 @@ class Words(NamedTuple):
     clauses: list[int]
 
 
-def read_words(text: str) -> Words:
+def read_words(text: str) -> SplitText:
     """Read the words and clauses of a text, as far as it is examined."""
     text = text[:MAX_TEXT_EXAMINED]
     found: list[str] = []
@@ -163,4 +163,4 @@ def read_words(text: str) -> Words:
             spans.append((start, end))
             clauses.append(clause)
         last = end
-    return Words(text, found, spans, clauses)
+    return SplitText(text, found, spans, clauses)

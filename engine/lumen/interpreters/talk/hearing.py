@@ -4,7 +4,7 @@ from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
-from lumen.interpreters.talk.finder import Find, Finder, Reading
+from lumen.interpreters.talk.finder import Find, Finder, ReadSentence
 from lumen.interpreters.talk.patterns import Form, Slot, forms
 from lumen.interpreters.talk.speech import WORD_LISTS, Speech
 from lumen.language.machines import Answer, Hears, MachineDefinition
@@ -30,7 +30,7 @@ class Taken(NamedTuple):
     find: Find | None = None
 
 
-class Order(NamedTuple):
+class RowOrder(NamedTuple):
     """The rows of a state that a sentence may take, the best first.
 
     The `late` ones, which are slots only and then `else`, count only if no state has taken another.
@@ -68,10 +68,10 @@ class Hearing:
             machine.anyhow,
             [table for name, table in machine.phrases.items() if name not in heard and name not in WORD_LISTS],
         )
-        self._readings: OrderedDict[str, Reading] = OrderedDict()
+        self._readings: OrderedDict[str, ReadSentence] = OrderedDict()
         self._finders: dict[int, tuple[Any, Finder]] = {}
 
-    def read(self, text: str) -> Reading:
+    def read(self, text: str) -> ReadSentence:
         """Read a text; the last ones are kept."""
         reading = self._readings.get(text)
         if reading is None:
@@ -80,11 +80,11 @@ class Hearing:
                 self._readings.popitem(last=False)
         return reading
 
-    def order(self, number: int, text: str, context: Mapping[str, Any]) -> Order:
+    def order(self, number: int, text: str, context: Mapping[str, Any]) -> RowOrder:
         """The rows that a sentence may take, of the state that the row of this number belongs to."""
         reading, block = self.read(text), self.blocks[number]
         key = block[0].number
-        found: Order | None = reading.kept.get(key)
+        found: RowOrder | None = reading.kept.get(key)
         if found is None:
             found = self._order(reading, block, context)
             if not any(name.startswith(ENTRY) for row in block for name in row.names):
@@ -115,7 +115,7 @@ class Hearing:
         counts = any(one.number == number for one in (*order.first, *order.late))
         return find, dropped(reading, find, row.way, find.entry.name in asked) or ("" if counts else "refusal")
 
-    def _order(self, reading: Reading, block: Sequence[Hears], context: Mapping[str, Any]) -> Order:
+    def _order(self, reading: ReadSentence, block: Sequence[Hears], context: Mapping[str, Any]) -> RowOrder:
         asked = asked_in(block)
         found = {row.number: self.best(reading, row, asked, context) for row in block if reading.words}
         refused = {reading.negation(find) for row in block if row.way == "not" and (find := found.get(row.number))}
@@ -133,10 +133,10 @@ class Hearing:
             else:
                 late.append(Taken(row.number, find))
         first.sort(key=lambda one: one[0])
-        return Order(tuple(taken for _, taken in first), (*late, *otherwise))
+        return RowOrder(tuple(taken for _, taken in first), (*late, *otherwise))
 
     def best(
-        self, reading: Reading, row: Hears, asked: set[str], context: Mapping[str, Any], *, counting: bool = True
+        self, reading: ReadSentence, row: Hears, asked: set[str], context: Mapping[str, Any], *, counting: bool = True
     ) -> Find | None:
         """The find for a row: the strongest, of equals the one of the upper answer, then the last.
 
@@ -151,7 +151,7 @@ class Hearing:
                     best, rank = find, its
         return best
 
-    def _finds(self, reading: Reading, name: str, context: Mapping[str, Any]) -> Iterator[Find]:
+    def _finds(self, reading: ReadSentence, name: str, context: Mapping[str, Any]) -> Iterator[Find]:
         if name.startswith(ENTRY):
             found = self._entry_finder(name, context)
             if found is None:
@@ -186,7 +186,7 @@ class Hearing:
         return kept[1]
 
 
-def dropped(reading: Reading, find: Find, way: str, asks: bool) -> Dropped:
+def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
     """Why a find does not count in that way: found, negated or asked; `asks` if a row takes questions for it."""
     if reading.negation(find) is not None:
         return "" if way == "not" else "negated"
