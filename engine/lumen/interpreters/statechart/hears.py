@@ -29,15 +29,22 @@ class RowBlock:
 
     def chosen(self, scope: Scope) -> int:
         """Return the number of the row that is taken, or -1; raise ExpressionError if a guard fails."""
-        return next((one.number for one in self._order(scope, False) if self._is_true(one, scope)), -1)
+        for number, _ in self._order(scope, False):
+            guard = self._own[number]
+            if guard is None or guard(scope):
+                return number
+        return -1
 
     def chosen_late(self, scope: Scope) -> int:
-        """The number of the late row that is taken, as `chosen`."""
-        return next((one.number for one in self._order(scope, True) if self._is_true(one, scope)), -1)
+        """Return the number of the late row that is taken, as `chosen`."""
+        for number, _ in self._order(scope, True):
+            guard = self._own[number]
+            if guard is None or guard(scope):
+                return number
+        return -1
 
     def _order(self, scope: Scope, late: bool) -> tuple[Taken, ...]:
-        order = hearing_of(self._machine).order(self._any, said_in(scope.event), scope.context)
-        return order.late if late else order.first
+        return hearing_of(self._machine).order(self._any, said_in(scope.event), scope.context)[late]
 
     def _is_true(self, taken: Taken, scope: Scope) -> bool:
         guard = self._own[taken.number]

@@ -82,13 +82,13 @@ class Hearing:
 
     def order(self, number: int, text: str, context: Mapping[str, Any]) -> RowOrder:
         """The rows that a sentence may take, of the state that the row of this number belongs to."""
-        reading, block = self.read(text), self.blocks[number]
-        key = block[0].number
-        found: RowOrder | None = reading.kept.get(key)
+        reading = self._readings.get(text) or self.read(text)
+        found: RowOrder | None = reading.kept.get(number)
         if found is None:
+            block = self.blocks[number]
             found = self._order(reading, block, context)
             if not any(name.startswith(ENTRY) for row in block for name in row.names):
-                reading.kept[key] = found
+                reading.kept.update(dict.fromkeys([row.number for row in block], found))
         return found
 
     def caught(self, number: int, event: Any, context: Mapping[str, Any], language: str) -> dict[str, Any]:
