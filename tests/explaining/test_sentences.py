@@ -58,8 +58,8 @@ def test_guards_decide_with_the_context() -> None:
 def test_what_was_found_is_told_with_its_words() -> None:
     sentence = explained(MACHINE, "offer.choice", "Please show me the Organ, no", MACHINE.context, "en")
     found = {row.key: row.found for row in sentence.rows}
-    assert found["tour_of"] == ("tour_of", "show me the Organ", 4, None, False, False, True)
-    assert found["no|done"] == ("no", "no", 1, True, False, False, True)
+    assert found["tour_of"] == ("tour_of", "show me the Organ", 4, None, False, False, "")
+    assert found["no|done"] == ("no", "no", 1, True, False, False, "")
     assert found["sing"] is None
     assert sentence.taken
     assert sentence.taken.slots == {"exhibits": MACHINE.lists["exhibits"][0]}

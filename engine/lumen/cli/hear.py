@@ -12,6 +12,7 @@ from lumen.interpreters.explaining.sayings import caught_text, path_of
 from lumen.interpreters.explaining.sentences import (
     ExplainedRow,
     ExplainedSentence,
+    FoundPhrase,
     explained,
     first_context,
     hearing_states,
@@ -131,10 +132,16 @@ def _row(machine: MachineDefinition, row: ExplainedRow, taken: ExplainedRow | No
     return {
         "state": row.state,
         "row": row.key,
-        "found": row.found._asdict() if row.found else None,
+        "found": _found(row.found) if row.found else None,
         "guard": {"text": guard.shown, "holds": row.guard, "error": row.error or None} if guard else None,
         "taken": row.taken,
         "because": row.because(taken),
         "leads_to": [machine.states[target].name for target in row.transition.targets],
         **({"caught": row.caught} if row.taken else {}),
     }
+
+
+def _found(found: FoundPhrase) -> dict[str, object]:
+    data = found._asdict()
+    del data["dropped"]
+    return {**data, "counts": found.counts}
