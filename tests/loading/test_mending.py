@@ -3,6 +3,7 @@
 from pathlib import Path
 from random import Random
 
+from lumen.loading.bracketed_texts import bracketed
 from lumen.loading.line_marks import marks_of
 from lumen.loading.mending import failure, mistake
 from tests.tables import for_each
@@ -54,3 +55,26 @@ def test_whatever_is_broken_nothing_but_its_lines_is_changed(seed: int) -> None:
     assert further is None or further > failed
     assert 1 <= slip.line <= len(before)
     assert slip.length > 0
+
+
+@for_each(
+    "line, meant",
+    [
+        ("    en: [my name is {name}]", '    en: ["my name is {name}"]'),
+        ("    en: [yes, call me [now], [please] dance]", '    en: [yes, "call me [now]", "[please] dance"]'),
+        ("    en: [please] dance  # politely", '    en: "[please] dance"  # politely'),
+        ("      - [please] dance", '      - "[please] dance"'),
+        ("      - {name} is my name", '      - "{name} is my name"'),
+        ("    x: {en: [(a|b, c) [d]], id: [e] f}", '    x: {en: ["(a|b, c) [d]"], id: "[e] f"}'),
+        ("      call me {name}, dance [now]]", '      "call me {name}", "dance [now]"]'),
+    ],
+)
+def test_a_text_with_brackets_in_it_gets_quotes(line: str, meant: str) -> None:
+    assert meant in [slip.meant[0] for slip in bracketed(line, 0)]
+
+
+@for_each(
+    "line", ["    do: [{wait: 1s} {say: x}]", "    x: [1, 2] [3, 4]", "    on: {face: a} b", "    x: {a: [b], c: {}}"]
+)
+def test_lists_and_maps_get_none(line: str) -> None:
+    assert list(bracketed(line, 0)) == []

@@ -10,6 +10,7 @@ from itertools import chain, islice
 
 import yaml
 
+from lumen.loading.bracketed_texts import bracketed
 from lumen.loading.document import MAX_NODE_DEPTH
 from lumen.loading.indentation import depths, items, too_deep
 from lumen.loading.line_marks import closers, marks_of
@@ -93,6 +94,7 @@ def _candidates(lines: Sequence[str], row: int) -> Iterator[Slip]:
     yield from too_deep(lines, row)
     for i in near:
         yield from items(lines, i)
+        yield from bracketed(lines[i], i)
         yield from colons(lines[i], i)
         yield from flows(lines[i], i)
 

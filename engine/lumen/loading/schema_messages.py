@@ -7,6 +7,7 @@ from typing import Any
 from lumen.interpreters.json_schema import occurs
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint
+from lumen.loading.bracketed_texts import slot_signs
 from lumen.loading.units import seconds
 from lumen.loading.yaml_scalars import resolve
 
@@ -146,8 +147,13 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
         return f'put it in quotes: "{written}"'
     if wanted == ["string"] and isinstance(value, list) and value and isinstance(value[0], str):
         return f"only one can stand here, such as `{_short(value[0])}`"
+    if "string" in wanted and isinstance(value, dict) and value and all(v is None for v in value.values()):
+        return f'a text that begins with `{{` needs quotes: "{{{_short(", ".join(value))}}}"'
     if "string" in wanted and isinstance(value, dict) and [type(v) for v in value.values()] == [str]:
-        return f'a text that holds a colon and a blank needs quotes: "{_short(_flow(value)[1:-1])}"'
+        text = _short(_flow(value)[1:-1])
+        if slot_signs(text) != text:
+            return f"a slot has its type first, and no blank in it: `{slot_signs(text)}`"
+        return f'a text that holds a colon and a blank needs quotes: "{text}"'
     return ""
 
 

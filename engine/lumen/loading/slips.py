@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lumen.loading.line_marks import LineMarks, Mark, closers, marks_of
 
-_KEY = r"[A-Za-z_][\w.]*"
+KEY = r"[A-Za-z_][\w.]*"
 
 
 class Slip(NamedTuple):
@@ -42,13 +42,13 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
         "delete it, and type spaces",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>： ?)"),
+        re.compile(f"^ *(?:- )?{KEY}(?P<slip>： ?)"),
         ": ",
         "this colon is a wide one, of Chinese or Japanese text",
         "write `:` and a blank",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}:(?P<slip>[\u00a0\u2007\u202f\u3000\u200b]+)"),
+        re.compile(f"^ *(?:- )?{KEY}:(?P<slip>[\u00a0\u2007\u202f\u3000\u200b]+)"),
         " ",
         "this looks like a blank, and is another character",
         "delete it, and type a space",
@@ -60,31 +60,31 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
         "write `- `",
     ),
     (
-        re.compile(f"^ *(?P<slip>-)(?={_KEY}:(?: |$))"),
+        re.compile(f"^ *(?P<slip>-)(?={KEY}:(?: |$))"),
         "- ",
         "between the hyphen of an item and its text stands a blank",
         "write `- `",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>:)(?=[A-Za-z\"'\\[{{][^ ]*$)(?!//)"),
+        re.compile(f"^ *(?:- )?{KEY}(?P<slip>:)(?=[A-Za-z\"'\\[{{][^ ]*$)(?!//)"),
         ": ",
         "between a colon and its value stands a blank",
         "write `: `",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}(?P<slip> ?=) ?(?=[^=>])"),
+        re.compile(f"^ *(?:- )?{KEY}(?P<slip> ?=) ?(?=[^=>])"),
         ": ",
         "between a key and its value stands a colon",
         "write `: `",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}(?P<slip> *;)(?: |$)"),
+        re.compile(f"^ *(?:- )?{KEY}(?P<slip> *;)(?: |$)"),
         ":",
         "a semicolon stands where a colon should",
         "write `: `",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>::)(?: |$)"),
+        re.compile(f"^ *(?:- )?{KEY}(?P<slip>::)(?: |$)"),
         ":",
         "two colons stand behind a key",
         "write one: `: `",
@@ -108,7 +108,7 @@ class _Line(NamedTuple):
         value = self.text[start:end]
         plain = '"' not in value and "\\" not in value
         meant = f'"{value}"' if plain else "'" + value.replace("'", "''") + "'"
-        words = message, hint or f"put quotes around it: {_short(meant)}"
+        words = message, hint or f"put quotes around it: {short(meant)}"
         return self.slip(start, end - start, words, start, end, meant)
 
 
@@ -134,7 +134,7 @@ def quotes(text: str, index: int) -> Iterator[Slip]:
         for end in _ends(text, column):
             yield line.slip(column, 1, NOT_CLOSED, end, end, sign)
     if found := re.search(
-        rf"(?:{_KEY}: +|- +)(?P<text>[^\s\"'\[{{|>&*!][^\"']*)(?P<sign>[\"'])(?= *(?:[,\]}}]|$))", text
+        rf"(?:{KEY}: +|- +)(?P<text>[^\s\"'\[{{|>&*!][^\"']*)(?P<sign>[\"'])(?= *(?:[,\]}}]|$))", text
     ):
         start, sign = found.start("text"), found["sign"]
         words = (
@@ -150,9 +150,9 @@ def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[S
     """A quoted text with something behind it."""
     (sign, start), text = first, line.text
     rest = text[last.column + 1 :]
-    if found := re.search(rf"(?P<end>,) *(?:{_KEY}: +)?$", text[start : last.column]):  # it opens the next one
+    if found := re.search(rf"(?P<end>,) *(?:{KEY}: +)?$", text[start : last.column]):  # it opens the next one
         yield line.slip(start, 1, NOT_CLOSED, start + found.start(), start + found.start(), sign)
-    if re.match(rf" +(?:{_KEY}|['\"\[{{])", rest):
+    if re.match(rf" +(?:{KEY}|['\"\[{{])", rest):
         yield line.slip(last.column + 1, 1, NO_COMMA, last.column + 1, last.column + 1, ",")
     again = text.rfind(sign, last.column + 1)
     end = again + 1 if again > 0 else marks.stop
@@ -171,7 +171,7 @@ def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[S
 def _ends(text: str, start: int) -> Iterator[int]:
     """Where a text that begins there may have been meant to end: before what is like the next key, or at the end."""
     stop = len(text.rstrip())
-    if found := re.search(rf", *{_KEY}:(?= )", text[start:]):
+    if found := re.search(rf", *{KEY}:(?= )", text[start:]):
         yield start + found.start()
     bare = len(text[:stop].rstrip("]} "))
     yield from (end for end in range(bare, stop) if end > start)
@@ -234,41 +234,41 @@ def _braces(line: _Line, marks: LineMarks) -> Iterator[Slip]:
 def colons(text: str, index: int) -> Iterator[Slip]:
     """A key without its colon, or a value with one that is none of YAML's."""
     line, item = _Line(text, index), r"^ *(?:- +)*"
-    if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{_KEY})(?P<rest> +[^ :#].*| *)$", text):
+    if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{KEY})(?P<rest> +[^ :#].*| *)$", text):
         start, end, rest = *found.span("key"), found["rest"].strip()
         shown = f"write `{found['key']}: {rest}"[:40].rstrip() + "`"
         alone = f"write `{found['key']}:` if it is a key; else indent it below its key"
         yield line.slip(start, end - start, (_no_colon(found["key"]), shown if rest else alone), end, end, ":")
-    if found := re.search(rf"{item}{_KEY}:(?P<slip> +- +)\S", text):
+    if found := re.search(rf"{item}{KEY}:(?P<slip> +- +)\S", text):
         words = "the first item of a list stands behind its key", "begin a new line with `- `, below the key"
         yield line.slip(found.start("slip") + 1, 1, words, *found.span("slip"), " ")
-    if found := re.search(rf"{item}(?P<all>{_KEY}: [^,]+(?:, *{_KEY}: [^,]+)+) *$", text):
+    if found := re.search(rf"{item}(?P<all>{KEY}: [^,]+(?:, *{KEY}: [^,]+)+) *$", text):
         (start, end), meant = found.span("all"), f"{{{found['all']}}}"
-        words = "several keys in one line need braces around them", f"write `{_short(meant)}`"
+        words = "several keys in one line need braces around them", f"write `{short(meant)}`"
         yield line.slip(start, end - start, words, start, end, meant)
-    found = re.search(rf"{item}(?P<key>{_KEY}): +(?P<value>(?P<inner>#?[a-z][\w.]*): .*?) *$", text)
+    found = re.search(rf"{item}(?P<key>{KEY}): +(?P<value>(?P<inner>#?[a-z][\w.]*): .*?) *$", text)
     if found and (
         len(found["key"]) > 2 or found["key"] in ("on", "do", "at", "if")
     ):  # a language has two letters, and a text behind it
         message = f"two keys stand in one line: `{found['key']}` and `{found['inner']}`"
         hint = f"write `{found['inner']}:` in the next line, further in, or quotes around it if it is a text"
         yield line.quoted(*found.span("value"), message, hint)
-    if found := re.search(rf"{item}{_KEY}: +(?P<value>(?!- )[^\"'\[{{|>#].*?: ?.*?) *$", text):
+    if found := re.search(rf"{item}{KEY}: +(?P<value>(?!- )[^\"'\[{{|>#].*?: ?.*?) *$", text):
         yield line.quoted(*found.span("value"), COLON_IN_TEXT)
-    if found := re.search(rf"{item}{_KEY}: +(?P<value>[@%`!&*|>,\]}}].*?) *$", text):
+    if found := re.search(rf"{item}{KEY}: +(?P<value>[@%`!&*|>,\]}}].*?) *$", text):
         yield line.quoted(*found.span("value"), _odd_beginning(found["value"]))
 
 
 def flows(text: str, index: int) -> Iterator[Slip]:
     """What is missing in brackets: commas, colons, and quotes around texts with a colon in them."""
     line = _Line(text, index)
-    for found in re.finditer(rf"(?<=[\w\"'\]}}.])(?P<slip> +)(?={_KEY}: )", text):
+    for found in re.finditer(rf"(?<=[\w\"'\]}}.])(?P<slip> +)(?={KEY}: )", text):
         yield line.slip(found.start(), 1, NO_COMMA, found.start(), found.start(), ",")
-    for found in re.finditer(rf"{_KEY}: +(?P<value>[^\"'\[\]{{}},:]+: [^\"'\[\]{{}},]*[^\"'\[\]{{}}, ])", text):
+    for found in re.finditer(rf"{KEY}: +(?P<value>[^\"'\[\]{{}},:]+: [^\"'\[\]{{}},]*[^\"'\[\]{{}}, ])", text):
         yield line.quoted(*found.span("value"), COLON_IN_TEXT)
-    for found in re.finditer(rf"(?:{_KEY}: +|[\[,] *)(?P<value>[@%`!&*|>][^\"'\[\]{{}},]*)", text):
+    for found in re.finditer(rf"(?:{KEY}: +|[\[,] *)(?P<value>[@%`!&*|>][^\"'\[\]{{}},]*)", text):
         yield line.quoted(*found.span("value"), _odd_beginning(found["value"]))
-    for found in re.finditer(rf"(?<=[{{,] ){_KEY}(?= +[\w\"'])|(?<=[{{,]){_KEY}(?= +[\w\"'])", text):
+    for found in re.finditer(rf"(?<=[{{,] ){KEY}(?= +[\w\"'])|(?<=[{{,]){KEY}(?= +[\w\"'])", text):
         words = _no_colon(found[0]), f"write `{found[0]}: `"
         yield line.slip(found.start(), len(found[0]), words, found.end(), found.end(), ":")
 
@@ -281,5 +281,5 @@ def _odd_beginning(value: str) -> str:
     return f"a text that begins with `{value[0]}` needs quotes"
 
 
-def _short(text: str) -> str:
+def short(text: str) -> str:
     return text if len(text) <= 60 else f"{text[:40]}…{text[-1]}"
