@@ -33,6 +33,15 @@ def with_common_words(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
     return dict(sorted({**files, COMMON_FILE: common_words()}.items()))
 
 
+def own_files(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
+    """The files of a project that people can edit: those without the words that come with Lumen."""
+    return (
+        {file: content for file, content in files.items() if file != COMMON_FILE}
+        if is_shipped(files, COMMON)
+        else files
+    )
+
+
 def is_shipped(files: Mapping[str, bytes], name: str) -> bool:
     """Whether the words file of that name is not the project's own."""
     return name == COMMON and files.get(COMMON_FILE) == common_words()

@@ -23,6 +23,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.looks import Looks
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import Settings
+from lumen.loading.words import WORDS_FOLDER
 
 
 @dataclass
@@ -33,6 +34,7 @@ class ProjectDraft:
     of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
     and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
+    `words` may hold those that come with Lumen, which have no report: nobody can edit them.
     `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
     files that are not read; `looks` is told of each of them. `today` is the day on which somebody looks, None where
     that does not matter.
@@ -73,6 +75,11 @@ class ProjectDraft:
     def body(self) -> Body | None:
         """The body of the project's robot."""
         return self.bodies.get(self.settings.model) if self.settings else None
+
+    @property
+    def own_words(self) -> dict[str, Words]:
+        """The words files of the project itself, without those that come with Lumen."""
+        return {name: words for name, words in self.words.items() if f"{WORDS_FOLDER}/{name}.yaml" in self.reports}
 
     @property
     def diagnostics(self) -> list[Diagnostic]:

@@ -19,6 +19,7 @@ from lumen.interpreters.expressions.expression_findings import (
     UNKNOWN_NAME,
 )
 from lumen.interpreters.expressions.functions import CAUGHT, DRAWING
+from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.loading.document import Document
@@ -113,7 +114,10 @@ class Expressions:
 
     def _explained(self, finding: ExpressionFinding) -> ExpressionFinding:
         """With a word on where a name is known that is known elsewhere."""
-        home = self.rounds.elsewhere(finding.message.split("`")[1]) if finding.code == UNKNOWN_NAME else ""
+        name = finding.message.split("`")[1] if finding.code == UNKNOWN_NAME else ""
+        if name == HEARD:
+            return finding._replace(hint="it is known in the guard and actions of a row of `hears`: assign it there")
+        home = self.rounds.elsewhere(name) if name else ""
         hint = f"it is an entry within `{home}` only, in its states, `on` and `after`"
         return finding._replace(hint=hint) if home else finding
 

@@ -1,16 +1,23 @@
 """The keys of `hears`: names of phrases and answers, `ENTRY.FIELD` of a `for`, after `not` or `asked`; or `else`."""
 
+import re
 from itertools import pairwise
 from typing import Literal
 
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_PHRASE
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
-from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, Place, did_you_mean
+from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 
-BAD_ROW = Code("bad-row", "conversation", ERROR, "a key of `hears` can't be read")
+BAD_ROW = Code("bad-row", "hearing", ERROR, "a key of `hears` can't be read")
 RowWay = Literal["", "not", "asked", "else"]
+
+_OTHER_SIGNS = re.compile(r"[,;/&+]")
+_BETWEEN = re.compile(r"[\s|,;/&+]+")
+"""What people write between names."""
+_JOINING = frozenset(("and", "or", "dan", "atau", "und", "oder"))
 
 
 class HearsKeys:
@@ -31,8 +38,11 @@ class HearsKeys:
             way = "not" if words[0] == "not" else "asked"
         rest = "".join(words[bool(way) :])
         named = words[bool(way) :]
-        if any(not a.endswith("|") and not b.startswith("|") for a, b in pairwise(named)):
-            hint = f"write `{'|'.join(words)}` for any of them, or `not {words[-1]}` if it was refused"
+        if _OTHER_SIGNS.search(rest) or any(not a.endswith("|") and not b.startswith("|") for a, b in pairwise(named)):
+            names = [name for name in _BETWEEN.split(" ".join(named)) if name and name not in _JOINING]
+            several = "|".join(names)
+            hint = f"write `{way} {several}` for any of them" if way else f"write `{several}` for any of them"
+            hint += "" if way else f", or `not {names[-1]}` if it was refused" if names else ""
             self.report(BAD_ROW, where, f"`{key}` is no row of `hears`", hint, key=True)
             return "", ()
         found = [self.name(name, where) for name in rest.split("|")]
@@ -55,6 +65,21 @@ class HearsKeys:
                 BAD_ROW, where, "`else` can't be joined with names: it is for every other sentence", hint, key=True
             )
         else:
-            hint = did_you_mean(name, self.names, "there are")
-            self.report(UNKNOWN_PHRASE, where, f"there are no phrases or answers named `{name}`", hint, key=True)
+            hint, cause = did_you_mean(name, self.names, "there are"), ""
+            if name in self.expressions.words.offered:
+                hint, cause = f"they come with Lumen: write `{COMMON}` under `words` at the top", f"words {COMMON}"
+            message = f"there are no phrases or answers named `{name}`"
+            if not self.report.follows(UNKNOWN_PHRASE, message):
+                found = UNKNOWN_PHRASE.at(self.place(name, where), message, hint, cause=cause)
+                self.report.diagnostics.append(found)
         return ""
+
+    def place(self, name: str, where: NodePath) -> Place:
+        """Where a name stands in a key."""
+        place = self.report.document.place(where, key=True)
+        line = self.report.document.text.split("\n")[place.line - 1] if place.line == place.end_line else ""
+        found = re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line[place.column - 1 : place.end_column - 1])
+        if found is None:
+            return place
+        start = place.column + found.start()
+        return place._replace(column=start, end_column=start + len(name))

@@ -26,7 +26,7 @@ class KnownWords(NamedTuple):
 
     `borrowed` says of (key, name) from which of them it comes. Unless `whole`, one of them can't be read, and a name
     that is not known may be there. `anyhow` are the names of phrases that count even if negated, and `supplied` is
-    what of Lumen's own words is used without being named, as data.
+    what of Lumen's own words is used without being named, as data; `offered` are the names that it has beside.
     """
 
     tables: Mapping[str, Mapping[str, Any]]
@@ -35,6 +35,7 @@ class KnownWords(NamedTuple):
     whole: bool
     anyhow: frozenset[str] = frozenset()
     supplied: Any = None
+    offered: frozenset[str] = frozenset()
 
 
 def known_words(
@@ -84,10 +85,11 @@ class _Gatherer:
                 hint = did_you_mean(name.removesuffix(".yaml"), self.names, f"{WORDS_FOLDER}/ has")
                 self.report(UNKNOWN_WORDS, where, f"there is no words file `{name}`", hint, cause=f"words {name}")
         whole = all(name in self.files and self.files[name].built for name in rows)
-        supplied = None
+        supplied, offered = None, frozenset[str]()
         if self.shipped and (COMMON in rows or hears) and (common := COMMON in self.files and self.files[COMMON].built):
             supplied = self.supply(common, everything=COMMON in rows)
-        return KnownWords(self.tables, tuple(rows), self.borrowed, whole, self.anyhow, supplied)
+            offered = frozenset((*common.phrases, *common.answers)).difference(*self.tables.values())
+        return KnownWords(self.tables, tuple(rows), self.borrowed, whole, self.anyhow, supplied, offered)
 
     def supply(self, common: Words, *, everything: bool) -> Any:
         """Add Lumen's own words under names that nothing has yet; what was added."""

@@ -19,7 +19,7 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.chosen_model import chosen
 from lumen.loading.chosen_robot import chosen_robot
-from lumen.loading.common_words import COMMON, is_shipped, with_common_words
+from lumen.loading.common_words import COMMON, COMMON_FILE, is_shipped, with_common_words
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import (
@@ -227,7 +227,10 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
         languages=languages,
         shipped=shipped,
     )
-    return _each(found, "behaviors", build, around=(contents, shared, performed, languages, shipped))
+    behaviors = _each(found, "behaviors", build, around=(contents, shared, performed, languages, shipped))
+    if shipped:
+        found.reports.pop(COMMON_FILE, None)
+    return behaviors
 
 
 def _each(

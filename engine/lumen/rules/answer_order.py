@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from lumen.interpreters.expressions.phrases import is_heard
 from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, walk
 from lumen.language.machines import Answer, MachineDefinition, State
 from lumen.loading.document_report import DocumentReport
@@ -11,7 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.guards import covers, heard_call
 from lumen.rules.logic import tree
 from lumen.rules.speech import SHADOWED_ANSWER
-from lumen.rules.word_tables import word_tables
+from lumen.rules.word_tables import is_taken, word_tables
 
 
 class Asking(NamedTuple):
@@ -74,4 +73,4 @@ def _taken(
 
 def _taker(machine: MachineDefinition, phrase: str, before: tuple[str, ...]) -> str:
     """The first of these names whose phrases are heard in that one; empty where none is."""
-    return next((name for name in before if is_heard(phrase, machine.phrases.get(name, {}))), "")
+    return next((name for name in before if is_taken(phrase, machine.phrases.get(name, {}))), "")

@@ -132,12 +132,14 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                 continue
             if _of_the_engine(event):
                 if sound and not report.lost.intersection(event.split(".")) and (hint := ending_fault(machine, event)):
-                    path, message = _descriptor(transition.where, event), f"nothing raises the event `{event}`"
+                    path, message = descriptor_path(transition), f"nothing raises the event `{event}`"
                     report(UNKNOWN_EVENT, path, message, hint, key=True)
             else:
-                path = _descriptor(transition.where, event)
+                path = descriptor_path(transition)
                 hint = _hint(draft.settings, event, known, draft.main.lost | report.lost)
                 message = f"nothing raises the event `{event}`"
+                if transition.hears:
+                    path, message = path[:-1], f"`hears` waits for the event `{event}`, which nothing raises"
                 report(UNKNOWN_EVENT, path, message, hint, key=True, cause=f"name {event}")
 
 
@@ -163,7 +165,7 @@ def _misnamed(event: str, machine: MachineDefinition, report: DocumentReport) ->
         return False
     path = (*sites[0], "raise")
     message = f"nothing waits for the event `{name}`, and nothing raises `{event}`"
-    related = [(_descriptor(waiting[0].where, event), f"`{event}` is waited for here")]
+    related = [(descriptor_path(waiting[0]), f"`{event}` is waited for here")]
     report(UNKNOWN_EVENT, first(report, (*path, "event"), path), message, f"did you mean `{event}`?", related=related)
     return True
 
@@ -174,9 +176,10 @@ def _of_the_engine(event: str) -> bool:
     return event.startswith(longer) or any(hears(event, family.removesuffix(".")) for family in BUILT_IN_FAMILIES)
 
 
-def _descriptor(where: NodePath, event: str) -> NodePath:
-    """The path of the key under `on`: a candidate may stand in a list below it."""
-    return where if where[-1] == event else where[:-1]
+def descriptor_path(transition: Transition) -> NodePath:
+    """The path of the key under `on`, or of the row of `hears`: a candidate may stand in a list below it."""
+    key = transition.hears.key if transition.hears else transition.event
+    return transition.where if transition.where[-1] == key else transition.where[:-1]
 
 
 def _raised(draft: ProjectDraft, name: str, report: DocumentReport) -> None:

@@ -7,14 +7,16 @@ from typing import Any
 
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
 from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
+from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import Template, context_key
-from lumen.language.diagnostics import NodePath, Place, Related
+from lumen.language.diagnostics import Place, Related
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.shared import SHARED
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
 from lumen.loading.remembered_findings import Check, RememberedFindings
+from lumen.rules.caught import caught_schema
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.lists import entry_schema, list_schema
 from lumen.rules.lookups import value_at
@@ -63,9 +65,7 @@ class _Expressions:
                 self.say(spot, finding)
 
     def findings(self, spot: ExpressionSite) -> Sequence[ExpressionFinding]:
-        transition, variables = spot.transition, self.variables(spot.text.where)
-        if transition and transition.hears:
-            variables["heard"] = {}
+        transition, variables = spot.transition, self.variables(spot)
 
         def around() -> dict[str, Any]:
             there = {"events": self.possible(transition), "variables": variables}
@@ -88,9 +88,12 @@ class _Expressions:
             schema = properties.get(name) if isinstance(properties, Mapping) else None
         return schema if isinstance(schema, Mapping) else None
 
-    def variables(self, where: NodePath) -> dict[str, Any]:
-        """What stands for entries there, each with its schema."""
+    def variables(self, spot: ExpressionSite) -> dict[str, Any]:
+        """What stands for entries there, and `heard` in a row of `hears`, each with its schema."""
+        where = spot.text.where
         found: dict[str, Any] = {SHARED: self.machine.types[SHARED]} if self.machine.shared else {}
+        if spot.transition and spot.transition.hears and HEARD in spot.text.shown:
+            found[HEARD] = caught_schema(self.machine, spot.transition.hears) if self.whole else {}
         for depth in range(len(where) if self.loops else 0):
             node = value_at(self.report, where[:depth])
             loop = node.get("for") if isinstance(node, Mapping) and where[depth] != "for" else None

@@ -4,7 +4,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.parser import MAX_REMEMBERED_TREES
-from lumen.interpreters.expressions.phrases import is_heard
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
@@ -15,6 +14,7 @@ from lumen.loading.memoization import memoize
 from lumen.rules.events import hears
 from lumen.rules.logic import always, implies, never, tree
 from lumen.rules.walk import expression_sites
+from lumen.rules.word_tables import is_taken
 
 CONSTANT_GUARD = Code("constant-guard", "statecharts", WARNING, "a guard is always true, or never")
 OVERLAPPING_GUARDS = Code(
@@ -85,14 +85,28 @@ def _simple(node: ExpressionNode) -> bool:
 def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
     """Candidates that are never taken, or not for all that they name, because an earlier one is."""
     earlier: list[Transition] = []
-    for transition in state.transitions[:MAX_COMPARED_CANDIDATES]:
+    heard = any(transition.hears for transition in state.transitions)
+    candidates = sorted(state.transitions, key=_turn) if heard else state.transitions
+    for transition in candidates[:MAX_COMPARED_CANDIDATES]:
         if any(_takes_all(other, transition, machine, report) for other in earlier if covers(other, transition)):
             continue
         earlier.append(transition)
 
 
+def _turn(transition: Transition) -> int:
+    """When a transition of a state is asked: rows of `hears` after `heard` and before `*`, and `else` after that."""
+    if transition.hears:
+        return 3 if transition.hears.way == "else" else 1
+    return 2 if transition.event == "*" else 0
+
+
 def covers(earlier: Transition, later: Transition) -> bool:
-    """Whether every event that the later one waits for comes to the earlier one first."""
+    """Whether every event that the later one waits for comes to the earlier one first.
+
+    Among rows of `hears` the words of their phrases decide, except between candidates of one row.
+    """
+    if earlier.hears:
+        return later.hears is not None and earlier.hears.key == later.hears.key
     if earlier.exact or later.exact or not (earlier.event and later.event):
         return earlier.event == later.event
     return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")
@@ -107,6 +121,8 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         line = report.document.place(earlier.where).line
         message = f"this is never taken: the transition in line {line} always is, before it"
         hint = "give that one a `guard`, or swap them"
+        if later.hears and not earlier.hears:
+            hint = "give that one a `guard`, or make it the row `else`"
         cause = f"{report.document.file} shadowed by {earlier.where}"
         report(SHADOWED_TRANSITION, later.where, message, hint, related=related, cause=cause)
         return True
@@ -150,7 +166,7 @@ def _taken(first: HeardCall, second: HeardCall, machine: MachineDefinition) -> f
     one, other = machine.phrases[first.name], machine.phrases[second.name]
 
     def heard() -> frozenset[str]:
-        return frozenset(phrase for texts in other.values() for phrase in texts if is_heard(phrase, one))
+        return frozenset(phrase for texts in other.values() for phrase in texts if is_taken(phrase, one))
 
     return memoize(("taken", machine.id, first.name, second.name), (one, other), heard)
 

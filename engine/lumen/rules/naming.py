@@ -1,4 +1,4 @@
-"""What the expressions of a behaviour name: keys of the context, lists, and texts, by which phrases are asked for."""
+"""What a behaviour names: keys of the context, lists, and texts, by which phrases are asked for."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -8,20 +8,26 @@ from lumen.interpreters.expressions.templates import Placeholder
 from lumen.interpreters.expressions.tree import (
     ExpressionNode,
     FieldAccess,
+    FunctionCall,
     Identifier,
     IndexAccess,
     Literal,
     children,
     walk,
 )
+from lumen.interpreters.talk.patterns import slots_of
 from lumen.language.actions import Expression, Template
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import Hears, MachineDefinition
+from lumen.loading.draft import ProjectDraft
 from lumen.rules.logic import tree
 from lumen.rules.walk import expression_sites
 
 
 class Named(NamedTuple):
-    """`keys` of the context and `lists`, None where an expression may read any of them; all `texts` in quotes."""
+    """`keys` of the context and `lists`, None where an expression may read any of them; all `texts` in quotes.
+
+    The names in rows of `hears` are among the texts, and so are lists that a phrase has a slot of.
+    """
 
     keys: frozenset[str] | None
     lists: frozenset[str] | None
@@ -32,10 +38,36 @@ def named_in(machine: MachineDefinition) -> Named:
     """What a behaviour names whose expressions are known to be sound."""
     keys, lists, texts = set[str | None](), set[str | None](), set[str]()
     for root in _trees(machine):
-        keys |= {*_read(root, "context")}
-        lists |= {*_read(root, "lists")}
+        keys |= {*read_names(root, "context")}
+        lists |= {*read_names(root, "lists")}
         texts |= {node.value for node, _ in walk(root) if isinstance(node, Literal) and isinstance(node.value, str)}
+    texts |= {name for row in heard_rows(machine) for name in row.names}
+    texts |= {slot.type for phrase in _phrases(machine) if "{" in phrase for slot in slots_of(phrase)}
     return Named(_all(keys), _all(lists), frozenset(texts))
+
+
+def looked_up(draft: ProjectDraft) -> set[str]:
+    """The tables of answers that expressions look up, where the first row with a phrase in the text wins."""
+    calls = (
+        node.arguments[-1]
+        for machine in draft.behaviors.values()
+        for site in expression_sites(machine)
+        if "lookup" in site.text.shown
+        for root in trees(site.text)
+        for node, _ in walk(root)
+        if isinstance(node, FunctionCall) and node.function == "lookup" and node.arguments
+    )
+    return {name.value for name in calls if isinstance(name, Literal) and isinstance(name.value, str)}
+
+
+def heard_rows(machine: MachineDefinition) -> Iterator[Hears]:
+    """The rows of `hears` of all states."""
+    yield from (t.hears for state in machine.states.values() for t in state.transitions if t.hears)
+
+
+def _phrases(machine: MachineDefinition) -> Iterator[str]:
+    tables = (*machine.phrases.values(), *(row.phrases for rows in machine.answers.values() for row in rows))
+    yield from (phrase for table in tables for texts in table.values() for phrase in texts)
 
 
 def _trees(machine: MachineDefinition) -> Iterator[ExpressionNode]:
@@ -54,7 +86,7 @@ def trees(text: Expression | Template) -> Iterator[ExpressionNode]:
         yield from (tree(part.source) for part in split_template(text.text) if isinstance(part, Placeholder))
 
 
-def _read(root: ExpressionNode, base: str) -> Iterator[str | None]:
+def read_names(root: ExpressionNode, base: str) -> Iterator[str | None]:
     """The names behind `base`, None where it stands alone or what follows is computed."""
     waiting = [root]
     while waiting:

@@ -16,8 +16,10 @@ def check(draft: ProjectDraft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for transition in (t for state in machine.states.values() for t in state.transitions if t.offer):
-            if transition.event not in machine.events:
+            if transition.event not in machine.events or transition.hears:
                 what = f"`{transition.event}`" if transition.event and not transition.timed else "what has no event"
                 message = f"{what} is offered to a language model, and is no event of `events`"
                 hint = "offer an event of its own, and describe its data under `events`: nobody else raises it then"
+                if transition.hears:
+                    message = "a row of `hears` is offered to a language model, which could then say it was a visitor"
                 report(MISPLACED_OFFER, (*transition.where, "offer"), message, hint, key=True)

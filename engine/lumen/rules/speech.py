@@ -5,21 +5,24 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from lumen.interpreters.expressions.phrases import is_heard
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.language.sayings import SAYINGS_FOLDER
+from lumen.loading.common_words import COMMON_FILE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.settings import said_at
+from lumen.loading.words import ANYHOW
 from lumen.rules.lists import listed_texts
 from lumen.rules.lookups import value_at
+from lumen.rules.naming import heard_rows, looked_up
 from lumen.rules.translation import begun, language_entries, switched_to
 from lumen.rules.walk import action_sites
-from lumen.rules.word_tables import WordTables, word_tables
+from lumen.rules.word_tables import WordTables, is_taken, word_tables
 
 UNKNOWN_LANGUAGE = Code("unknown-language", "references", ERROR, "a language is named that the project does not speak")
 SHADOWED_ANSWER = Code(
@@ -45,7 +48,8 @@ def check(draft: ProjectDraft) -> None:
     if any(path[:1] == ("languages",) for path in draft.main.pruned):
         return
     silent, few = _silent(draft, draft.settings.languages)
-    speech = _Speech(tuple(n for n in draft.settings.languages if n not in silent), draft.main.lost | silent.keys())
+    spoken = tuple(n for n in draft.settings.languages if n not in silent)
+    speech = _Speech(spoken, draft.main.lost | silent.keys(), _heard_tables(draft))
     for language, (meant, related) in silent.items():
         there = (*said_at(draft.settings, draft.main, "languages"), draft.settings.languages.index(language))
         hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete it"
@@ -86,6 +90,17 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report(SAYINGS_FOLDER, name)
         for where in dict.fromkeys(saying.where[:4] for saying in sayings.sayings):
             speech.known(report, where, str(where[3]), key=True)
+
+
+def _heard_tables(draft: ProjectDraft) -> set[str]:
+    """The tables of answers that rows of `hears` name and no expression looks up: more words win there, not the first.
+
+    If a behaviour can't be read, any table that the others do not look up may be one.
+    """
+    heard = {name for machine in draft.behaviors.values() for row in heard_rows(machine) for name in row.names}
+    if COMMON_FILE in draft.files and draft.behaviors.keys() != draft.names["behaviors"]:
+        heard |= {name for tables in word_tables(draft) for name in tables.answers}
+    return {*TABLES, *(heard - looked_up(draft) if heard else ())}
 
 
 def _silent(
@@ -137,8 +152,10 @@ def _silence(report: DocumentReport, path: NodePath, message: str, hint: str, re
 
 
 class _Speech:
-    def __init__(self, languages: tuple[str, ...], lost: Iterable[str]) -> None:
-        self.languages, self.lost = languages, set(lost)
+    """What is said and heard in some `languages`; tables of answers that are only `heard` in rows are tried there."""
+
+    def __init__(self, languages: tuple[str, ...], lost: Iterable[str], heard: Collection[str]) -> None:
+        self.languages, self.lost, self.heard = languages, set(lost), heard
 
     def behavior(self, machine: MachineDefinition, report: DocumentReport) -> None:
         for button in (button for state in machine.states.values() for button in state.buttons):
@@ -155,7 +172,8 @@ class _Speech:
         for name, phrases in tables.phrases.items():
             self.each(report, ("phrases", name), phrases)
         for table, rows in tables.answers.items():
-            report.memoize(("late answers", report.document.file, table), rows, partial(_late, report, table, rows))
+            if table not in self.heard:
+                report.memoize(("late answers", report.document.file, table), rows, partial(_late, report, table, rows))
             for i, row in enumerate(rows):
                 self.each(report, ("answers", table, i, "phrases"), row.phrases)
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):
@@ -166,6 +184,8 @@ class _Speech:
     def phrases(self, tables: WordTables) -> None:
         """Phrases that are listened for in fewer languages than the project speaks; each language is told once."""
         for name, phrases in tables.phrases.items():
+            if name in WORD_LISTS:
+                continue
             said = {*phrases, *_written(tables.report, ("phrases", name))}
             for language in self.languages if said and said.isdisjoint(("", "any")) else ():
                 if language not in said and said <= {*self.languages}:
@@ -217,7 +237,7 @@ def _written(report: DocumentReport, path: NodePath) -> set[str]:
     """The languages of a text as the file has them, those of broken texts too."""
     node = value_at(report, path)
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
-    return gone.union(node if isinstance(node, dict) else ()) - {"gestures"}
+    return gone.union(node if isinstance(node, dict) else ()) - {"gestures", ANYHOW}
 
 
 def _is_missed(draft: ProjectDraft, language: str) -> bool:
@@ -234,7 +254,7 @@ def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
     """Rows of an answers table in each of whose phrases one of a row above is heard: the first row wins."""
     for i, row in enumerate(rows[:MAX_COMPARED_ROWS]):
         phrases = [phrase for texts in row.phrases.values() for phrase in texts]
-        takers = [next((j for j in range(i) if is_heard(p, rows[j].phrases)), None) for p in phrases]
+        takers = [next((j for j in range(i) if is_taken(p, rows[j].phrases)), None) for p in phrases]
         if phrases and None not in takers:
             first = min(j for j in takers if j is not None)
             message = f"this is never answered: `{phrases[0]}` is taken for the answer in row {first + 1}"

@@ -20,7 +20,7 @@ MAX_ALWAYS_LOOP = 3
 MAX_FOLLOWED_ALWAYS = 4
 """Guarded `always` of a state that are followed."""
 
-_LEADS = frozenset(("on", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
+_LEADS = frozenset(("on", "hears", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
 """Keys under which something names a state: one that was broken may have named any."""
 
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]

@@ -55,6 +55,8 @@ def _torn(report: DocumentReport) -> None:
         if path and isinstance(path[-1], int) and isinstance(value := value_at(report, path), str):
             lists.setdefault(path[:-1], []).append(value)
     for path, texts in lists.items():
+        if "phrases" in path:  # a full stop there says that a phrase must be a whole clause
+            continue
         if len(texts) > 1 and any(text.endswith((".", "!", "?")) for text in texts):
             for i in _parts(texts):
                 place = report.document.place((*path, i))

@@ -10,6 +10,7 @@ from lumen.language.diagnostics import NodePath, Place
 from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.words import ANYHOW
 from lumen.rules.lists import listed_texts
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
@@ -42,7 +43,7 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
     for (_, path), report in found.items():
         value = value_at(report, path)
         if isinstance(value, Mapping) and value and value.keys().isdisjoint(("", "any")):
-            texts = {language: text for language, text in value.items() if language != "gestures"}
+            texts = {language: text for language, text in value.items() if language not in ("gestures", ANYHOW)}
             entries.append(LanguageEntry(report, path, texts))
     return entries
 

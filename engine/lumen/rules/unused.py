@@ -5,6 +5,7 @@ from typing import Any
 
 from lumen.interpreters.expressions import expression_findings
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.actions import context_key
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
@@ -15,7 +16,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.words import WORDS_FOLDER
 from lumen.rules.events import UNUSED_EVENT, descriptors, hears
-from lumen.rules.naming import Named, named_in
+from lumen.rules.naming import Named, heard_rows, named_in
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
 
@@ -34,6 +35,9 @@ _ASKED = {
     "lists": ("nothing reads the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
 }
 """The tables, and for each what is said where nothing asks for it, and a hint."""
+
+_NO_MEANINGS = {"phrases": WORD_LISTS, "answers": TABLES}
+"""The names by which sentences are read, whether or not something asks for them."""
 
 _EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
 
@@ -62,7 +66,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
     if named.keys is not None:
         _context(machine, report, named.keys | _looked_at(draft, name))
     own = {part: {key for key in getattr(machine, part) if (part, key) not in machine.borrowed} for part in _ASKED}
-    _unasked(report, own, [named], _states_of(report))
+    _unasked(report, own, [named], _states_of(report), hears=any(heard_rows(machine)))
     waited = set(descriptors(machine))
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
@@ -73,25 +77,33 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
 
 def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
     """Words files that no behaviour names, and what stands in the others and is asked for by none of these."""
-    for name, words in draft.words.items():
+    for name, words in draft.own_words.items():
         report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
         if not users and report.whole and draft.whole_behaviors:
             message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
             draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
         elif users and all(user in sound for user in users):
             named = [named_in(draft.behaviors[user]) for user in users]
-            _unasked(report, {part: set(getattr(words, part)) for part in _ASKED}, named, "")
+            own = {part: set(getattr(words, part)) for part in _ASKED}
+            _unasked(report, own, named, "", hears=any(any(heard_rows(draft.behaviors[user])) for user in users))
 
 
-def _unasked(report: DocumentReport, own: Mapping[str, Collection[str]], named: Sequence[Named], root: str) -> None:
-    """Report phrases, answers and lists of a file whose name stands in no expression."""
+def _unasked(
+    report: DocumentReport, own: Mapping[str, Collection[str]], named: Sequence[Named], root: str, *, hears: bool
+) -> None:
+    """Report phrases, answers and lists of a file whose name stands in no expression and no row of `hears`.
+
+    Word lists have no name to ask for; `hears` is whether a behaviour that knows them has rows.
+    """
     texts = {text for each in named for text in each.texts}
     lists = None if any(each.lists is None for each in named) else {n for each in named for n in each.lists or ()}
     for part, (message, hint, code) in _ASKED.items():
-        for key in own[part]:
+        for key in set(own[part]).difference(_NO_MEANINGS.get(part, ())):
             if key not in texts and (part != "lists" or (lists is not None and key not in lists)):
                 them = "it" if part == "lists" else "them"
                 advice = f"{hint.format(key)}, or delete {them}"
+                if hears and part != "lists":
+                    advice = f"list it under `hears` of a state: `{key}: …`, or delete {them}"
                 report(code, (part, key), message.format(key), advice, key=True, root=root)
 
 

@@ -3,11 +3,15 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from lumen.interpreters.expressions.phrases import is_heard
+from lumen.interpreters.talk.patterns import Slot, forms
+from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import Answer
-from lumen.loading.common_words import is_shipped
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.words import WORDS_FOLDER
+from lumen.loading.expressions import place_within
+from lumen.loading.words import ANYHOW, WORDS_FOLDER
+from lumen.rules.lookups import value_at
 
 
 class WordTables(NamedTuple):
@@ -19,6 +23,15 @@ class WordTables(NamedTuple):
     lists: Mapping[str, tuple[Mapping[str, Any], ...]]
 
 
+class WrittenPhrase(NamedTuple):
+    """A phrase where it is written; its language is empty if it is for every language."""
+
+    report: DocumentReport
+    path: NodePath
+    language: str
+    text: str
+
+
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
     """Those of each file of the project; a behaviour's without what it has from words files."""
     for name, machine in draft.behaviors.items():
@@ -28,7 +41,50 @@ def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
 
         phrases, answers = own("phrases", machine.phrases), own("answers", machine.answers)
         yield WordTables(draft.report("behaviors", name), phrases, answers, own("lists", machine.lists))
-    for name, words in draft.words.items():
-        if is_shipped(draft.files, name):
-            continue
+    for name, words in draft.own_words.items():
         yield WordTables(draft.report(WORDS_FOLDER, name), words.phrases, words.answers, words.lists)
+
+
+def written_phrases(report: DocumentReport, path: NodePath) -> Iterator[WrittenPhrase]:
+    """The phrases at a path: a text, a list of texts, or either for each language."""
+    value = value_at(report, path)
+    table = value if isinstance(value, Mapping) else {"": value}
+    for language, rows in table.items():
+        if language == ANYHOW:
+            continue
+        here = (*path, language) if isinstance(value, Mapping) else path
+        several = (
+            [(here, rows)] if isinstance(rows, str) else [((*here, i), text) for i, text in enumerate(_listed(rows))]
+        )
+        yield from (WrittenPhrase(report, at, language, text) for at, text in several if isinstance(text, str))
+
+
+def is_taken(phrase: str, other: Mapping[str, tuple[str, ...]]) -> bool:
+    """Whether other phrases are heard in each form of a phrase; in one with a slot that is not certain."""
+    return all(form.plain and is_heard(" ".join(form.literals), other) for form in forms(phrase))
+
+
+def home_of(draft: ProjectDraft, behavior: str, key: str, name: str) -> DocumentReport | None:
+    """The report of the file that gives a behaviour those phrases or answers; None if they come with Lumen."""
+    words = draft.behaviors[behavior].borrowed.get((key, name))
+    if words is None:
+        return draft.report("behaviors", behavior)
+    return draft.report(WORDS_FOLDER, words) if words in draft.own_words else None
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else []
+
+
+def known_by(draft: ProjectDraft, report: DocumentReport) -> list[str]:
+    """The behaviours that know what a file gives names to: the one that it is, or those that name it under `words`."""
+    folder, _, file = report.document.file.rpartition("/")
+    name = file.removesuffix(".yaml")
+    return [n for n, m in draft.behaviors.items() if (name in m.words if folder == WORDS_FOLDER else n == name)]
+
+
+def slot_place(phrase: WrittenPhrase, slot: Slot) -> Place:
+    """Where a slot of a phrase stands."""
+    signs = (f"{{{slot.type}:{slot.name}}}", f"{{{slot.type}}}")
+    sign = next(sign for sign in signs if sign in phrase.text)
+    return place_within(phrase.report.document, phrase.path, phrase.text, phrase.text.index(sign), len(sign))

@@ -10,6 +10,7 @@ from lumen.app.lint.findings import Findings
 from lumen.app.lint.kept_findings import known_or_checked
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.common_words import own_files
 from lumen.loading.files import MAX_FILE_BYTES, counts, read_files
 from lumen.loading.own_project import own_project
 from lumen.loading.packaged import MAIN_FILE, project_above
@@ -30,7 +31,7 @@ class LintTarget:
     typed: tuple[tuple[str, bytes], ...] = ()
 
     def files(self) -> dict[str, bytes]:
-        return dict(sorted({**read_files(self.root), **dict(self.typed)}.items()))
+        return dict(sorted({**own_files(read_files(self.root)), **dict(self.typed)}.items()))
 
     def shown(self, diagnostic: Diagnostic) -> bool:
         return not self.only or diagnostic.place.file in self.only
@@ -67,7 +68,7 @@ def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = N
 
     `files` are what it holds, where somebody has read them already. With `kept` also from what was found before.
     """
-    files = what.files() if files is None else files
+    files = what.files() if files is None else own_files(files)
     found = [d for d in checked(what.root, files, kept=kept) if wanted(d)]
     shown = [d for d in found if what.shown(d)]
     return Findings(shown, files, str(what.root), what.only, len(found) - len(shown))
@@ -98,7 +99,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
     if whole:
         return root, set()
     name = here.absolute().relative_to(root).as_posix()
-    files = {file for file in read_files(root) if file == name or file.startswith(f"{name}/")}
+    files = {file for file in own_files(read_files(root)) if file == name or file.startswith(f"{name}/")}
     if not files:
         raise UsageError(f"in {path} is nothing that lint reads: docs/yaml.md lists the files of a project")
     return root, files

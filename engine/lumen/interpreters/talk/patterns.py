@@ -146,9 +146,8 @@ class _Reader:
             self.position += 1
             inside = self.sequence(closing)
             if inside == [""]:
-                raise PatternError(
-                    f"an alternative of `{sign}{closing}` is empty", _EMPTY, start, self.position - start + 1
-                )
+                written = self.phrase[start : self.position + 1]
+                raise PatternError(f"an alternative of `{written}` is empty", _EMPTY, start, len(written))
             found += inside
             ended = self.phrase[self.position : self.position + 1]
             if ended == closing:
