@@ -1,9 +1,10 @@
 """One mistake, or several, in a small project: exactly these findings, at the very word, with the right hint.
 
-Each YAML file beside this one is a table of cases. A case changes the project in base/: `edit` maps a file to [old,
-new, …], `write` to its whole content, `nest` to a word in it and the [before, after, times] that take its place;
-`delete` lists the beginnings of paths. `find` lists what lint has to say, as "file:line:column code | part of the
-hint", and " @ file:line:column" where another place is shown first; it must say nothing else.
+Each YAML file beside this one is a table of cases. A case changes the project in base/, or that in the folder of the
+table's name: `edit` maps a file to [old, new, …], `write` to its whole content, `nest` to a word in it and the [before,
+after, times] that take its place; `delete` lists the beginnings of paths. `find` lists what lint has to say, as
+"file:line:column code | part of the hint", and " @ file:line:column" where another place is shown first; it must say
+nothing else.
 """
 
 from functools import partial
@@ -18,10 +19,10 @@ from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from tests.lint.spans import assert_marks_what_is_spoken_of
 from tests.scanning import matching
-from tests.tables import check
+from tests.tables import check, for_each
 
 HERE = Path(__file__).parent
-BASE = read_files(HERE / "base")
+BASES = {name: read_files(HERE / name) for name in ("base", "hearing")}
 TABLES = matching(HERE, "*.yaml")
 
 
@@ -32,9 +33,9 @@ def cases(table: Path) -> dict[str, Any]:
     return document.data
 
 
-def changed(case: dict[str, Any]) -> dict[str, bytes]:
+def changed(base: dict[str, bytes], case: dict[str, Any]) -> dict[str, bytes]:
     gone = tuple(case.get("delete", ()))
-    files = {name: content for name, content in BASE.items() if not name.startswith(gone)} if gone else dict(BASE)
+    files = {name: content for name, content in base.items() if not name.startswith(gone)} if gone else dict(base)
     for name, edits in case.get("edit", {}).items():
         for old, new in zip(edits[::2], edits[1::2], strict=True):
             text = files[name].decode()
@@ -51,25 +52,27 @@ def said(diagnostic: Diagnostic) -> str:
     return f"{diagnostic.place} {diagnostic.code} | {diagnostic.hint}{related}"
 
 
-def test_the_project_the_cases_are_made_from_is_sound() -> None:
-    project, diagnostics = check_files(HERE / "base", BASE)
+@for_each("name", BASES)
+def test_the_project_the_cases_are_made_from_is_sound(name: str) -> None:
+    project, diagnostics = check_files(HERE / name, BASES[name])
     assert project is not None
     assert not diagnostics
 
 
 def test_there_are_many_cases() -> None:
-    assert sum(len(cases(table)) for table in TABLES) >= 671
+    assert sum(len(cases(table)) for table in TABLES) >= 774
 
 
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.stem)
 def test_a_mistake_is_found_at_its_word_and_what_is_marked_is_spoken_of(table: Path) -> None:
     """Each case is linted once; its findings and then its places are judged."""
-    check((name, partial(judge, case)) for name, case in cases(table).items())
+    base = table.stem if table.stem in BASES else "base"
+    check((name, partial(judge, base, case)) for name, case in cases(table).items())
 
 
-def judge(case: dict[str, Any]) -> None:
-    files = changed(case)
-    project, diagnostics = check_files(HERE / "base", files)
+def judge(base: str, case: dict[str, Any]) -> None:
+    files = changed(BASES[base], case)
+    project, diagnostics = check_files(HERE / base, files)
     found = [said(d) for d in diagnostics]
     for line, expected in zip(found, case["find"], strict=False):
         finding, _, related = expected.partition(" @ ")

@@ -1,9 +1,9 @@
-"""Changes to projects that are shipped: mistakes in table/, and in legal/ what looks odd and is right.
+"""Changes to projects that are sound: mistakes in table/, and in legal/ what looks odd and is right.
 
 Each file has rows by what they show. A row changes one file of a project:
 
     a verb without its colon:
-      in: tour                      # or museum; the file is its behaviour, if no `file` is named
+      in: tour                      # or museum or talk; the file is its behaviour, if no `file` is named
       file: behaviors/tour.yaml
       after: "  dance:"             # `change` begins to look behind this text
       change: ["- {play: dance}", "- play dance"]     # what stands there once, and what the row puts in its place; or
@@ -26,7 +26,7 @@ from tests.scanning import matching
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-PROJECTS = {"tour": ROOT, "museum": ROOT / "examples/museum"}
+PROJECTS = {"tour": ROOT, "museum": ROOT / "examples/museum", "talk": ROOT / "tests/lint/hearing"}
 
 
 class Row(NamedTuple):
@@ -42,7 +42,7 @@ class Row(NamedTuple):
 
 @cache
 def shipped(project: str) -> Mapping[str, bytes]:
-    """The files of a project that is shipped."""
+    """The files of a project as it is."""
     return read_files(PROJECTS[project])
 
 

@@ -17,6 +17,7 @@ from lumen.loading import (
     document,
     fleet,
     gestures,
+    hears_keys,
     house,
     keyframes,
     knowledge,
@@ -51,10 +52,10 @@ from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
 LOADERS = (
-    actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, house, keyframes,
-    knowledge, known_words, life, linking, markdown, messages, misplaced, numbers, outline, poses, project, role_names,
-    roles, rounds, rulebook, schedules, settings, shapes, shared_keys, signal_bindings, terms, transitions, units,
-    variables, yaml_errors, yaml_reader,
+    actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, hears_keys, house,
+    keyframes, knowledge, known_words, life, linking, markdown, messages, misplaced, numbers, outline, poses, project,
+    role_names, roles, rounds, rulebook, schedules, settings, shapes, shared_keys, signal_bindings, terms, transitions,
+    units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 
@@ -62,8 +63,8 @@ HELPERS = (aims, controller_shapes, ignores, lookups, on_request, routing_keys, 
 """What rules, or others, ask and what declares codes."""
 
 FAMILY_ORDER = (
-    "text", "shape", "references", "statecharts", "reload", "expressions", "speech", "knowledge", "controllers",
-    "motions", "physics", "robot", "routes", "alerts", "fleet", "comments",
+    "text", "shape", "references", "statecharts", "reload", "expressions", "hearing", "speech", "knowledge",
+    "controllers", "motions", "physics", "robot", "routes", "alerts", "fleet", "comments",
 )  # fmt: skip
 """The families as they are listed: what is wrong with a file first."""
 

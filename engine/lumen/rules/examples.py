@@ -1,0 +1,205 @@
+"""Phrases by example: each form, said alone, has to take its own row, and each row has to be taken by something."""
+
+from collections.abc import Collection
+from itertools import islice
+
+from lumen.interpreters.talk.hearing import HEARD, Taken, hearing_of
+from lumen.interpreters.talk.sample_sentences import of_row
+from lumen.language.diagnostics import WARNING, Code, NodePath, Related
+from lumen.language.machines import Hears, Transition
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.caught import row_phrases
+from lumen.rules.dead_ends import within
+from lumen.rules.events import hears
+from lumen.rules.heard_rows import Example, HeardRows, Row, hearing_behaviors, remembered, shown
+from lumen.rules.naming import looked_up
+from lumen.rules.speech import SHADOWED_ANSWER
+from lumen.rules.word_tables import home_of
+
+NEVER_HEARD = Code("never-heard", "hearing", WARNING, "no sentence takes a row of `hears`")
+SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase, said alone, takes another row than its own")
+
+MAX_TRIED = 300
+"""Sentences that are tried to find one that takes a row with `not` or `asked`."""
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report phrases that take another row than theirs, and rows that nothing takes."""
+    hearing = hearing_behaviors(draft)
+    looked = looked_up(draft) if hearing else ()
+    for name in hearing:
+        remembered(draft, ("examples", name), name, (), looked, _Examples(draft, name, looked).check)
+
+
+class _Examples(HeardRows):
+    """Tries the phrases of one behaviour; the tables that are `looked` up by expressions are tried there."""
+
+    def __init__(self, draft: ProjectDraft, behavior: str, looked: Collection[str]) -> None:
+        super().__init__(draft, behavior)
+        self.looked = looked
+
+    def check(self) -> None:
+        for path, rows in self.by_state.items():
+            if hiding := self.hiding(path):
+                message = f"nothing takes a row of {shown(rows[0].state)}: {hiding} takes every sentence before"
+                self.report(NEVER_HEARD, rows[0].path[:-1], message, "give that one a `guard`", key=True)
+                continue
+            for row in rows:
+                match row.hears.way:
+                    case "":
+                        self.found(row)
+                    case "else":
+                        self.otherwise(row)
+                    case _:
+                        self.negated_or_asked(row)
+        self.answers()
+
+    def found(self, row: Row) -> None:
+        """Report phrases of a row that take another one; all of them together are the row's own mistake."""
+        if any("." in name for name in row.hears.names):
+            return  # phrases of an entry, which is not known here
+        hearing, taken = hearing_of(self.machine), dict[object, tuple[Example, Taken]]()
+        others = {n for other in self.by_state[row.state.path] for n in other.hears.names} - {*row.hears.names}
+        reached = False
+        for example in self.examples(row.hears.names):
+            if reached and not example.written:
+                break
+            if (finds := hearing.read(example.text).finds) and others.isdisjoint(finds):
+                reached = True
+                continue
+            order = self.order(row.state.path, example.text)
+            both = (*order.first, *order.late)
+            if all(one.number not in row.numbers for one in both):
+                continue  # a slot does not catch what was said for it here
+            if taker := self.taker(both, row):
+                taken.setdefault(example.written and (example.written.report, example.written.path), (example, taker))
+            else:
+                reached = True
+        if not reached and taken:
+            example, taker = next(iter(taken.values()))
+            other = self.by_number[taker.number]
+            why = f"`{other.hears.key}` is taken first, as for `{example.text}`"
+            self.never(row, why, "put this row before that one, or make one of the two", other)
+        elif not any(row_phrases(self.machine, row.hears)):
+            names = " and ".join(f"`{name}`" for name in row.hears.names)
+            self.never(row, f"{names} has no phrases", "write some for each language, or delete the row")
+        else:
+            for example, taker in taken.values():
+                self.shadowed(row, example, taker)
+            self.within(row)
+
+    def within(self, row: Row) -> None:
+        """Report phrases of a row that take a row of a state within."""
+        own = set(row.hears.names)
+        below = [path for path in self.by_state if within(path, row.state.path) and path != row.state.path]
+        rivals = {name for path in below for other in self.by_state[path] for name in other.hears.names} - own
+        told: set[NodePath] = set()
+        for example in self.examples(row.hears.names) if rivals else ():
+            if not example.written:
+                break
+            if rivals.isdisjoint(hearing_of(self.machine).read(example.text).finds) or example.written.path in told:
+                continue
+            takers = (self.taker(self.order(path, example.text).first, row) for path in below)
+            for taker in takers:
+                if taker and own.isdisjoint(self.by_number[taker.number].hears.names):
+                    told.add(example.written.path)
+                    self.shadowed(row, example, taker)
+                    break
+
+    def shadowed(self, row: Row, example: Example, taken: Taken) -> None:
+        if example.written is None or taken.find is None:
+            return  # nobody can edit it
+        other, words = self.by_number[taken.number], self.words(example.text, taken.find)
+        whole = words == example.text
+        message = f"`{example.text}` of `{example.name}` takes the row {other.shown}"
+        message += "" if whole else f", which hears `{words}`"
+        if other.state.path != row.state.path:
+            message += " first"
+            hint = f"add `{example.name}` to that row, or take `{words}` out of its phrases"
+        elif whole:
+            hint = f"leave it to one of the two, or put `{row.hears.key}` first: of equal rows the upper one is taken"
+        else:
+            hint = f"give this phrase more words, or put `{row.hears.key}` before `{other.hears.key}`"
+        report, path = example.written.report, example.written.path
+        related = Related(self.report.document.place(other.path, key=True), "it takes this row")
+        cause = f"{report.document.file} {path}"
+        found = SHADOWED_PHRASE.at(report.document.place(path), message, hint, (related,), cause)
+        report.diagnostics.append(found)
+
+    def negated_or_asked(self, row: Row) -> None:
+        """Report a row with `not` or `asked` that no phrase of its names can take."""
+        tried = list(islice(of_row(self.machine, row.hears, {}), MAX_TRIED))
+        orders = (self.order(row.state.path, text) for text in tried)
+        if not tried or any(one.number in row.numbers for o in orders for one in (*o.first, *o.late)):
+            return
+        names = " and ".join(f"`{name}`" for name in row.hears.names)
+        if row.hears.way == "asked":
+            why = f"the phrases of {names} hold a question word themselves"
+        elif self.machine.anyhow.issuperset(row.hears.names):
+            why = f"{names} counts even if it is refused (`anyhow: true`)"
+        else:
+            why = f"the phrases of {names} hold a negation themselves"
+        self.never(row, why, f"delete it: `{'|'.join(row.hears.names)}` takes these sentences")
+
+    def otherwise(self, row: Row) -> None:
+        """Report an `else` for which a state around it, or each state within, leaves nothing."""
+        outer = row.state.path
+        for state in [*self.around(outer)][1:]:
+            if found := next((t for t in state.transitions if _takes_all(t)), None):
+                why = f"`{found.event}` of {shown(state)} takes what is left before"
+                self.never(row, why, "give that one a `guard`", found)
+                return
+        leaves = self.leaves(outer)
+        if outer not in leaves and leaves and all(self.ends(leaf, outer) for leaf in leaves):
+            self.never(row, "every state within has an `else` of its own", "delete it, or one of those")
+
+    def ends(self, leaf: str, outer: str) -> bool:
+        """Whether an `else` between two states takes whatever is left."""
+        return any(
+            t.hears and t.hears.way == "else" and not t.guard
+            for state in self.between(leaf, outer)
+            for t in state.transitions
+        )
+
+    def hiding(self, outer: str) -> str:
+        """What in the states within a state takes every sentence before it; empty if some sentence gets there."""
+        takers = [
+            next((t for state in self.between(leaf, outer) for t in state.transitions if _takes_all(t)), None)
+            for leaf in self.leaves(outer)
+        ]
+        first = takers[0] if takers else None
+        if first is None or None in takers:
+            return ""
+        return f"`{first.event}` of {shown(self.machine.states[first.source])}"
+
+    def answers(self) -> None:
+        """Report rows of answers each of whose phrases takes another row of their table."""
+        for name in dict.fromkeys(name for row in self for name in row.hears.names if name in self.machine.answers):
+            home = home_of(self.draft, self.behavior, "answers", name)
+            for number in range(len(self.machine.answers[name]) if home and name not in self.looked else 0):
+                assert home
+                path: NodePath = ("answers", name, number, "phrases")
+                texts = [example.text for example in self.written(home, name, path)]
+                rivals = [self.rival(name, number, text) for text in texts]
+                if rivals and None not in rivals:
+                    first = min(rival for rival in rivals if rival is not None)
+                    message = f"this is never answered: `{texts[0]}` is taken for the answer in row {first + 1}"
+                    related = [(("answers", name, first), "of rows with as many words the first one wins")]
+                    home(SHADOWED_ANSWER, path, message, "put this row before it", key=True, related=related)
+
+    def rival(self, name: str, number: int, text: str) -> int | None:
+        """The row of a table whose answer is given to a sentence in place of that one; None if there is no other."""
+        hearing = hearing_of(self.machine)
+        find = hearing.best(hearing.read(text), Hears(-1, name, (name,)), set(), {})
+        return find.entry.row if find and find.entry.row != number else None
+
+    def never(self, row: Row, why: str, hint: str, taker: Row | Transition | None = None) -> None:
+        where = taker.path if isinstance(taker, Row) else taker.where if taker else ()
+        related = [(where, "this is taken first")] if taker else []
+        self.report(NEVER_HEARD, row.path, f"nothing takes the row {row.shown}: {why}", hint, key=True, related=related)
+
+
+def _takes_all(transition: Transition) -> bool:
+    """Whether a transition under `on` takes every sentence that comes to it."""
+    heard = not transition.hears and not transition.exact and bool(transition.event) and hears(transition.event, HEARD)
+    return heard and transition.guard is None

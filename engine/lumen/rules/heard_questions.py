@@ -1,0 +1,120 @@
+"""Questions of knowledge/ that a row of `hears` takes, so that they never come to the state that asks."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+
+from lumen.interpreters.talk.finder import Find
+from lumen.interpreters.talk.hearing import Taken, hearing_of
+from lumen.language.actions import AskQuestion, PlacedAction, nested
+from lumen.language.diagnostics import WARNING, Code, Related
+from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.machines import State, StateKind
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.buttons import together
+from lumen.rules.dead_ends import within
+from lumen.rules.heard_rows import HeardRows, Row, hearing_behaviors, remembered, shown
+from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+
+SHADOWED_QUESTION = Code(
+    "shadowed-question", "hearing", WARNING, "a question of knowledge/ takes a row of `hears`, and is not answered"
+)
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report questions that take another row than one that answers, in each state whose `else` leads to an `ask`."""
+    files = [passage.file for passage in draft.knowledge.values()]
+    for name in hearing_behaviors(draft) if files else ():
+        remembered(draft, ("heard questions", name), name, files, None, _Questions(draft, name).check)
+
+
+class _Questions(HeardRows):
+    """Tries the questions of knowledge/ in one behaviour."""
+
+    def __init__(self, draft: ProjectDraft, behavior: str) -> None:
+        super().__init__(draft, behavior)
+        self.names = {path: {n for row in rows for n in row.hears.names} for path, rows in self.by_state.items()}
+
+    @cached_property
+    def slots(self) -> set[str]:
+        """The names that have a phrase without words of its own."""
+        return {entry.name for _, entry in hearing_of(self.machine).finder.slots_only}
+
+    def check(self) -> None:
+        asking = [row.state for row in self if row.hears.way == "else" and self.asks(row)]
+        active = {state.path: self.active_with(state) for state in asking}
+        for question in self.known() if asking else ():
+            told: dict[str, list[tuple[Find, Row, State]]] = {}
+            for state in asking:
+                for taken in self.taken(question.text, state, active[state.path]):
+                    row = self.by_number[taken.number]
+                    if taken.find and not self.answers(row):
+                        told.setdefault(taken.find.entry.name, []).append((taken.find, row, state))
+            for found in told.values():
+                self.say(question, found)
+
+    def known(self) -> Iterator[WrittenPhrase]:
+        for name in self.draft.knowledge:
+            yield from written_phrases(self.draft.report(KNOWLEDGE_FOLDER, name), ("questions",))
+
+    def active_with(self, state: State) -> list[str]:
+        """The states with rows that may be active with that one: their rows come before its `else`."""
+        return [path for path in self.by_state if together(self.machine, state, self.machine.states[path])]
+
+    def taken(self, text: str, state: State, active: Iterable[str]) -> Iterator[Taken]:
+        """The rows that a sentence takes before the `else` of a state."""
+        finds = hearing_of(self.machine).read(text).finds
+        for path in active:
+            if self.names[path].isdisjoint(finds) and not (path == state.path and self.slots & self.names[path]):
+                continue  # most sentences hold none of its phrases
+            order = self.order(path, text)
+            if order.first:
+                yield order.first[0]
+            elif path == state.path and order.late and order.late[0].find:
+                yield order.late[0]
+
+    def answers(self, row: Row) -> bool:
+        """Whether a sentence that takes a row is answered, or a guard decides that."""
+        guarded = any(t.guard for t in row.candidates)
+        return guarded or self.asks(row) or self.machine.answers.keys() >= set(row.hears.names)
+
+    def asks(self, row: Row) -> bool:
+        """Whether a row asks what is known, or leads to a state that does."""
+        states = (state for t in row.candidates for state in self.entered(t.targets))
+        blocks = [*(t.actions for t in row.candidates), *((*state.entry, *state.do) for state in states)]
+        return any(_asks(block) for block in blocks)
+
+    def entered(self, targets: Iterable[str]) -> Iterator[State]:
+        """The states that are entered with these."""
+        for path in targets:
+            state = self.machine.states[path]
+            yield state
+            yield from self.entered(state.children if state.kind is StateKind.PARALLEL else state.initial)
+
+    def say(self, question: WrittenPhrase, takers: Sequence[tuple[Find, Row, State]]) -> None:
+        find, row, state = takers[0]
+        words, name = self.words(question.text, find), find.entry.name
+        message = f"this question is not answered in {shown(state)}: `{words}` in it takes the row `{row.hears.key}`"
+        message += "" if row.state is state else f" of {shown(row.state)}"
+        places = dict.fromkeys(self.report.document.place(row.path, key=True) for _, row, _ in takers)
+        related = tuple(Related(place, "it takes this row") for place in places)
+        cause = f"{self.report.document.file} {name} {words.casefold()}"
+        place = question.report.document.place(question.path)
+        found = SHADOWED_QUESTION.at(place, message, self.remedy(question, find, row, state), related, cause)
+        question.report.diagnostics.append(found)
+
+    def remedy(self, question: WrittenPhrase, find: Find, row: Row, state: State) -> str:
+        """What to do about a question that takes a row: who asks must come first, or the phrase is too short."""
+        name, words = find.entry.name, self.words(question.text, find)
+        asked = hearing_of(self.machine).read(question.text).is_asked(find)
+        if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):
+            return f"add a row `asked {name}` to {shown(row.state)} that leads where `else` of {shown(state)} does"
+        keys = ("phrases", "answers")
+        if not any(home_of(self.draft, self.behavior, k, name) for k in keys if name in getattr(self.machine, k)):
+            remedy = f"`{name}` comes with Lumen: give it phrases of your own, without `{words}`"
+        else:
+            remedy = f"give that phrase more words, or a full stop: then only `{words}` alone is `{name}`"
+        return f"{remedy}; or delete the question, if it may do that"
+
+
+def _asks(block: tuple[PlacedAction, ...]) -> bool:
+    return any(isinstance(step.action, AskQuestion) for step in nested(block))

@@ -1,0 +1,178 @@
+"""The rows of `hears` of a behaviour, and which of them a sentence takes, for rules that try sentences.
+
+No statechart runs here: `Hearing` is asked, state by state.
+"""
+
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from lumen.interpreters.talk.finder import Find
+from lumen.interpreters.talk.hearing import RowOrder, Taken, hearing_of
+from lumen.interpreters.talk.sample_sentences import of_phrase
+from lumen.language.diagnostics import Diagnostic, NodePath
+from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.memoization import Same, memoize
+from lumen.loading.words import WORDS_FOLDER
+from lumen.rules.dead_ends import within
+from lumen.rules.events import descriptor_path
+from lumen.rules.naming import heard_rows
+from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+
+
+class Row(NamedTuple):
+    """A row of `hears`: its state, and its candidates, of which the first with a true guard is taken."""
+
+    state: State
+    candidates: tuple[Transition, ...]
+
+    @property
+    def hears(self) -> Hears:
+        found = self.candidates[0].hears
+        assert found is not None  # they are candidates of a row
+        return found
+
+    @property
+    def numbers(self) -> frozenset[int]:
+        return frozenset(t.hears.number for t in self.candidates if t.hears)
+
+    @property
+    def path(self) -> NodePath:
+        return descriptor_path(self.candidates[0])
+
+    @property
+    def shown(self) -> str:
+        return f"`{self.hears.key}` of {shown(self.state)}"
+
+
+class Example(NamedTuple):
+    """A form of a phrase as a sentence; `written` is where the phrase is, None if it comes with Lumen."""
+
+    text: str
+    name: str
+    written: WrittenPhrase | None
+
+
+class HeardRows:
+    """The rows of one behaviour by the paths of their states; those that could not be read are left out."""
+
+    def __init__(self, draft: ProjectDraft, behavior: str) -> None:
+        self.draft, self.behavior = draft, behavior
+        self.machine: MachineDefinition = draft.behaviors[behavior]
+        self.report: DocumentReport = draft.report("behaviors", behavior)
+        self.by_state = {path: rows for path, state in self.machine.states.items() if (rows := _rows(state))}
+        self.by_number = {number: row for row in self for number in row.numbers}
+
+    def __iter__(self) -> Iterator[Row]:
+        return (row for rows in self.by_state.values() for row in rows)
+
+    def order(self, path: str, text: str) -> RowOrder:
+        """The rows of the state at that path that a sentence may take."""
+        return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
+
+    def taker(self, taken: Sequence[Taken], row: Row) -> Taken | None:
+        """Which of the rows that are taken comes before this one; None if none does, or a guard decides."""
+        for one in taken:
+            other = self.by_number[one.number]
+            if one.number in row.numbers or any(t.guard for t in other.candidates) or _alike(other, row):
+                return None
+            return one
+        return None
+
+    def words(self, text: str, find: Find) -> str:
+        """What of a sentence a phrase was found in."""
+        return hearing_of(self.machine).read(text).said(find.start, find.end)
+
+    def examples(self, names: Iterable[str]) -> Iterator[Example]:
+        """Every form of the phrases of these names as a sentence, those of Lumen last."""
+        shipped: list[tuple[str, Mapping[str, tuple[str, ...]]]] = []
+        for name in names:
+            if name in self.machine.phrases:
+                if home := home_of(self.draft, self.behavior, "phrases", name):
+                    yield from self.written(home, name, ("phrases", name))
+                else:
+                    shipped.append((name, self.machine.phrases[name]))
+            for number in range(len(self.machine.answers.get(name, ()))):
+                if home := home_of(self.draft, self.behavior, "answers", name):
+                    yield from self.written(home, name, ("answers", name, number, "phrases"))
+        for name, table in shipped:
+            phrases = (phrase for several in table.values() for phrase in several)
+            said = (sentence.text for phrase in phrases for sentence in of_phrase(phrase, self.machine.lists))
+            yield from (Example(text, name, None) for text in said)
+
+    def written(self, home: DocumentReport, name: str, path: NodePath) -> Iterator[Example]:
+        """Every form of the phrases at a path of a file."""
+        for written in written_phrases(home, path):
+            said = (sentence.text for sentence in of_phrase(written.text, self.machine.lists))
+            yield from (Example(text, name, written) for text in said)
+
+    def around(self, path: str) -> Iterator[State]:
+        """The state at a path and those around it, from the inside out."""
+        at: str | None = path
+        while at is not None:
+            yield self.machine.states[at]
+            at = self.machine.states[at].parent
+
+    def between(self, leaf: str, outer: str) -> list[State]:
+        """A state and those around it that lie in another one."""
+        return [state for state in self.around(leaf) if within(state.path, outer) and state.path != outer]
+
+    def leaves(self, outer: str) -> list[str]:
+        """The atomic states in a state; itself if it is one."""
+        states = self.machine.states.values()
+        return [state.path for state in states if state.kind is StateKind.ATOMIC and within(state.path, outer)]
+
+
+def hearing_behaviors(draft: ProjectDraft) -> list[str]:
+    """The behaviours with rows of `hears` whose files, and words files, are read as a whole."""
+    found = []
+    for name, machine in draft.behaviors.items():
+        words = [word for word in machine.words if word in draft.own_words]
+        known = draft.words.keys() >= set(machine.words)
+        reports = [draft.report("behaviors", name), *(draft.report(WORDS_FOLDER, word) for word in words)]
+        if known and all(report.whole for report in reports) and any(heard_rows(machine)):
+            found.append(name)
+    return found
+
+
+def remembered(
+    draft: ProjectDraft, slot: Hashable, behavior: str, other: Collection[str], given: object, find: Callable[[], None]
+) -> None:
+    """Report what `find` reports in the files of a behaviour's phrases and in the `other` ones, or did when it was run
+    last, if all of these files are the same, and so is what else is `given`.
+    """
+    machine = draft.behaviors[behavior]
+    words = [f"{WORDS_FOLDER}/{name}.yaml" for name in machine.words if name in draft.own_words]
+    reports = {file: draft.reports[file] for file in (f"behaviors/{behavior}.yaml", *words, *other)}
+
+    def made() -> list[tuple[str, Diagnostic]]:
+        before = {file: len(report.diagnostics) for file, report in reports.items()}
+        find()
+        found = [(file, d) for file, report in reports.items() for d in report.diagnostics[before[file] :]]
+        for file, report in reports.items():
+            del report.diagnostics[before[file] :]
+        return found
+
+    around = Same(machine), [Same(report.document) for report in reports.values()], given
+    for file, diagnostic in memoize(slot, around, made):
+        reports[file].diagnostics.append(diagnostic)
+
+
+def shown(state: State) -> str:
+    """What to call a state."""
+    return f"`{state.name}`" if state.path else "the behaviour"
+
+
+def _rows(state: State) -> tuple[Row, ...]:
+    found: dict[str, list[Transition]] = {}
+    for transition in state.transitions:
+        if transition.hears:
+            found.setdefault(transition.hears.key, []).append(transition)
+    return tuple(Row(state, tuple(candidates)) for candidates in found.values())
+
+
+def _alike(one: Row, other: Row) -> bool:
+    """Whether it makes no difference which of two rows is taken."""
+    done, instead = ([(t.guard, t.targets, t.actions) for t in row.candidates] for row in (one, other))
+    return done == instead

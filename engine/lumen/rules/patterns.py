@@ -1,0 +1,192 @@
+"""Phrases as patterns: those that can't be read, those written for other tools, and slots that nothing can fill."""
+
+import re
+from collections.abc import Iterator
+from functools import partial
+
+from lumen.interpreters.talk.folding import folded
+from lumen.interpreters.talk.hearing import phrases_in
+from lumen.interpreters.talk.patterns import TYPES, PatternError, Slot, read_pattern, slots_of
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
+from lumen.language.diagnostics import WARNING, Code, NodePath, did_you_mean
+from lumen.language.machines import MachineDefinition
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.expressions import place_within
+from lumen.rules.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
+
+BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase can't be read as a pattern, and counts as plain words")
+DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can catch nothing")
+FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase is written as other tools have it")
+
+_SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;]")
+"""What a phrase must have one of for anything to be wrong with it here."""
+
+_PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
+_MIN_PARTS = 3
+"""Parts between commas from which on they are alternatives: fewer may be a sentence."""
+_SAME_BEGINNING = 3
+"""Letters that two words begin with if they are forms of one: "dance, dancing"."""
+
+_FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
+    (
+        re.compile(r"\[[^\[\]]*\]\([^()]*\)"),
+        "`{}` marks an entity, as in Rasa; here it is an optional word and a group",
+        "write a slot where the word stands: {{name}}, {{number}}, {{text}} or the name of a list",
+    ),
+    (
+        re.compile(r"<[^<>]*>"),
+        "`{}` is a rule of another tool; here it is plain words",
+        "write {{name}}, {{number}}, {{text}} or {{LIST}} for a slot, or (one|other) for alternatives",
+    ),
+    (
+        re.compile(r"(?<!\S)(?:[$@][A-Za-z_]\w*|%\w+%)"),
+        "`{}` is a variable of another tool; here it is a plain word",
+        "write {{name}}, {{number}}, {{text}} or {{LIST}} for a slot",
+    ),
+    (
+        re.compile(r"\(\?|\\[A-Za-z.?]|\.[*+]|^\^|(?<=\S)\$$"),
+        "`{}` is a sign of regular expressions, which phrases are not",
+        "write the words; (one|other) are alternatives, and [this] may be missing",
+    ),
+    (
+        re.compile(r"\*"),
+        "`{}` does not stand for any words here",
+        "leave it out: a phrase is found anywhere in a sentence; {{text}} catches the rest of it",
+    ),
+    (
+        re.compile(r"(?:^|(?<=\s))/\w+/?"),
+        "`{}` is no command here: the slash is ignored",
+        "write the words without slashes",
+    ),
+)
+"""Signs of other tools, what to say of each, and what to write instead."""
+
+_SLASH = re.compile(r"(?P<one>[^\W\d]+)\s?/\s?(?P<other>[^\W\d]+)")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report phrases of the project that do not say what they were meant to."""
+    for tables in word_tables(draft):
+        report = tables.report
+        report.memoize(("patterns", report.document.file), None, partial(_read, tables))
+        users = known_by(draft, report)
+        for phrase in _all(tables):
+            if "{" in phrase.text:
+                _slots(phrase, [draft.behaviors[user] for user in users])
+
+
+def _all(tables: WordTables) -> Iterator[WrittenPhrase]:
+    """Every phrase of a file but those of word lists."""
+    paths: list[NodePath] = [("phrases", name) for name in tables.phrases if name not in WORD_LISTS]
+    paths += [
+        ("answers", name, i, "phrases")
+        for name, rows in tables.answers.items()
+        if name not in TABLES
+        for i in range(len(rows))
+    ]
+    paths += [("lists", name, i, "phrases") for name, entries in tables.lists.items() for i in range(len(entries))]
+    for path in paths:
+        yield from written_phrases(tables.report, path)
+
+
+def _read(tables: WordTables) -> None:
+    for phrase in _all(tables):
+        if _SIGNS.search(phrase.text):
+            try:
+                read_pattern(phrase.text)
+            except PatternError as error:
+                _bad(phrase, error)
+            else:
+                _foreign(phrase)
+    for name in tables.phrases.keys() & {*WORD_LISTS}:
+        for phrase in written_phrases(tables.report, ("phrases", name)):
+            if found := _PATTERN_SIGNS.search(phrase.text):
+                message = f"`{name}` is a list of words, in which `{found[0]}` means nothing"
+                _say(BAD_PATTERN, phrase, found.start(), 1, message, "write each word on its own")
+
+
+def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
+    """Report a phrase that is no sound pattern; one that a comma has torn is told once."""
+    hint, cause = f"{error.hint}; until then it counts as plain words", ""
+    if (torn := _torn(phrase)) is not None:
+        cause = f"{phrase.report.document.file} torn {torn}"
+        hint = "a comma ends a phrase of a list in brackets: write `|` between alternatives"
+    _say(BAD_PATTERN, phrase, error.offset, error.length, error.message, hint, cause)
+
+
+def _torn(phrase: WrittenPhrase) -> NodePath | None:
+    """The phrase whose bracket is closed in a phrase behind it, if this is one of the two or between them."""
+    *around, place = phrase.path
+    texts = [other.text for other in written_phrases(phrase.report, (*around,))] if isinstance(place, int) else []
+    left_open = [sum(map(text.count, "([")) - sum(map(text.count, ")]")) for text in texts]
+    begun = [i for i, more in enumerate(left_open) if more > 0 and i <= int(place)]
+    closed = [i for i, more in enumerate(left_open) if more < 0 and i >= int(place)]
+    return (*around, begun[-1]) if begun and closed else None
+
+
+def _foreign(phrase: WrittenPhrase) -> None:
+    text = phrase.text
+    for pattern, message, hint in _FOREIGN:
+        if found := pattern.search(text):
+            said = message.format(found[0])
+            _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), said, hint.format())
+            return
+    if found := _SLASH.search(text):
+        message = f"`{found[0]}` is heard as these words one after the other"
+        hint = f"write `({found['one']}|{found['other']})`, or a phrase for each"
+        _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), message, hint)
+    elif sign := _separator(text):
+        parts = [part.strip() for part in text.split(sign)]
+        message = f"this is one phrase, whose words are heard one after the other: `{sign}` does not part it"
+        hint = f"write a phrase for each: [{', '.join(parts)}]"
+        _say(FOREIGN_PATTERN, phrase, text.index(sign), 1, message, hint)
+
+
+def _separator(text: str) -> str:
+    """The sign that parts alternatives in one text; empty if there is none."""
+    if ";" in text:
+        return ";"
+    parts = [" ".join(folded(part)) for part in text.split(",")]
+    if len(parts) == 1 or not all(parts):
+        return ""
+    forms_of_one = len(parts) == 2 and len({part[:_SAME_BEGINNING] for part in parts}) == 1
+    return "," if len(parts) >= _MIN_PARTS or forms_of_one else ""
+
+
+def _slots(phrase: WrittenPhrase, machines: list[MachineDefinition]) -> None:
+    """Report slots of a phrase that can catch nothing in a behaviour that knows it."""
+    listed = phrase.path[0] == "lists"
+    for slot in slots_of(phrase.text):
+        faults = (_fault(slot, machine) for machine in machines)
+        if listed:
+            fault: tuple[str, str] | None = (
+                f"`{slot.type}` catches nothing: this phrase belongs to an entry of a list, and is what a slot catches",
+                "write the words themselves",
+            )
+        else:
+            fault = next((fault for fault in faults if fault), None)
+        if fault:
+            cause = f"{phrase.report.document.file} slot {slot.type}"
+            phrase.report.diagnostics.append(DEAD_SLOT.at(slot_place(phrase, slot), *fault, cause=cause))
+
+
+def _fault(slot: Slot, machine: MachineDefinition) -> tuple[str, str] | None:
+    """What to say of a slot that can catch nothing, and what to do."""
+    if slot.type in TYPES:
+        return None
+    if slot.type not in machine.lists:
+        message = f"there is neither a type nor a list `{slot.type}`: nothing is caught here"
+        if slot.name in (*TYPES, *machine.lists):
+            return message, f"the type comes first: {{{slot.name}:{slot.type}}}"
+        return message, did_you_mean(slot.type, (*TYPES, *machine.lists), "there are")
+    if not any(phrases_in(entry) for entry in machine.lists[slot.type]):
+        message = f"no entry of the list `{slot.type}` has `phrases`: nothing is caught here"
+        return message, "give each entry `phrases`: what visitors call it"
+    return None
+
+
+def _say(code: Code, phrase: WrittenPhrase, offset: int, length: int, message: str, hint: str, cause: str = "") -> None:
+    report: DocumentReport = phrase.report
+    place = place_within(report.document, phrase.path, phrase.text, offset, length)
+    report.diagnostics.append(code.at(place, message, hint, cause=cause))

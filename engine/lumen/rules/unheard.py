@@ -1,0 +1,93 @@
+"""Rows of `hears` and slots of phrases from which nothing comes: names that no row hears, and what no row reads."""
+
+from collections.abc import Iterator
+
+from lumen.interpreters.expressions.tree import Literal, walk
+from lumen.interpreters.talk.hearing import HEARD
+from lumen.interpreters.talk.patterns import slots_of
+from lumen.language.actions import Expression, Template
+from lumen.language.diagnostics import WARNING, Code, did_you_mean, nearest
+from lumen.language.machines import MachineDefinition, Transition
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.caught import caught_schema, is_broken
+from lumen.rules.heard_rows import HeardRows, Row, hearing_behaviors, shown
+from lumen.rules.logic import tree
+from lumen.rules.naming import heard_rows, read_names, trees
+from lumen.rules.walk import expression_sites
+from lumen.rules.word_tables import WordTables, known_by, slot_place, word_tables, written_phrases
+
+UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "`not` or `asked` stands before a name that no row hears")
+UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row reads what a slot of a phrase catches")
+
+Reads = dict[str, dict[int, set[str | None]]]
+"""Of each behaviour what each row reads of `heard`, by its number; None among it if that may be anything."""
+
+_NO_SLOTS = frozenset(("text", "phrase", "answer"))
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report rows about names that are not heard there, and slots that no row reads."""
+    hearing = hearing_behaviors(draft)
+    for name in hearing:
+        rows = HeardRows(draft, name)
+        for row in rows:
+            if row.hears.way in ("not", "asked"):
+                _unheard(rows, row)
+    reads = {name: _reads(draft.behaviors[name]) for name in hearing}
+    for tables in word_tables(draft) if hearing else ():
+        for name in (*tables.phrases, *tables.answers):
+            _unread(draft, tables, name, reads)
+
+
+def _unheard(rows: HeardRows, row: Row) -> None:
+    """Report the names of a row with `not` or `asked` that nothing else hears, in its state or around it."""
+    around = [*rows.around(row.state.path)]
+    others = [other.hears for state in around for other in rows.by_state.get(state.path, ())]
+    heard = {name for other in others if not other.way for name in other.names}
+    asked = {text for state in around for transition in state.transitions for text in _quoted(transition)}
+    for name in row.hears.names:
+        if name not in heard | asked:
+            message = f"`{row.hears.key}` is about `{name}`, which no row of {shown(row.state)} or around it hears"
+            hint = did_you_mean(name, heard) if nearest(name, heard) else f"add a row `{name}`, or delete this one"
+            rows.report(UNHEARD_NAME, row.path, message, hint, key=True)
+
+
+def _quoted(transition: Transition) -> Iterator[str]:
+    """The texts in a guard under `on`, which may ask for phrases."""
+    if transition.guard and not transition.hears:
+        nodes = (node for node, _ in walk(tree(transition.guard.source)))
+        yield from (node.value for node in nodes if isinstance(node, Literal) and isinstance(node.value, str))
+
+
+def _reads(machine: MachineDefinition) -> dict[int, set[str | None]]:
+    found: dict[int, set[str | None]] = {}
+    for site in expression_sites(machine):
+        row = site.transition.hears if site.transition else None
+        if row and HEARD in site.text.shown:
+            written = Expression(site.text.shown) if isinstance(site.text, Expression) else Template(site.text.shown)
+            for root in trees(written):
+                found.setdefault(row.number, set()).update(read_names(root, HEARD))
+    return found
+
+
+def _unread(draft: ProjectDraft, tables: WordTables, name: str, reads: Reads) -> None:
+    """Report each slot of the phrases of a name that no row with the name reads, at its first phrase."""
+    users = known_by(draft, tables.report)
+    if not reads.keys() >= {user for user in users if any(heard_rows(draft.behaviors[user]))}:
+        return  # one that is broken may read it
+    users = [user for user in users if user in reads]
+    rows = [(user, row) for user in users for row in heard_rows(draft.behaviors[user]) if name in row.names]
+    read = {key for user, row in rows for key in reads[user].get(row.number, ())}
+    known = {key for user, row in rows for key in caught_schema(draft.behaviors[user], row).get("properties", ())}
+    if not rows or not read <= known:
+        return  # what is read is all of it, or is not there: one of these may be meant
+    paths = [("phrases", name), *(("answers", name, i, "phrases") for i in range(len(tables.answers.get(name, ()))))]
+    phrases = (phrase for path in paths for phrase in written_phrases(tables.report, path))
+    sound = (p for p in phrases if "{" in p.text and not any(is_broken(draft.behaviors[u], p.text) for u in users))
+    slots = ((phrase, slot) for phrase in sound for slot in slots_of(phrase.text))
+    for phrase, slot in slots:
+        if slot.name not in read | _NO_SLOTS:
+            read.add(slot.name)
+            message = f"no row with `{name}` reads what `{slot.name}` catches"
+            hint = f"read `heard.{slot.name}` in a row, or write the phrase without a slot"
+            phrase.report.diagnostics.append(UNUSED_SLOT.at(slot_place(phrase, slot), message, hint))

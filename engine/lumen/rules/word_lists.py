@@ -1,0 +1,40 @@
+"""The words by which sentences are read, in each language of a project that hears."""
+
+from lumen.interpreters.talk.speech import FILLERS, NEGATIONS, NEGATIONS_AFTER, QUESTIONS, SMALL_WORDS
+from lumen.language.diagnostics import WARNING, Code
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.settings import said_at
+from lumen.rules.naming import heard_rows
+
+MISSING_WORDS = Code(
+    "missing-words", "hearing", WARNING, "a language of the project has no words by which sentences are read"
+)
+
+_NEEDED = {
+    FILLERS: (FILLERS,),
+    SMALL_WORDS: (SMALL_WORDS,),
+    NEGATIONS: (NEGATIONS, NEGATIONS_AFTER),
+    QUESTIONS: (QUESTIONS,),
+}
+"""The lists that each language needs, and those of which one is enough."""
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report once which lists have no words in which language, if a behaviour hears."""
+    machines = [machine for machine in draft.behaviors.values() if any(heard_rows(machine))]
+    settings, main = draft.settings, draft.main
+    if not machines or settings is None or main is None or draft.words.keys() != draft.names["behaviors/words"]:
+        return
+    missing: dict[str, list[str]] = {}
+    for language in settings.languages:
+        for name, lists in _NEEDED.items():
+            tables = [[machine.phrases.get(each, {}) for each in lists] for machine in machines]
+            if any(not any(table.get(language) or table.get("") for table in several) for several in tables):
+                missing.setdefault(language, []).append(name)
+    if missing:
+        language, names = next(iter(missing.items()))
+        what = "; ".join(f"`{one}` has no {', '.join(f'`{name}`' for name in lists)}" for one, lists in missing.items())
+        message = f"{what}: sentences in it are read word by word"
+        hint = f"write `{names[0]}: {{{language}: […]}}` under `phrases` of a words file that the behaviour names"
+        path = (*said_at(settings, main, "languages"), settings.languages.index(language))
+        main(MISSING_WORDS, path, message, hint)
