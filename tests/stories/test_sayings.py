@@ -67,6 +67,19 @@ def test_a_name_means_files_of_sayings_as_it_means_stories(tmp_path: Path, capsy
     assert "no project or story `goood`: did you mean `good`?" in capsys.readouterr().err
 
 
+def test_of_several_answers_a_saying_names_one() -> None:
+    faq = [{"phrases": {"en": ["which colour"]}, "value": {"en": ["Blue.", "White."]}}]
+    machine = guide(answers={"faq": faq}, context={"tries": 1})
+
+    def wrong(answer: str) -> str:
+        saying = Saying("guide", "choice", "faq", "en", "Which colour?", {"answer": answer})
+        (found,) = tried([SayingSet("colour", (saying,))], {"guide": machine})
+        return found.wrong
+
+    assert wrong("White.") == ""
+    assert wrong("Red.") == "`answer` is `Blue. | White.`, and should be `Red.`"
+
+
 def test_sayings_come_after_the_stories_unless_those_fail_first(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

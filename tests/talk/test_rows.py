@@ -130,6 +130,19 @@ def test_heard_has_the_text_the_phrase_and_the_answer() -> None:
     assert caught(machine, "a Dance!") == {"text": "a Dance!", "phrase": "Dance", "answer": None}
 
 
+def test_of_an_answer_that_is_a_list_one_is_drawn() -> None:
+    colour = {"phrases": {"en": ["which colour"]}, "value": {"en": ["Blue.", "White."]}}
+    answers = {"faq": [colour, {"phrases": {"en": ["how tall"]}, "value": {"en": "Small."}}]}
+    told = {"target": ".", "actions": {"assign": {"caught": "pick(heard.answer)"}}}
+    machine = hearing({"faq": told}, PHRASES, answers=answers)
+    snapshot, drawn = initial(machine).snapshot, []
+    for _ in range(20):
+        snapshot = said(machine, "which colour", snapshot).snapshot
+        drawn.append(snapshot.context["caught"])
+    assert set(drawn) == {"Blue.", "White."}
+    assert caught(machine, "how tall") == "Small."
+
+
 def test_of_equal_rows_the_upper_one_is_taken_unless_its_guard_is_false() -> None:
     def of(*guards: str) -> Machine:
         rows = {name: {"guard": g, "target": name} for name, g in zip(("dance", "sing"), guards, strict=True)}

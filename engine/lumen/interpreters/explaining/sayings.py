@@ -66,10 +66,10 @@ def _guard(row: ExplainedRow) -> str:
 
 
 def _same(caught: Any, wanted: Any) -> bool:
-    """Whether that was caught; an entry of a list is named by one of its phrases."""
+    """Whether that was caught; an entry of a list is named by one of its phrases, several answers by one of them."""
     if isinstance(caught, Mapping) and isinstance(wanted, str):
         return any(folded(wanted) == folded(one) for texts in phrases_in(caught).values() for one in texts)
-    return bool(caught == wanted)
+    return bool(caught == wanted or (isinstance(caught, list | tuple) and wanted in caught))
 
 
 def _shown(value: Any) -> str:
@@ -79,6 +79,8 @@ def _shown(value: Any) -> str:
 
 
 def caught_text(value: Any) -> str:
-    """Return what a slot caught as text; an entry of a list is named by its first phrase."""
+    """Return what a slot caught as text; an entry of a list is named by its first phrase, of several answers each."""
+    if isinstance(value, list | tuple):
+        return " | ".join(map(str, value))
     texts = [text for several in phrases_in(value).values() for text in several] if isinstance(value, Mapping) else []
     return texts[0] if texts else str(value)

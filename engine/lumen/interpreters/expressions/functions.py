@@ -190,7 +190,7 @@ FUNCTIONS: dict[str, Function] = {
     "take": Function((_LIST, _NUMBER), _LIST, lists.take),
     "drop": Function((_LIST, _NUMBER), _LIST, lists.drop),
     "shuffle": Function((_LIST,), _LIST, lists.shuffle, scoped=True),
-    "pick": Function((_LIST,), KINDS, lists.pick, scoped=True),
+    "pick": Function((frozenset((TEXT, LIST)),), KINDS, lists.pick, scoped=True),
     "in_language": Function((KINDS,), KINDS, lists.in_language, scoped=True),
 }
 

@@ -30,7 +30,9 @@ def shuffle(scope: Scope, values: Any) -> list[Any]:
 
 
 def pick(scope: Scope, values: Any) -> Any:
-    """One element, drawn."""
+    """One element, drawn; a text is itself, so that an answer may be one text or a list of them."""
+    if isinstance(values, str):
+        return values
     if not _list(values):
         raise FaultError("nothing can be picked of an empty list", "guard it with size(…) > 0")
     return values[scope.draw(len(values))]
