@@ -69,7 +69,7 @@ def steps(visit: Visit) -> None:
     visit.types("my name is Ani")
     visit.until("how_are_you")
     visit.types("fine")
-    visit.until("offer  (")
+    visit.until("state    offer")
     visit.types("dance")
     visit.until("plays dance")
     visit.does(f"sed -i 's/Do you have a question for me?/Is there anything you wonder about?/' {TOUR}")
