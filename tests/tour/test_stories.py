@@ -3,10 +3,12 @@
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
 from lumen.app.exploring import explored
+from lumen.cli.main import main
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
 from lumen.loading.schedules import read_schedule
@@ -16,6 +18,18 @@ from tests.tables import for_each
 from tests.tour.names import GUIDE, ROOT, SAFETY
 from tests.tour.playing import Run, play
 
+GRANTED = """
+steps:
+  - visitor: arrives
+  - expect: {state: ask_name}
+  - says: My name is Dewi
+  - expect: {state: how_are_you}
+  - says: fine
+  - expect: {state: offer}
+  - says: I would love to see how you move to music
+  - answers: {raise: wish.dance, data: {}}
+  - expect: {state: offer, played: dance, within: 1min}
+"""
 STORIES = sorted(path.stem for path in matching(ROOT, "behaviors/stories/*.yaml"))
 
 
@@ -109,3 +123,11 @@ def test_the_greeting_suits_the_hour(project: Project, clock: str, english: str,
     story = Story("hour", "Somebody comes at some hour", (StoryStep(Arrive(Visitor())), StoryStep(Expect(("greet",)))))
     for language, greeting in (("en", english), ("id", indonesian)):
         assert play(project, replace(story, clock=read_schedule(clock), language=language)).said[0][1] == greeting
+
+
+def test_a_wish_that_a_model_raises_ends_the_answer_and_not_the_dance(copy: Path) -> None:
+    settings = copy / "lumen.yaml"
+    model = '  answers: {here: true, model: {url: "http://127.0.0.1:9/v1/chat/completions", name: none}}\n'
+    settings.write_text(settings.read_text("utf-8").replace("modules:\n", f"modules:\n{model}", 1), "utf-8")
+    (copy / "behaviors" / "stories" / "granted.yaml").write_text(GRANTED, "utf-8")
+    assert main(["test", str(copy), "granted"]) == 0
