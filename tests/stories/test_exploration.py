@@ -65,6 +65,17 @@ def test_a_do_that_nobody_awaits_the_end_of_is_a_dead_end() -> None:
     assert found(walked({"a": {"on": {"go": "b"}}, "b": {"do": {"say": "Hello"}}})) == [("dead-end", "b", 1)]
 
 
+def test_a_row_is_tried_with_a_sentence_that_no_other_row_of_its_state_takes() -> None:
+    """`no no problems` is not a refusal of `fine`: that phrase has its own negation."""
+    heard = {"type": "object", "properties": {"result": {"type": "string"}}, "required": ["result"]}
+    rows = {"fine": {"actions": {"log": "fine"}}, "not fine": "refused"}
+    states = {"a": {"hears": rows}, "refused": {"on": {"back": "a"}}}
+    phrases = {"fine": {"en": ["no problems", "splendid"]}, "negations": {"en": ["no", "not"]}}
+    exploration = walked(states, events={"heard": heard, "back": None}, phrases=phrases)
+    assert found(exploration) == []
+    assert exploration.never_taken == ()
+
+
 def test_time_leads_out() -> None:
     assert found(walked({"a": {"on": {"go": "b"}}, "b": {"after": {"5s": "a"}}})) == []
 

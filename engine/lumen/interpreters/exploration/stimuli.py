@@ -20,7 +20,7 @@ from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
-from lumen.language.machines import MachineDefinition, Transition
+from lumen.language.machines import Hears, MachineDefinition, Transition
 
 FAILURE_REASON = "it does not work"
 
@@ -44,6 +44,9 @@ STIMULUS_COSTS: Mapping[StimulusKind, int] = {
 
 OVERTAKING_COST = 5
 """What it costs besides that a timer ends while a command is under way, or before an earlier one."""
+
+MAX_SAID = 20
+"""How many sentences are tried for a row of `hears`."""
 
 
 class Stimulus(NamedTuple):
@@ -162,10 +165,21 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
 
 
 def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
-    """A text for each name of each row of `hears`, and one that no row has."""
+    """A text for each name of each row of `hears`, and one that no row has.
+
+    Texts for which their row is the best of its state come first: "no no problems" is no example of `not fine`.
+    """
     for machine, transition, context in heard:
-        if transition.hears:
-            yield from islice(of_row(machine, transition.hears, context), 1 + len(transition.hears.names))
+        if row := transition.hears:
+            said = list(islice(of_row(machine, row, context), MAX_SAID))
+            best = [text for text in said if _is_best(machine, row, text, context)]
+            yield from (best or said)[: 1 + len(row.names)]
+
+
+def _is_best(machine: MachineDefinition, row: Hears, text: str, context: Mapping[str, Any]) -> bool:
+    """Whether a text is for this row before all others of its state."""
+    first, late = hearing_of(machine).order(row.number, text, context)
+    return next((one.number for one in (*first, *late)), None) == row.number
 
 
 def _orders(heard: tuple[HeardTransition, ...], name: str, data: Any) -> Iterator[Any]:
