@@ -10,6 +10,7 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.language.projects import Project
+from tests.scanning import matching
 from tests.tables import for_each
 
 Write = Callable[..., Path]
@@ -24,8 +25,8 @@ def told(arguments: list[str], code: int, capsys: pytest.CaptureFixture[str]) ->
 def test_every_story_has_a_line_and_all_are_counted(project: Project, capsys: pytest.CaptureFixture[str]) -> None:
     shown = told([project.root, "shy", "silence"], 0, capsys)
     assert "ok       0:29  shy: Somebody does not tell their name" in shown
-    assert "ok       0:48  silence: Somebody looks" in shown
-    assert "2 stories, 0 failed: 1:17 of simulated time in" in shown
+    assert "ok       0:34  silence: Somebody looks" in shown
+    assert "2 stories, 0 failed: 1:03 of simulated time in" in shown
     assert "\x1b" not in shown
 
 
@@ -101,8 +102,8 @@ def test_what_can_not_be_is_one_line(
 
 
 def test_a_project_without_stories_says_how_to_begin(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for story in (copy / "behaviors" / "stories").glob("*.yaml"):
-        story.unlink()
+    for file in matching(copy, "behaviors/stories/*.yaml", "behaviors/sayings/*.yaml"):
+        file.unlink()
     main_file = copy / "lumen.yaml"
     main_file.write_text(main_file.read_text("utf-8").replace("story: visitor", "# no story:"), "utf-8")
     assert main(["test", str(copy)]) == 2
