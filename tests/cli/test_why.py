@@ -44,7 +44,7 @@ def test_a_text_leads_back_to_the_message(greeted: Exhibition) -> None:
     assert set(answer) == {"what", "at", "chain", "needs"}
     assert all(set(link) == LINK for link in (*answer["chain"], *answer["needs"]))
     assert [link["text"].partition(":")[0] for link in answer["needs"]] == [
-        "entered ask_name",
+        "entered waiting, ask_name, face.watched, face.watched.armed",
         "entered talking, greet",
     ]
     assert kinds(answer) == ["command", "activity", "transition", "event", "message"]
@@ -76,13 +76,16 @@ def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
     answer = greeted.why_not("check_name")
     assert all(set(reason) == REASON for reason in answer["reasons"])
     first = answer["reasons"][0]
-    assert first["because"] == "guard"
-    assert first["false"]["values"] == {"event.data.result": "?"}
-    assert first["change"]["event.data.result"].endswith("Ani")
+    assert first["because"] == "unheard"
+    assert first["false"] == {"text": "hears my_name", "values": {"event.data.result": "?"}}
+    assert first["change"]["event.data.result"].endswith("Budi")
     dance = greeted.why_not("dance")["reasons"][0]
-    assert (dance["because"], dance["change"]["state"]) == ("inactive", "offer")
-    pressed, waits = greeted.why_not("goodbye")["reasons"][:2]
+    assert (dance["because"], dance["change"]["state"]) == ("inactive", "guide.talking.waiting.wishes")
+    assert dance["change"]["event.data.result"] == "dance"
+    said, pressed, gone, waits = greeted.why_not("goodbye")["reasons"][:4]
+    assert (said["because"], said["change"]) == ("unheard", {"event.data.result": "bye"})
     assert (pressed["because"], pressed["change"]) == ("no-event", {"event": "operator.end"})
+    assert (gone["because"], gone["change"]) == ("no-event", {"event": "visitor.left"})
     assert (waits["because"], set(waits["change"])) == ("no-event", {"wait"})
 
 
@@ -111,7 +114,7 @@ def test_it_reads_well(greeted: Exhibition) -> None:
     told = [*why_lines(greeted.why("not hear your name")), *why_not_lines(greeted.why_not("check_name"))]
     assert all(len(line) <= 100 for line in told)
     text = "\n".join(told)
-    assert "because ask_name → ask_name, on heard, as context.name_tries < 2" in text
+    assert "because ask_name → ask_name, hears else, as context.name_tries < 2" in text
     assert "context.name_tries is 0" in text
     assert "it would have, had event.data.result been " in text
 
