@@ -84,11 +84,17 @@ def test_a_state_is_shown_with_those_around_it() -> None:
     shown = neighbourhood(TOUR, "offer")
     boxes = {box.title: box for box in shown.boxes}
     assert boxes["offer"].marked
-    assert "“dance” → dance" in boxes["offer"].rows
+    assert "hears dance → dance" in boxes["offer"].rows
     assert "safety.alarm → interrupted" in boxes["offer"].rows
-    assert boxes["fine"].rows == ("done, failed → offer",)
+    assert boxes["reaction"].rows == ("done.do.*, error.do.* → offer",)
+    assert boxes["dance"].rows == ("done → offer",)
     assert (boxes["offer"].id, boxes["goodbye"].id) in shown.arrows
     assert "greet" not in boxes
+
+
+def test_the_ends_of_a_do_that_lead_to_one_state_are_one_row() -> None:
+    boxes = {box.title: box for box in neighbourhood(TOUR, "watching").boxes}
+    assert boxes["brain_lost"].rows == ("done, failed, after 30 s → watching",)
 
 
 def test_of_a_for_only_what_somebody_wrote_is_shown(museum: MachineDefinition) -> None:
@@ -96,7 +102,7 @@ def test_of_a_for_only_what_somebody_wrote_is_shown(museum: MachineDefinition) -
     assert [box.title for box in quiz.within] == ["ask", "right", "wrong", "next"]
     assert quiz.rows == ("for each question", "done → praise")
     assert quiz.within[0].first
-    assert quiz.within[0].rows[0] == "“…” in question.right → right"
+    assert quiz.within[0].rows[0] == "hears question.right → right"
 
 
 @for_each(
