@@ -33,9 +33,7 @@ def test_another_text(changed) -> None:  # type: ignore[no-untyped-def]
 
 
 def test_another_target(changed) -> None:  # type: ignore[no-untyped-def]
-    run = changed(
-        "heard(event.data.result, 'fine')\", target: fine}", "heard(event.data.result, 'fine')\", target: offer}"
-    )
+    run = changed('                  fine: "#fine"\n', '                  fine: "#offer"\n')
     assert "fine" not in run.guide()
     assert "expected" in run.failure
     assert "`fine`" in run.failure
