@@ -4,6 +4,7 @@ No statechart runs here: `Hearing` is asked, state by state.
 """
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 from lumen.interpreters.talk.finder import Find
@@ -19,6 +20,9 @@ from lumen.rules.dead_ends import within
 from lumen.rules.events import descriptor_path
 from lumen.rules.naming import heard_rows
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+
+MAX_EXAMPLES = 5_000
+"""The most sentences that are tried for a row: a file may have very many phrases."""
 
 
 class Row(NamedTuple):
@@ -85,7 +89,10 @@ class HeardRows:
         return hearing_of(self.machine).read(text).said(find.start, find.end)
 
     def examples(self, names: Iterable[str]) -> Iterator[Example]:
-        """Every form of the phrases of these names as a sentence, those of Lumen last."""
+        """Every form of the phrases of these names as a sentence, those of Lumen last; at most MAX_EXAMPLES."""
+        return islice(self._examples(names), MAX_EXAMPLES)
+
+    def _examples(self, names: Iterable[str]) -> Iterator[Example]:
         shipped: list[tuple[str, Mapping[str, tuple[str, ...]]]] = []
         for name in names:
             if name in self.machine.phrases:

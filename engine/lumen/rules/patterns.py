@@ -13,6 +13,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
+from lumen.rules.lookups import value_at
 from lumen.rules.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
 
 BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase can't be read as a pattern, and counts as plain words")
@@ -27,6 +28,9 @@ _MIN_PARTS = 3
 """Parts between commas from which on they are alternatives: fewer may be a sentence."""
 _SAME_BEGINNING = 3
 """Letters that two words begin with if they are forms of one: "dance, dancing"."""
+
+_MAX_TORN = 10
+"""Parts before and behind one in which the rest of a torn pattern is looked for."""
 
 _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (
@@ -118,10 +122,13 @@ def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
 def _torn(phrase: WrittenPhrase) -> NodePath | None:
     """The phrase whose bracket is closed in a phrase behind it, if this is one of the two or between them."""
     *around, place = phrase.path
-    texts = [other.text for other in written_phrases(phrase.report, (*around,))] if isinstance(place, int) else []
-    left_open = [sum(map(text.count, "([")) - sum(map(text.count, ")]")) for text in texts]
-    begun = [i for i, more in enumerate(left_open) if more > 0 and i <= int(place)]
-    closed = [i for i, more in enumerate(left_open) if more < 0 and i >= int(place)]
+    if not isinstance(place, int):
+        return None
+    near = range(max(place - _MAX_TORN, 0), place + _MAX_TORN + 1)
+    texts = [(i, text) for i in near if isinstance(text := value_at(phrase.report, (*around, i)), str)]
+    left_open = [(i, sum(map(text.count, "([")) - sum(map(text.count, ")]"))) for i, text in texts]
+    begun = [i for i, more in left_open if more > 0 and i <= place]
+    closed = [i for i, more in left_open if more < 0 and i >= place]
     return (*around, begun[-1]) if begun and closed else None
 
 
