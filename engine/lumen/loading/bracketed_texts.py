@@ -44,12 +44,12 @@ def slot_signs(text: str) -> str:
 
 
 def _depth(text: str) -> int:
-    """How many brackets more are opened than closed."""
+    """The number of brackets that are left open; negative if more are closed."""
     return sum(text.count(sign) for sign in "[{") - sum(text.count(sign) for sign in "]}")
 
 
 def _bracketed(text: str, start: int, end: int, *, flow: bool) -> Iterator[tuple[int, int]]:
-    """From where to where texts that need quotes stand; within brackets (`flow`) a comma ends each."""
+    """The spans of texts that need quotes; within brackets (`flow`) a comma ends each."""
     while start < end and text[start] == " ":
         start += 1
     if start >= end or text[start] in "\"'":
@@ -67,7 +67,7 @@ def _bracketed(text: str, start: int, end: int, *, flow: bool) -> Iterator[tuple
 
 
 def _items(text: str, start: int, end: int) -> Iterator[tuple[int, int]]:
-    """From where to where each item between commas stands; a comma within brackets or quotes parts nothing."""
+    """The spans of the items between commas; a comma within brackets or quotes separates nothing."""
     low, at = start, start
     while at < end:
         if text[at] in "\"'" and not text[low:at].strip():
@@ -85,7 +85,7 @@ _BRACKETS = {"[": "]", "{": "}", "(": ")"}
 
 
 def _closing_bracket(text: str, start: int, end: int) -> int:
-    """Where the bracket that opens there closes; -1 if it does not."""
+    """The place of the bracket that closes the one there; -1 without any."""
     waiting: list[str] = []
     for at in range(start, end):
         if text[at] in _BRACKETS:

@@ -1,4 +1,4 @@
-"""What `heard` is in a row of `hears`, as a JSON Schema: the text, and what the slots of its phrases catch."""
+"""The JSON Schema of `heard` in a row of `hears`: the text, and the values that the slots of its phrases catch."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -15,7 +15,7 @@ _TEXT: Mapping[str, Any] = {"type": "string"}
 def caught_schema(machine: MachineDefinition, row: Hears) -> dict[str, Any]:
     """The JSON Schema of `heard` in a row; a slot that not every form has is not required.
 
-    Nothing is known of a row with phrases of an entry, nor of one with a phrase that is broken: that is reported there.
+    It is empty for a row with phrases of an entry, and for one with a broken phrase, which is reported there.
     """
     phrases = [phrase for _, phrase in row_phrases(machine, row)]
     if any("." in name for name in row.names) or any(is_broken(machine, phrase) for phrase in phrases):
@@ -69,12 +69,12 @@ def _slot_schema(machine: MachineDefinition, slot: Slot) -> Mapping[str, Any]:
 
 
 def _joined(schemas: list[Mapping[str, Any]]) -> Mapping[str, Any]:
-    """What is known of a slot that several forms have."""
+    """The schema of a slot that several forms have; empty if they differ."""
     return schemas[0] if all(schema == schemas[0] for schema in schemas) else {}
 
 
 def _answer_schema(machine: MachineDefinition, row: Hears) -> Mapping[str, Any]:
-    """What is known of `heard.answer`: nothing but null if no name of the row is one of `answers`."""
+    """The schema of `heard.answer`: null if no name of the row is one of `answers`."""
     values = [answer.value for name in row.names for answer in machine.answers.get(name, ())]
     kinds = {"string" if is_text_by_language(value) else schema_of(value)["type"] for value in values}
     if any(name not in machine.answers for name in row.names) or not values:

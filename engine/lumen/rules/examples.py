@@ -1,4 +1,4 @@
-"""Phrases by example: each form, said alone, has to take its own row, and each row has to be taken by something."""
+"""Phrases by example: each form, said alone, must take its own row, and some sentence must take each row."""
 
 from collections.abc import Collection
 from itertools import islice
@@ -108,7 +108,7 @@ class _Examples(HeardRows):
 
     def shadowed(self, row: Row, example: Example, taken: Taken) -> None:
         if example.written is None or taken.find is None:
-            return  # nobody can edit it
+            return  # it comes with Lumen
         other, words = self.by_number[taken.number], self.words(example.text, taken.find)
         whole = words == example.text
         message = f"`{example.text}` of `{example.name}` takes the row {other.shown}"
@@ -162,7 +162,7 @@ class _Examples(HeardRows):
         )
 
     def hiding(self, outer: str) -> str:
-        """What in the states within a state takes every sentence before it; empty if some sentence gets there."""
+        """The transition that takes every sentence in each state within, in words; empty if a sentence gets here."""
         takers = [
             next((t for state in self.between(leaf, outer) for t in state.transitions if _takes_all(t)), None)
             for leaf in self.leaves(outer)

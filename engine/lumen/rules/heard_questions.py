@@ -103,7 +103,7 @@ class _Questions(HeardRows):
         question.report.diagnostics.append(found)
 
     def remedy(self, question: WrittenPhrase, find: Find, row: Row, state: State) -> str:
-        """What to do about a question that takes a row: who asks must come first, or the phrase is too short."""
+        """The hint at a question that takes a row: a row `asked NAME` is missing, or the phrase is too short."""
         name, words = find.entry.name, self.words(question.text, find)
         asked = hearing_of(self.machine).read(question.text).is_asked(find)
         if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):

@@ -51,7 +51,7 @@ class Row(NamedTuple):
 
 
 class Example(NamedTuple):
-    """A form of a phrase as a sentence; `written` is where the phrase is, None if it comes with Lumen."""
+    """A form of a phrase as a sentence; `written` is the phrase in its file, None if it comes with Lumen."""
 
     text: str
     name: str
@@ -76,7 +76,7 @@ class HeardRows:
         return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
 
     def taker(self, taken: Sequence[Taken], row: Row) -> Taken | None:
-        """Which of the rows that are taken comes before this one; None if none does, or a guard decides."""
+        """The first of the rows that are taken, if it is another than this one; None if a guard decides."""
         for one in taken:
             other = self.by_number[one.number]
             if one.number in row.numbers or any(t.guard for t in other.candidates) or _alike(other, row):
@@ -85,7 +85,7 @@ class HeardRows:
         return None
 
     def words(self, text: str, find: Find) -> str:
-        """What of a sentence a phrase was found in."""
+        """The words of a sentence in which a phrase was found."""
         return hearing_of(self.machine).read(text).said(find.start, find.end)
 
     def examples(self, names: Iterable[str]) -> Iterator[Example]:
@@ -167,7 +167,7 @@ def remembered(
 
 
 def shown(state: State) -> str:
-    """What to call a state."""
+    """A state in the words of a message."""
     return f"`{state.name}`" if state.path else "the behaviour"
 
 

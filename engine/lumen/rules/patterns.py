@@ -21,7 +21,7 @@ DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can catch 
 FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase is written as other tools have it")
 
 _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;]")
-"""What a phrase must have one of for anything to be wrong with it here."""
+"""Signs without which a phrase can't be wrong here."""
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3
@@ -64,13 +64,13 @@ _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
         "write the words without slashes",
     ),
 )
-"""Signs of other tools, what to say of each, and what to write instead."""
+"""Signs of other tools, each with a message and a hint."""
 
 _SLASH = re.compile(r"(?P<one>[^\W\d]+)\s?/\s?(?P<other>[^\W\d]+)")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report phrases of the project that do not say what they were meant to."""
+    """Report broken patterns, patterns of other tools, and dead slots in the phrases of the project."""
     for tables in word_tables(draft):
         report = tables.report
         report.memoize(("patterns", report.document.file), None, partial(_read, tables))
@@ -145,13 +145,13 @@ def _foreign(phrase: WrittenPhrase) -> None:
         _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), message, hint)
     elif sign := _separator(text):
         parts = [part.strip() for part in text.split(sign)]
-        message = f"this is one phrase, whose words are heard one after the other: `{sign}` does not part it"
+        message = f"this is one phrase, whose words are heard one after the other: `{sign}` does not separate them"
         hint = f"write a phrase for each: [{', '.join(parts)}]"
         _say(FOREIGN_PATTERN, phrase, text.index(sign), 1, message, hint)
 
 
 def _separator(text: str) -> str:
-    """The sign that parts alternatives in one text; empty if there is none."""
+    """The sign between alternatives in one text; empty if there is none."""
     if ";" in text:
         return ";"
     parts = [" ".join(folded(part)) for part in text.split(",")]
@@ -179,7 +179,7 @@ def _slots(phrase: WrittenPhrase, machines: list[MachineDefinition]) -> None:
 
 
 def _fault(slot: Slot, machine: MachineDefinition) -> tuple[str, str] | None:
-    """What to say of a slot that can catch nothing, and what to do."""
+    """The message and the hint for a slot that can catch nothing; None for a sound one."""
     if slot.type in TYPES:
         return None
     if slot.type not in machine.lists:

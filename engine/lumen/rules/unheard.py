@@ -16,7 +16,7 @@ from lumen.rules.naming import heard_rows, read_names, trees
 from lumen.rules.walk import expression_sites
 from lumen.rules.word_tables import WordTables, known_by, slot_place, word_tables, written_phrases
 
-UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "`not` or `asked` stands before a name that no row hears")
+UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "a row with `not` or `asked` is about a name that no row hears")
 UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row reads what a slot of a phrase catches")
 
 Reads = dict[str, dict[int, set[str | None]]]

@@ -24,7 +24,7 @@ class WordTables(NamedTuple):
 
 
 class WrittenPhrase(NamedTuple):
-    """A phrase where it is written; its language is empty if it is for every language."""
+    """A phrase in its file; its language is empty if it is for every language."""
 
     report: DocumentReport
     path: NodePath
@@ -84,7 +84,7 @@ def known_by(draft: ProjectDraft, report: DocumentReport) -> list[str]:
 
 
 def slot_place(phrase: WrittenPhrase, slot: Slot) -> Place:
-    """Where a slot of a phrase stands."""
+    """The place of a slot of a phrase."""
     signs = (f"{{{slot.type}:{slot.name}}}", f"{{{slot.type}}}")
     sign = next(sign for sign in signs if sign in phrase.text)
     return place_within(phrase.report.document, phrase.path, phrase.text, phrase.text.index(sign), len(sign))
