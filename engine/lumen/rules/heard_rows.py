@@ -25,7 +25,7 @@ MAX_EXAMPLES = 5_000
 """The most sentences that are tried for a row: a file may have very many phrases."""
 
 
-class Row(NamedTuple):
+class SaidRow(NamedTuple):
     """A row of `hears`: its state, and its candidates, of which the first with a true guard is taken."""
 
     state: State
@@ -50,7 +50,7 @@ class Row(NamedTuple):
         return f"`{self.hears.key}` of {shown(self.state)}"
 
 
-class Example(NamedTuple):
+class SaidPhrase(NamedTuple):
     """A form of a phrase as a sentence; `written` is the phrase in its file, None if it comes with Lumen."""
 
     text: str
@@ -68,14 +68,14 @@ class HeardRows:
         self.by_state = {path: rows for path, state in self.machine.states.items() if (rows := _rows(state))}
         self.by_number = {number: row for row in self for number in row.numbers}
 
-    def __iter__(self) -> Iterator[Row]:
+    def __iter__(self) -> Iterator[SaidRow]:
         return (row for rows in self.by_state.values() for row in rows)
 
     def order(self, path: str, text: str) -> RowOrder:
         """The rows of the state at that path that a sentence may take."""
         return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
 
-    def taker(self, taken: Sequence[Taken], row: Row) -> Taken | None:
+    def taker(self, taken: Sequence[Taken], row: SaidRow) -> Taken | None:
         """The first of the rows that are taken, if it is another than this one; None if a guard decides."""
         for one in taken:
             other = self.by_number[one.number]
@@ -88,11 +88,11 @@ class HeardRows:
         """The words of a sentence in which a phrase was found."""
         return hearing_of(self.machine).read(text).said(find.start, find.end)
 
-    def examples(self, names: Iterable[str]) -> Iterator[Example]:
+    def examples(self, names: Iterable[str]) -> Iterator[SaidPhrase]:
         """Every form of the phrases of these names as a sentence, those of Lumen last; at most MAX_EXAMPLES."""
         return islice(self._examples(names), MAX_EXAMPLES)
 
-    def _examples(self, names: Iterable[str]) -> Iterator[Example]:
+    def _examples(self, names: Iterable[str]) -> Iterator[SaidPhrase]:
         shipped: list[tuple[str, Mapping[str, tuple[str, ...]]]] = []
         for name in names:
             if name in self.machine.phrases:
@@ -106,13 +106,13 @@ class HeardRows:
         for name, table in shipped:
             phrases = (phrase for several in table.values() for phrase in several)
             said = (sentence.text for phrase in phrases for sentence in of_phrase(phrase, self.machine.lists))
-            yield from (Example(text, name, None) for text in said)
+            yield from (SaidPhrase(text, name, None) for text in said)
 
-    def written(self, home: DocumentReport, name: str, path: NodePath) -> Iterator[Example]:
+    def written(self, home: DocumentReport, name: str, path: NodePath) -> Iterator[SaidPhrase]:
         """Every form of the phrases at a path of a file."""
         for written in written_phrases(home, path):
             said = (sentence.text for sentence in of_phrase(written.text, self.machine.lists))
-            yield from (Example(text, name, written) for text in said)
+            yield from (SaidPhrase(text, name, written) for text in said)
 
     def around(self, path: str) -> Iterator[State]:
         """The state at a path and those around it, from the inside out."""
@@ -171,15 +171,15 @@ def shown(state: State) -> str:
     return f"`{state.name}`" if state.path else "the behaviour"
 
 
-def _rows(state: State) -> tuple[Row, ...]:
+def _rows(state: State) -> tuple[SaidRow, ...]:
     found: dict[str, list[Transition]] = {}
     for transition in state.transitions:
         if transition.hears:
             found.setdefault(transition.hears.key, []).append(transition)
-    return tuple(Row(state, tuple(candidates)) for candidates in found.values())
+    return tuple(SaidRow(state, tuple(candidates)) for candidates in found.values())
 
 
-def _alike(one: Row, other: Row) -> bool:
+def _alike(one: SaidRow, other: SaidRow) -> bool:
     """Whether it makes no difference which of two rows is taken."""
     done, instead = ([(t.guard, t.targets, t.actions) for t in row.candidates] for row in (one, other))
     return done == instead
