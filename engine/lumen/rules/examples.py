@@ -11,7 +11,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.caught import row_phrases
 from lumen.rules.dead_ends import within
 from lumen.rules.events import hears
-from lumen.rules.heard_rows import Example, HeardRows, Row, hearing_behaviors, remembered, shown
+from lumen.rules.heard_rows import HeardRows, SaidPhrase, SaidRow, hearing_behaviors, remembered, shown
 from lumen.rules.naming import looked_up
 from lumen.rules.speech import SHADOWED_ANSWER
 from lumen.rules.word_tables import home_of
@@ -54,11 +54,11 @@ class _Examples(HeardRows):
                         self.negated_or_asked(row)
         self.answers()
 
-    def found(self, row: Row) -> None:
+    def found(self, row: SaidRow) -> None:
         """Report phrases of a row that take another one; all of them together are the row's own mistake."""
         if any("." in name for name in row.hears.names):
             return  # phrases of an entry, which is not known here
-        hearing, taken = hearing_of(self.machine), dict[object, tuple[Example, Taken]]()
+        hearing, taken = hearing_of(self.machine), dict[object, tuple[SaidPhrase, Taken]]()
         others = {n for other in self.by_state[row.state.path] for n in other.hears.names} - {*row.hears.names}
         reached = False
         for example in self.examples(row.hears.names):
@@ -88,7 +88,7 @@ class _Examples(HeardRows):
                 self.shadowed(row, example, taker)
             self.within(row)
 
-    def within(self, row: Row) -> None:
+    def within(self, row: SaidRow) -> None:
         """Report phrases of a row that take a row of a state within."""
         own = set(row.hears.names)
         below = [path for path in self.by_state if within(path, row.state.path) and path != row.state.path]
@@ -106,7 +106,7 @@ class _Examples(HeardRows):
                     self.shadowed(row, example, taker)
                     break
 
-    def shadowed(self, row: Row, example: Example, taken: Taken) -> None:
+    def shadowed(self, row: SaidRow, example: SaidPhrase, taken: Taken) -> None:
         if example.written is None or taken.find is None:
             return  # it comes with Lumen
         other, words = self.by_number[taken.number], self.words(example.text, taken.find)
@@ -126,7 +126,7 @@ class _Examples(HeardRows):
         found = SHADOWED_PHRASE.at(report.document.place(path), message, hint, (related,), cause)
         report.diagnostics.append(found)
 
-    def negated_or_asked(self, row: Row) -> None:
+    def negated_or_asked(self, row: SaidRow) -> None:
         """Report a row with `not` or `asked` that no phrase of its names can take."""
         tried = list(islice(of_row(self.machine, row.hears, {}), MAX_TRIED))
         orders = (self.order(row.state.path, text) for text in tried)
@@ -141,7 +141,7 @@ class _Examples(HeardRows):
             why = f"the phrases of {names} hold a negation themselves"
         self.never(row, why, f"delete it: `{'|'.join(row.hears.names)}` takes these sentences")
 
-    def otherwise(self, row: Row) -> None:
+    def otherwise(self, row: SaidRow) -> None:
         """Report an `else` for which a state around it, or each state within, leaves nothing."""
         outer = row.state.path
         for state in [*self.around(outer)][1:]:
@@ -193,8 +193,8 @@ class _Examples(HeardRows):
         find = hearing.best(hearing.read(text), Hears(-1, name, (name,)), set(), {})
         return find.entry.row if find and find.entry.row != number else None
 
-    def never(self, row: Row, why: str, hint: str, taker: Row | Transition | None = None) -> None:
-        where = taker.path if isinstance(taker, Row) else taker.where if taker else ()
+    def never(self, row: SaidRow, why: str, hint: str, taker: SaidRow | Transition | None = None) -> None:
+        where = taker.path if isinstance(taker, SaidRow) else taker.where if taker else ()
         related = [(where, "this is taken first")] if taker else []
         self.report(NEVER_HEARD, row.path, f"nothing takes the row {row.shown}: {why}", hint, key=True, related=related)
 

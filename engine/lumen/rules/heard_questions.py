@@ -12,7 +12,7 @@ from lumen.language.machines import State, StateKind
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.buttons import together
 from lumen.rules.dead_ends import within
-from lumen.rules.heard_rows import HeardRows, Row, hearing_behaviors, remembered, shown
+from lumen.rules.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
 
 SHADOWED_QUESTION = Code(
@@ -43,7 +43,7 @@ class _Questions(HeardRows):
         asking = [row.state for row in self if row.hears.way == "else" and self.asks(row)]
         active = {state.path: self.active_with(state) for state in asking}
         for question in self.known() if asking else ():
-            told: dict[str, list[tuple[Find, Row, State]]] = {}
+            told: dict[str, list[tuple[Find, SaidRow, State]]] = {}
             for state in asking:
                 for taken in self.taken(question.text, state, active[state.path]):
                     row = self.by_number[taken.number]
@@ -72,12 +72,12 @@ class _Questions(HeardRows):
             elif path == state.path and order.late and order.late[0].find:
                 yield order.late[0]
 
-    def answers(self, row: Row) -> bool:
+    def answers(self, row: SaidRow) -> bool:
         """Whether a sentence that takes a row is answered, or a guard decides that."""
         guarded = any(t.guard for t in row.candidates)
         return guarded or self.asks(row) or self.machine.answers.keys() >= set(row.hears.names)
 
-    def asks(self, row: Row) -> bool:
+    def asks(self, row: SaidRow) -> bool:
         """Whether a row asks what is known, or leads to a state that does."""
         states = (state for t in row.candidates for state in self.entered(t.targets))
         blocks = [*(t.actions for t in row.candidates), *((*state.entry, *state.do) for state in states)]
@@ -90,7 +90,7 @@ class _Questions(HeardRows):
             yield state
             yield from self.entered(state.children if state.kind is StateKind.PARALLEL else state.initial)
 
-    def say(self, question: WrittenPhrase, takers: Sequence[tuple[Find, Row, State]]) -> None:
+    def say(self, question: WrittenPhrase, takers: Sequence[tuple[Find, SaidRow, State]]) -> None:
         find, row, state = takers[0]
         words, name = self.words(question.text, find), find.entry.name
         message = f"this question is not answered in {shown(state)}: `{words}` in it takes the row `{row.hears.key}`"
@@ -102,7 +102,7 @@ class _Questions(HeardRows):
         found = SHADOWED_QUESTION.at(place, message, self.remedy(question, find, row, state), related, cause)
         question.report.diagnostics.append(found)
 
-    def remedy(self, question: WrittenPhrase, find: Find, row: Row, state: State) -> str:
+    def remedy(self, question: WrittenPhrase, find: Find, row: SaidRow, state: State) -> str:
         """The hint at a question that takes a row: a row `asked NAME` is missing, or the phrase is too short."""
         name, words = find.entry.name, self.words(question.text, find)
         asked = hearing_of(self.machine).read(question.text).is_asked(find)

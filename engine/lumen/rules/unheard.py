@@ -10,7 +10,7 @@ from lumen.language.diagnostics import WARNING, Code, did_you_mean, nearest
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.caught import caught_schema, is_broken
-from lumen.rules.heard_rows import HeardRows, Row, hearing_behaviors, shown
+from lumen.rules.heard_rows import HeardRows, SaidRow, hearing_behaviors, shown
 from lumen.rules.logic import tree
 from lumen.rules.naming import heard_rows, read_names, trees
 from lumen.rules.walk import expression_sites
@@ -39,7 +39,7 @@ def check(draft: ProjectDraft) -> None:
             _unread(draft, tables, name, reads)
 
 
-def _unheard(rows: HeardRows, row: Row) -> None:
+def _unheard(rows: HeardRows, row: SaidRow) -> None:
     """Report the names of a row with `not` or `asked` that nothing else hears, in its state or around it."""
     around = [*rows.around(row.state.path)]
     others = [other.hears for state in around for other in rows.by_state.get(state.path, ())]
