@@ -96,7 +96,7 @@ def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Pat
     live(show, 6.0)
     assert "ask_name" in states(show)
     asked = show.loop.clock.now()
-    reload(show, edit(copy, "after: {30s: goodbye}", "after: {10s: goodbye}"))
+    reload(show, edit(copy, 'after: {30s: "#goodbye"}', 'after: {10s: "#goodbye"}'))
     while "goodbye" not in states(show):
         show.tick()
         assert show.loop.clock.now() < asked + 11.0
@@ -121,7 +121,7 @@ def test_a_livelock_drops_the_event_that_began_it(copy: Path) -> None:
     loop = "  spin:\n    initial: still\n    states:\n      still: {on: {stop: x}}\n"
     loop += "      x: {always: {guard: 'context.battery == 100', target: y}}\n"
     loop += "      y: {always: {guard: 'context.battery == 100', target: x}}\n"
-    edit(copy, "  touch:\n    initial: free", loop + "  touch:\n    initial: free")
+    edit(copy, "\n  touch:\n", f"\n{loop}  touch:\n")
     show = show_of(lumen.load(copy))
     show.loop.happen(lumen.Event("stop", {}))
     live(show, 0.5)

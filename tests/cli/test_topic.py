@@ -133,6 +133,7 @@ def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
     return list(json.loads(out)["topics"])
 
 
+@pytest.mark.network
 def test_list_tells_where_each_route_comes_from(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

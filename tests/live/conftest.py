@@ -25,11 +25,20 @@ def trimmed(whole: Path) -> Path:
     for story in (whole / "behaviors" / "stories").glob("*.yaml"):
         if story.stem not in ("refuses", "known_visitor"):
             story.unlink()
-    tour = whole / "behaviors" / "tour.yaml"
-    tour.write_text(tour.read_text("utf-8").replace("30s: goodbye", f"{PATIENT}: goodbye"), "utf-8")
+    wait_for_visitors(whole, "30s", PATIENT)
     main = whole / "lumen.yaml"
     main.write_text(main.read_text("utf-8").replace("story: visitor", "story: refuses"), "utf-8")
     return whole
+
+
+def wait_for_visitors(whole: Path, before: str, after: str) -> None:
+    """Change how long the guide waits for a visitor, in every state that says goodbye after so long."""
+    tour = whole / "behaviors" / "tour.yaml"
+    text = tour.read_text("utf-8")
+    for target in ("goodbye", '"#goodbye"'):
+        assert f"after: {{{before}: {target}}}" in text
+        text = text.replace(f"after: {{{before}: {target}}}", f"after: {{{after}: {target}}}")
+    tour.write_text(text, "utf-8")
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from tests.live.shows import Live
 pytestmark = pytest.mark.rest  # dear
 
 TOUR = "behaviors/tour.yaml"
-SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
 
 
 def save(folder: Path, old: str, new: str) -> None:

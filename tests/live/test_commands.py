@@ -14,11 +14,11 @@ from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.runtime.loop import Observer
-from tests.live.conftest import PATIENT
+from tests.live.conftest import PATIENT, wait_for_visitors
 from tests.live.shows import Live
 from tests.rabbitmq import RabbitMQ
 
-SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
 WAVE = "                - {play: goodbye}\n"
 
 
@@ -140,7 +140,7 @@ def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
 
 @pytest.mark.slow
 def test_reload_answers_with_the_diagnostics(live: Live) -> None:
-    live.edit("onDone: any_question", "onDone: any_questoin")
+    live.edit('done.do.*: "#any_question"', 'done.do.*: "#any_questoin"')
     answer = live.ask("reload")
     assert answer["verdict"] == "refused"
     assert answer["diagnostics"][0]["code"] == "unknown-state"
@@ -174,9 +174,9 @@ def test_off_means_off(copy: Path) -> None:
 @pytest.fixture
 def waving(copy: Path) -> Iterator[Live]:
     """Where whatever is played never ends by itself, nor the farewell."""
+    wait_for_visitors(copy, PATIENT, "30s")
     tour = copy / "behaviors" / "tour.yaml"
-    text = tour.read_text("utf-8").replace(f"{PATIENT}: goodbye", "30s: goodbye")
-    tour.write_text(text.replace('12s: "#idle"', '2h: "#idle"'), "utf-8")
+    tour.write_text(tour.read_text("utf-8").replace('12s: "#idle"', '2h: "#idle"'), "utf-8")
     one = Live(copy, behaves={"play": "hangs"})
     yield one
     one.show.close()
@@ -223,7 +223,7 @@ def test_a_story_saved_with_the_files_is_played_and_refuses_them(live: Live) -> 
 
 @pytest.mark.slow
 def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live: Live) -> None:
-    refusal = "{guard: \"heard(event.data.result, 'no_more')\", target: offer}"
+    refusal = 'no|done: "#offer"'
     live.edit(refusal, refusal.replace("offer", "how_are_you"))
     live.until_told("are active")
     live.until_told("the story `refuses` does not hold with these files")
@@ -237,8 +237,8 @@ def test_the_same_in_another_process(copy: Path) -> None:
     one.until_told("are active")
     one.edit("steps:\n", "steps:\n  - expect: {state: dance, within: 2s}\n", "behaviors/stories/refuses.yaml")
     one.until_told("behaviors/stories/refuses.yaml:")
-    one.edit("onDone: any_question", "onDone: any_questoin")
-    one.until_told("did you mean `any_question`?")
+    one.edit('done.do.*: "#any_question"', 'done.do.*: "#any_questoin"')
+    one.until_told("did you mean `#any_question`?")
     one.show.close()
 
 

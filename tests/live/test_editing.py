@@ -11,7 +11,7 @@ from tests.live.shows import Live
 
 @pytest.mark.slow
 def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
-    live.edit("en: I am sorry, I did not understand that.", "en: Come again, please?")
+    live.edit('en: "I am sorry, I did not understand that."', 'en: "Come again, please?"')
     live.until_told("are active")
     walker = live.show.visitor
     assert walker
@@ -46,7 +46,7 @@ def test_the_visitors_name_survives(live: Live) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("onDone: any_question", "onDone: any_questoin", "did you mean `any_question`?"),
+        ('done.do.*: "#any_question"', 'done.do.*: "#any_questoin"', "did you mean `#any_question`?"),
         ("id: tour", "id: tour\n\tx: 1", "[tab]"),
         ("{play: sing}", "{play: sign}", "did you mean `sing`?"),
     ],
@@ -66,8 +66,9 @@ def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
 
 @pytest.fixture
 def storyless(copy: Path) -> None:
-    """A project whose states may be renamed: no story names them."""
+    """A project whose states may be renamed: no story and no saying names them."""
     shutil.rmtree(copy / "behaviors" / "stories")
+    shutil.rmtree(copy / "behaviors" / "sayings")
     main = copy / "lumen.yaml"
     main.write_text(main.read_text("utf-8").replace("story: refuses", "#"), "utf-8")
 
@@ -80,10 +81,11 @@ def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
     walker.actor.arrive(Visitor())
     live.until(lambda: "ask_name" in live.states)
     for old, new in (
-        ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking"),
+        ("              ask_name:", "              asking:"),
+        ("id: ask_name", "id: asking"),
         ("target: ask_name", "target: asking"),
-        ("- ask_name", "- asking"),
-        ("onError: ask_name", "onError: asking"),
+        ("what|again: ask_name", "what|again: asking"),
+        ('"#ask_name"', '"#asking"'),
     ):
         live.edit(old, new)
     live.until_told("waiting for `ask_name`: `ask_name` is active and gone")

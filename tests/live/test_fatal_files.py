@@ -20,7 +20,8 @@ from tests.live.shows import Live
 
 pytestmark = pytest.mark.rest  # dear
 
-SORRY, FATAL, PARDON = "en: I am sorry, I did not understand that.", "en: FATAL", "en: Come again, please?"
+SORRY = 'en: "I am sorry, I did not understand that."'
+FATAL, PARDON = 'en: "FATAL"', 'en: "Come again, please?"'
 READER = """
 import os, signal
 from lumen.app.reload import validation_process as process

@@ -10,7 +10,7 @@ from lumen.language.events import Event
 from lumen.runtime import runtime
 from tests.live.shows import Here, Live
 
-SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
 
 
 def fail(*_: Any, **__: Any) -> Any:

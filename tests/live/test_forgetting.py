@@ -197,6 +197,7 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
     assert "nothing of ipek is in" in capsys.readouterr().out
 
 
+@pytest.mark.network
 def test_a_journal_without_a_row_is_named_among_what_a_broker_keeps(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -15,7 +15,7 @@ from tests.waiting import until
 pytestmark = pytest.mark.rest  # dear
 
 TOUR = "behaviors/tour.yaml"
-SORRY = b"en: I am sorry, I did not understand that."
+SORRY = b'en: "I am sorry, I did not understand that."'
 
 
 @pytest.fixture(autouse=True)

@@ -19,6 +19,7 @@ MAKERS = {
     "upkeep/private_folder.py": "the one function",
     "app/fleet/installing.py": "a folder of the project, which is to be committed",
     "app/new_passage.py": "knowledge/ of the project, which is to be committed",
+    "app/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "app/lint/outcome_cache.py": "a folder within a private one",
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "app/workers/work_kit.py": "a temporary folder",

@@ -28,7 +28,7 @@ from tests.waiting import until
 
 pytestmark = pytest.mark.rest  # dear
 
-SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
 
 
 def crashed(live: Live) -> None:

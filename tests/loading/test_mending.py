@@ -21,7 +21,7 @@ def test_a_line_says_what_it_leaves_open() -> None:
 
 
 def test_the_mended_text_is_yaml_and_has_the_same_lines() -> None:
-    broken = TOUR.replace("{guard: \"context.visitor != ''\", target", "{guard: \"context.visitor != '', target")
+    broken = TOUR.replace("'RearTactil']\", target", "'RearTactil'], target")
     failed = failure(broken)
     assert failed is not None
     found = mistake(broken, failed, failed)

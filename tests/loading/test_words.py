@@ -1,5 +1,7 @@
 """Words files: part of the behaviours that name them, in a project, beside a lone file and in what is exported."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -97,9 +99,19 @@ def test_a_change_of_words_is_seen_at_once_and_told_once_in_their_file() -> None
 
 
 def test_the_shipped_answers_stand_in_words() -> None:
-    machine = load(ROOT).machine
-    words = draft(read_files(ROOT)).words
-    assert {machine.borrowed["answers", name] for name in machine.answers} == {"faq"}
-    assert {machine.borrowed["phrases", name] for name in machine.phrases} == {"visitors"}
-    assert words["faq"].answers == machine.answers
-    assert words["visitors"].phrases == machine.phrases
+    """The words that come with Lumen are there as far as they are in a language of the project."""
+    project = load(ROOT)
+    machine, words = project.machine, draft(read_files(ROOT)).words
+
+    def spoken(phrases: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+        return {language: texts for language, texts in phrases.items() if language in project.languages}
+
+    common_answers = {
+        name: tuple(replace(answer, phrases=spoken(answer.phrases)) for answer in answers if spoken(answer.phrases))
+        for name, answers in words["common"].answers.items()
+    }
+    common_phrases = {name: spoken(phrases) for name, phrases in words["common"].phrases.items()}
+    assert {machine.borrowed["answers", name] for name in machine.answers} == {"common", "faq"}
+    assert {machine.borrowed["phrases", name] for name in machine.phrases} == {"common", "visitors"}
+    assert words["faq"].answers | common_answers == machine.answers
+    assert words["visitors"].phrases | common_phrases == machine.phrases

@@ -22,7 +22,7 @@ from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, Collector, until
 
-SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'
 Start = Callable[..., Guarded[str]]
 
 

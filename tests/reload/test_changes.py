@@ -29,18 +29,19 @@ FILES = read_files(ROOT)
 TOUR = "behaviors/tour.yaml"
 FAQ = "behaviors/words/faq.yaml"
 VISITORS = "behaviors/words/visitors.yaml"
-ASK_NAME = ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking")
 RENAMING = [
-    (TOUR, *ASK_NAME),
+    (TOUR, "              ask_name:", "              asking:"),
+    (TOUR, "id: ask_name", "id: asking"),
     (TOUR, "target: ask_name", "target: asking"),
-    (TOUR, "- ask_name", "- asking"),
-    (TOUR, "onError: ask_name", "onError: asking"),
+    (TOUR, "what|again: ask_name", "what|again: asking"),
+    (TOUR, '"#ask_name"', '"#asking"'),
 ]
 
 
 def edited(*edits: tuple[str, str, str]) -> Project:
     """The shipped project with these replacements."""
-    files = {name: content for name, content in FILES.items() if not name.startswith("behaviors/stories/")}
+    naming = ("behaviors/stories/", "behaviors/sayings/")  # these name the states
+    files = {name: content for name, content in FILES.items() if not name.startswith(naming)}
     files["lumen.yaml"] = files["lumen.yaml"].replace(b"story: visitor", b"")
     for file, old, new in edits:
         assert old in files[file].decode()
@@ -70,7 +71,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "a text",
         [(TOUR, "en: Never mind.", "en: No problem.")],
-        [f"state `{name}` says “No problem.” on `heard` now (en)" for name in ("ask_name", "check_name")],
+        [f"state `{name}` says “No problem.” on `hears else` now (en)" for name in ("ask_name", "check_name")],
         Risk.COSMETIC,
     ),
     (
@@ -106,11 +107,11 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     ),
     (
         "a target",
-        [(TOUR, "'fine')\", target: fine}", "'fine')\", target: offer}")],
-        ["state `how_are_you` goes to `offer` on `heard` if `heard(event.data.result, 'fine')` now, not `fine`"],
+        [(TOUR, '  fine: "#fine"', '  fine: "#offer"')],
+        ["state `how_are_you` goes to `offer` on `hears fine` now, not `fine`"],
         Risk.BEHAVIOR,
     ),
-    ("phrases", [(VISITORS, "en: [dance, dancing]", "en: [dance]")], ["phrases `dance` changed"], Risk.BEHAVIOR),
+    ("phrases", [(VISITORS, "dance, dances, danced", "dance, danced")], ["phrases `dance` changed"], Risk.BEHAVIOR),
     (
         "a route",
         [("lumen.yaml", "ttl: 2s, keep: 10", "ttl: 3s, keep: 10")],
@@ -139,7 +140,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "a renamed state",
         [*RENAMING, (TOUR, "type: parallel\n", "renamed: {ask_name: asking}\ntype: parallel\n")],
-        ["state `ask_name` is `guide.talking.asking` now"],
+        ["state `ask_name` is `guide.talking.waiting.asking` now"],
         Risk.BEHAVIOR,
     ),
     (
@@ -150,7 +151,9 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
             "state `asking` added",
             "state `greet` goes to `asking` when it is done now, not `ask_name`",
             "state `greet` goes to `asking` when it fails now, not `ask_name`",
-            "state `check_name` goes to `asking` on `heard` if `context.name_tries < 2` now, not `ask_name`",
+            "state `waiting` begins in `asking` now",
+            "state `check_name` goes to `asking` on `hears english|indonesian|what|again` now, not `ask_name`",
+            "state `check_name` goes to `asking` on `hears else` if `context.name_tries < 2` now, not `ask_name`",
         ],
         Risk.BEHAVIOR,
     ),
@@ -191,6 +194,7 @@ def repository(copy: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch
     root = tmp_path_factory.mktemp("repository") / "ours"
     copy.rename(root)
     shutil.rmtree(root / "behaviors" / "stories")
+    shutil.rmtree(root / "behaviors" / "sayings")
     main_file = root / "lumen.yaml"
     main_file.write_text(main_file.read_text("utf-8").replace("story: visitor", ""), "utf-8")
     states = "idle: {on: {touched: talk}}, talk: {states: {ask: {on: {released: dance}}, dance: }}"
