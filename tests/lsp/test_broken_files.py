@@ -22,12 +22,12 @@ BREAKS = {
     "an apostrophe that is not closed": ("en: Never mind.", "en: 'Never mind."),
     "a bracket that is not closed": ("{play: dance}", "{play: dance"),
     "a list that is not closed": ('en: ["What else can I do for you?"', 'en: ["What else can I do for you?", [oh'),
-    "a colon that is missing": ("            onDone: any_question\n", "            onDone any_question\n"),
-    "a state without its colon": ("          photo:\n", "          photo\n"),
-    "a tab": ("            onDone: any_question\n", "\t    onDone: any_question\n"),
+    "a colon that is missing": ("        onDone: watching\n", "        onDone watching\n"),
+    "a state without its colon": ("              check_name:\n", "              check_name\n"),
+    "a tab": ("        onDone: watching\n", "\tonDone: watching\n"),
     "text with a colon": ("en: Never mind.", "en: Never mind: not you."),
     "a mark that begins nothing": ("en: Never mind.", "en: @home"),
-    "a line that stands too deep": ("            onError: any_question\n", "                onError: any_question\n"),
+    "a line that stands too deep": ('        onError: "#helpless"\n', '            onError: "#helpless"\n'),
 }
 
 
@@ -53,10 +53,10 @@ def test_the_rest_of_the_file_is_known(how: str) -> None:
     """Nearly all symbols, hover above and below the fault, completion in the file and in a story of it."""
     analysis = broken(how, before=None)
     assert count(symbols(analysis, TOUR)) > 0.9 * count(symbols(SOUND, TOUR))
-    assert "atomic state" in hover(analysis, *at(analysis, TOUR, "      idle|:\n"))
-    assert "atomic state" in hover(analysis, *at(analysis, TOUR, "      robot_l|ost:\n"))
+    assert "atomic state" in hover(analysis, *at(analysis, TOUR, "      idle|:  "))
+    assert "atomic state" in hover(analysis, *at(analysis, TOUR, "      robot_l|ost: {id"))
     assert "atomic state" in hover(analysis, *at(analysis, VISITOR, "{state: gr|eet"))
-    names = {item.text for item in complete(analysis, *at(analysis, TOUR, "    initial: |watching"))}
+    names = {item.text for item in complete(analysis, *at(analysis, TOUR, "battery.low: {target: |battery_low"))}
     assert {"fallen", "watching"} <= names
     assert "goodbye" in {item.text for item in complete(analysis, *at(analysis, VISITOR, "expect: {state: |greet"))}
 

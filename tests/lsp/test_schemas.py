@@ -21,7 +21,7 @@ FILES = [
 TOUR, GOODBYE, SILENCE = "behaviors/tour.yaml", "motions/goodbye.yaml", "behaviors/stories/silence.yaml"
 
 COMPLETED = {
-    "a state": (TOUR, "onDone: offer\n", "onDone: offer\n            |\n", {"on", "always", "entry", "invoke"}),
+    "a state": (TOUR, "onDone: watching\n", "onDone: watching\n        |\n", {"on", "always", "entry", "invoke"}),
     "a list of actions": (TOUR, "- say:\n", "- |\n              - say:\n", {"say", "play", "walk", "publish", "if"}),
     "actions in one line": (TOUR, "entry: {", "entry: {|", {"say", "assign", "raise"}),
     "a light": (TOUR, "eyes: turquoise", "eyes: turquoise, c|", {"chest", "left_ear"}),
@@ -39,7 +39,7 @@ EXPLAINED = [
     ("motions/dance.yaml", "te|mpo: 132", "Beats per minute"),
     ("fuzzy/head.yaml", "resol|ution: 1000", "points"),
     ("lumen.yaml", "rel|oad: {", "How a running exhibition takes saved files"),
-    (TOUR, "onD|one: offer", "Taken when"),
+    (TOUR, "onD|one: watching", "Taken when"),
     ("lumen.yaml", "lang|uages: [", "The languages that the robot speaks"),
 ]
 

@@ -65,20 +65,20 @@ def test_findings_of_what_is_not_saved(client: Client) -> None:
     """A mistake in an open file is told in every file it concerns, and taken back when it is gone."""
     text = client.open(TOUR)
     assert client.diagnostics(TOUR) == []
-    wrong = text.replace("onDone: offer", "onDone: ofer", 1)
+    wrong = text.replace("onDone: watching", "onDone: wathing", 1)
     client.change(TOUR, wrong, 3)
     found = client.diagnostics(TOUR)
     assert [(d["code"], d["source"], d["severity"], shown(wrong, d["range"])) for d in found] == [
-        ("unknown-state", "lumen", 1, "ofer")
+        ("unknown-state", "lumen", 1, "wathing")
     ]
-    assert "did you mean `offer`?" in found[0]["message"]
+    assert "did you mean `watching`?" in found[0]["message"]
     client.change(TOUR, text, 4)
     assert client.diagnostics(TOUR) == []
 
 
 def test_positions_are_counted_in_utf_16(client: Client) -> None:
     """An emoji is one character of ours and two of the client's."""
-    text = client.open(TOUR).replace("onDone: offer", 'onDone: {target: ofer, description: "🤖"}', 1)
+    text = client.open(TOUR).replace("onDone: watching", 'onDone: {target: wathing, description: "🤖"}', 1)
     text = text.replace(
         "{posture: Stand}", '{say: {en: "🤖🤖 hi", id: "🤖 {{ context.visitr }} {{ context.visitor }}"}}', 1
     )
@@ -86,7 +86,7 @@ def test_positions_are_counted_in_utf_16(client: Client) -> None:
     found = client.diagnostics(TOUR)
     while len(found) < 2:
         found = client.diagnostics(TOUR)
-    assert {shown(text, d["range"]) for d in found} == {"visitr", "ofer"}
+    assert {shown(text, d["range"]) for d in found} == {"visitr", "wathing"}
     here = client.ask("definition", TOUR, *at(text, "visitr }} {{ context.vis|itor"))
     assert [shown(text, place["range"]) for place in here] == ["visitor"]
     proposed = client.ask("completion", TOUR, *at(text, "visitr }} {{ context.vis|itor"))
@@ -97,7 +97,7 @@ def test_positions_are_counted_in_utf_16(client: Client) -> None:
 
 def test_hover_definition_symbols_and_references(client: Client) -> None:
     text = client.open(TOUR)
-    assert "atomic state at `guide.talking.how_are_you`" in str(
+    assert "atomic state at `guide.talking.waiting.how_are_you`" in str(
         client.ask("hover", TOUR, *at(text, "target: how|_are"))
     )
     place = client.ask("definition", TOUR, *at(text, "play: dan|ce"))[0]
@@ -136,13 +136,13 @@ def test_lenses_hints_signatures_folds_links_highlights_and_symbols(client: Clie
     text = client.open(TOUR)
     document = {"uri": client.uri(TOUR)}
     lenses = client.request("textDocument/codeLens", textDocument=document)
-    dance = next(e for e in lenses if e["range"]["start"]["line"] == at(text, "          dan|ce:")[0])
-    assert dance["command"]["title"] == "3 transitions lead here"
+    dance = next(e for e in lenses if e["range"]["start"]["line"] == at(text, "              dan|ce:")[0])
+    assert dance["command"]["title"] == "2 transitions lead here"
     uri, start, places = dance["command"]["arguments"]
-    assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 3)
+    assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 2)
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 900, "character": 0}}
     hints = client.request("textDocument/inlayHint", textDocument=document, range=whole)
-    assert {"28 s after its do", "after entering"} <= {hint["label"] for hint in hints}
+    assert {"24 s after its do", "after entering"} <= {hint["label"] for hint in hints}
     help = client.ask("signatureHelp", TOUR, *at(text, "heard(event.data.result, 'engl|ish')"))
     assert (help["signatures"][0]["label"][:6], help["activeParameter"]) == ("heard(", 1)
     assert client.request("textDocument/foldingRange", textDocument=document)
@@ -171,9 +171,9 @@ def test_a_story_is_run_by_its_lens(client: Client) -> None:
 
 def test_a_fix_is_offered(client: Client) -> None:
     text = client.open(TOUR)
-    wrong = text.replace("onDone: offer", "onDone: ofer", 1)
+    wrong = text.replace("onDone: watching", "onDone: wathing", 1)
     client.change(TOUR, wrong, 7)
-    line, character = at(wrong, "onDone: of|er")
+    line, character = at(wrong, "onDone: wat|hing")
     here = {"line": line, "character": character}
     actions = client.request(
         "textDocument/codeAction",
@@ -181,9 +181,9 @@ def test_a_fix_is_offered(client: Client) -> None:
         range={"start": here, "end": here},
         context={"diagnostics": []},
     )
-    assert [action["title"] for action in actions] == ["write offer"]
+    assert [action["title"] for action in actions] == ["write watching"]
     edit = actions[0]["edit"]["documentChanges"][0]["edits"][0]
-    assert (shown(wrong, edit["range"]), edit["newText"]) == ("ofer", "offer")
+    assert (shown(wrong, edit["range"]), edit["newText"]) == ("wathing", "watching")
     client.change(TOUR, text, 8)
 
 

@@ -19,11 +19,18 @@ from tests.mutation.mutants import Nursery
 from tests.tables import for_each
 
 ROOT = Path(__file__).parents[2]
-SHIPPED = Analysis(ROOT, read_files(ROOT))
 FAQ = "behaviors/words/faq.yaml"
 VISITORS = "behaviors/words/visitors.yaml"
 HOST = "behaviors/host.yaml"
 TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
+GUARDS = """\
+  heard:
+    - {guard: "heard(event.data.result, 'dance')", actions: {log: dance}}
+    - {guard: "lookup(event.data.result, 'faq') != null", actions: {log: faq}}
+"""
+FILES = read_files(ROOT)
+SHIPPED = Analysis(ROOT, {**FILES, TOUR: FILES[TOUR].replace(b"\non:\n", f"\non:\n{GUARDS}".encode())})
+"""The shipped project, with guards in its tour that ask what was heard."""
 
 
 def place(analysis: Analysis, file: str, text: str, offset: int | None = None) -> tuple[str, int, int]:
@@ -44,10 +51,10 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
 @for_each(
     ("file", "old", "new", "some", "none"),
     [
-        (TOUR, "target: how_are_you", "target: |", ["greet", '"#goodbye"'], ["Stand", ".greet"]),
-        (TOUR, "onDone: offer", "onDone: #|", ['"#goodbye"', '"#idle"'], []),
-        (TOUR, "onDone: offer", 'onDone: "#|"', ["#goodbye"], ['"#goodbye"']),
-        (TOUR, "    initial: idle", "    initial: |", ["idle", "paused"], ["greet"]),
+        (TOUR, "target: how_are_you", "target: |", ["ask_name", '"#goodbye"'], ["Stand", "greet", ".ask_name"]),
+        (TOUR, "onDone: watching", "onDone: #|", ['"#goodbye"', '"#idle"'], []),
+        (TOUR, "onDone: watching", 'onDone: "#|"', ["#goodbye"], ['"#goodbye"']),
+        (TOUR, "  guide:\n", "  guide:\n    initial: |\n", ["idle", "paused"], ["greet"]),
         (TOUR, "{posture: Stand}", "{posture: S|", ["Stand", "Sit"], ["dance", "Crouch"]),
         (TOUR, "{posture: Stand}", "{play: |}", ["dance", "sing"], ["Stand"]),
         (TOUR, "{posture: Stand}", "{publish: {route: |", ["command", "journal"], ["tour"]),
@@ -57,16 +64,16 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         (TOUR, "{posture: Stand}", "{language: |}", ["en", "id"], ["any"]),
         (TOUR, "{posture: Stand}", "{say: {|}}", ["en: ", "any: "], ["say: "]),
         (TOUR, "{posture: Stand}", "{assign: {|", ["visitor: ", "reply: "], ["english: "]),
-        (TOUR, "    face: talking\n", "    face: talking\n          |\n", ["heard: ", "fallen: "], ["on: "]),
+        (TOUR, "  safety.alarm: interrupted\n", "  safety.alarm: interrupted\n          |\n", ["heard: ", "fallen: "], ["on: "]),
         (TOUR, "context.name_tries < 2", "context.|", ["visitor", "battery"], ["name"]),
         (TOUR, "event.data.gender == 'male'\"", "event.data.|", ["gender"], ["result", "visitor"]),
-        (TOUR, "heard(event.data.result, 'english')\"", "heard(event.data.result, '|", ["dance", "no_more"], ["faq"]),
+        (TOUR, "heard(event.data.result, 'dance')\"", "heard(event.data.result, '|", ["dance", "photo"], ["faq"]),
         (TOUR, "lookup(event.data.result, 'faq')", "lookup(event.data.result, '|", ["faq", "explanations"], ["dance"]),
-        (TOUR, "words: [faq, visitors]", "words: [|", ["faq", "visitors"], ["tour"]),
+        (TOUR, "words: [common, visitors, faq]", "words: [|", ["faq", "visitors"], ["tour"]),
         (FAQ, "answers:\n", "|\nanswers:\n", ["phrases: "], ["states: "]),
         (FAQ, "- phrases:", "- |", ["phrases: "], ["say: "]),
         (TOUR, "How are you, {{ context.visitor }}?", "How are you, {{ context.|", ["title_en"], ["heard("]),
-        (TOUR, "            onDone: offer\n", "            onDone: offer\n            |\n", ["always: "], ["onDone: "]),
+        (TOUR, "        onDone: watching\n", "        onDone: watching\n        |\n", ["always: "], ["onDone: "]),
         (VISITOR, "expect: {state: greet", "expect: {state: |", ["greet", "offer"], ["#greet"]),
         (VISITOR, "  - wait: 2s", "  - |", ["says: ", "expect: "], ["say: "]),
         (VISITOR, "  - wait: 2s", "  - touch: |", ["ChestButton"], ["Stand"]),
@@ -96,10 +103,10 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
         (VISITOR, "{state: gr|eet", f"{TOUR}: greet:"),
         (VISITOR, "played: dan|ce", "motions/dance.yaml"),
         (TOUR, "context.name_|tries <", f"{TOUR}: name_tries:"),
-        (TOUR, "heard(event.data.result, 'engl|ish')", f"{VISITORS}: english:"),
+        (TOUR, "  pho|to: \"#photo\"", f"{VISITORS}: photo:"),
         (TOUR, "heard(event.data.result, 'dan|ce')", f"{VISITORS}: dance:"),
         (TOUR, "lookup(event.data.result, 'f|aq')", f"{FAQ}: faq:"),
-        (TOUR, "words: [f|aq", FAQ),
+        (TOUR, "words: [common, visitors, f|aq", FAQ),
         ("motions/goodbye.yaml", "pose: hand_|out", "motions/goodbye.yaml: hand_out:"),
         ("lumen.yaml", "schema: ima|ge", "schemas/messages/image.schema.json"),
         ("fuzzy/head.yaml", "FaceXLoc: fa|ce.x", "lumen.yaml: face:"),
@@ -118,14 +125,15 @@ def test_definition(file: str, text: str, where: str) -> None:
 @for_each(
     ("file", "text", "said"),
     [
-        (TOUR, "target: how_are|_you", "atomic state at `guide.talking.how_are_you`"),
+        (TOUR, "target: how_are|_you", "atomic state at `guide.talking.waiting.how_are_you`"),
         (VISITOR, "played: dan|ce", "s, moves 2"),
         ("motions/goodbye.yaml", "RShoulder|Pitch", "-119.5 to 119.5 deg"),
         (TOUR, "context.name_|tries <", "begins with `0`"),
         (TOUR, "le|ds: {eyes: turquoise", "Give lights their colours"),
         (TOUR, "leds: {ey|es: turquoise", "a name of CSS"),
-        (TOUR, "    on|Done: offer", "Taken when `do` has finished"),
-        (TOUR, "heard(event.data.result, 'engl|ish')", "bahasa inggris"),
+        (TOUR, "    on|Done: watching", "Taken when `do` has finished"),
+        (TOUR, "engl|ish|indonesian", "“inggris”"),
+        (TOUR, "heard(event.data.result, 'dan|ce')", "menari"),
         ("lumen.yaml", "  fa|ce: {key", "becomes the event `face`"),
         ("lumen.yaml", "schema: ima|ge", "message schema"),
     ],
@@ -170,7 +178,7 @@ def test_hover_over_a_route_that_comes_with_lumen() -> None:
 
 
 def test_hover_over_a_finding_shows_its_rule() -> None:
-    analysis, here = written(TOUR, "onDone: offer", "onDone: of|er")
+    analysis, here = written(TOUR, "onDone: watching", "onDone: watch|in")
     assert "unknown-state" in hover(analysis, *here)
 
 
@@ -178,12 +186,12 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
 @pytest.mark.parametrize(
     ("file", "text", "name", "edits", "moved"),
     [
-        (TOUR, "target: how_are|_you", "mood", 40, None),
+        (TOUR, "target: how_are|_you", "mood", 43, None),
         (TOUR, "whenever: In('fall|en')", "lying", 8, None),
-        (TOUR, "context.name_|tries <", "tries", 16, None),
-        (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
-        (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 5, None),
-        (TOUR, "words: [f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
+        (TOUR, "context.name_|tries <", "tries", 17, None),
+        (TOUR, "heard(event.data.result, 'dan|ce')", "tarian", 8, None),
+        (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 4, None),
+        (TOUR, "words: [common, visitors, f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
         (VISITOR, "played: dan|ce", "horse", 4, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),
         ("motions/goodbye.yaml", "pose: hand_|out", "out", 3, None),
