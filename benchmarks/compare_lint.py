@@ -24,6 +24,8 @@ from typing import NamedTuple
 import yaml
 
 ROOT = Path(__file__).parents[1]
+PROJECT = ROOT / "tests/golden/projects/tour"
+"""A tour that stays as it is, so that the mistakes stay the same."""
 sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 
 from tests.guarded import CompletedProcess, run_guarded  # noqa: E402
@@ -67,9 +69,9 @@ def mistakes() -> list[Mistake]:
 
 def project(mistake: Mistake, folder: Path) -> dict[str, bytes]:
     """The shipped project with the mistake in it, in a folder."""
-    shutil.copy(ROOT / MAIN, folder)
-    for name in PROJECT_FOLDERS:
-        shutil.copytree(ROOT / name, folder / name)
+    shutil.copy(PROJECT / MAIN, folder)
+    for name in (one for one in PROJECT_FOLDERS if (PROJECT / one).is_dir()):
+        shutil.copytree(PROJECT / name, folder / name)
     text = (folder / mistake.file).read_text("utf-8")
     assert mistake.old in text, mistake.what
     (folder / mistake.file).write_text(text.replace(mistake.old, mistake.new, 1), "utf-8")

@@ -1,13 +1,14 @@
-"""When the ears listen (listening.py), and how much is understood: PocketSphinx alone, and told what the tour expects.
+"""When the ears listen (listening.py), and how much is understood: PocketSphinx alone, and told what the tour expects,
+in all its states or in the active ones.
 
-espeak-ng says sentences that stand neither in the tour nor in its stories, in three voices each; a synthetic voice is
-no visitor, and white noise no hall: the ratio is what counts. A sentence is understood where the same phrases and
-questions of the tour are heard in it as in its text; what is false is a phrase heard in talk about something else.
+espeak-ng says sentences that no story has, in three voices each; a synthetic voice is no visitor, and white noise no
+hall: the ratio is what counts. A sentence is understood if the same phrases and questions of its state are heard in it
+as in its text; what is false is a phrase heard in talk about something else.
 """
 
 import re
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import sqrt
 from typing import NamedTuple
 
@@ -15,14 +16,15 @@ import listening
 import numpy as np
 
 import lumen
-from lumen.language.machines import MachineDefinition
-from lumen.modules.ears.expected import expected
+from lumen.language.projects import Project
+from lumen.modules.ears.expected import expected, heard_names
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.sphinx import Sphinx
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 
-ENGLISH = """
+ENGLISH = {
+    "offer": """
 hello robot can you dance please;would you please dance for us;i would like to see you dance;please sing a song for me
 can you sing;i want to hear a song;could we take a picture together;i would like a selfie with you
 please take a photo of us;tell me about yourself;can you explain this exhibition;what is this event about
@@ -30,53 +32,52 @@ what happens at this booth;please tell me about lumen;how tall are you;what is y
 how old are you;tell me your age please;who built you;who created you;what does your name mean
 why are you called lumen;are you a boy or a girl;how many joints do you have;how many motors are in your body
 do you have a camera;can you see me;how do you hear me;do you have microphones;why do you follow my face
-how do you think;how do you decide what to do;do your parts send messages;i am fine thank you;i am very well
-i feel great today;i am happy to be here;not so good;i am a bit tired;i am sad today;my name is peter;my name is maria
-i am susan;no thank you;that is all;nothing more goodbye;please stop;stop that;wait a moment
-speak indonesian please;in english please
-"""
-INDONESIAN = """
+how do you think;how do you decide what to do;do your parts send messages
+no thank you;that is all;nothing more goodbye;speak indonesian please;in english please
+""",
+    "how_are_you": """
+i am fine thank you;i am very well;i feel great today;i am happy to be here;not so good;i am a bit tired;i am sad today
+""",
+    "ask_name": "my name is peter;my name is maria;i am susan",
+    "dance": "please stop;stop that;wait a moment",
+}
+INDONESIAN = {
+    "offer": """
 bisa menari;tolong menari untuk saya;nyanyi satu lagu;saya mau lagu;foto bersama;boleh berfoto
-tolong jelaskan pameran ini;siapa kamu;berapa tinggi kamu;berapa umurmu;siapa yang membuat kamu;nama saya budi
-nama saya dewi;saya siti;saya baik;baik terima kasih;saya sehat;saya lelah;tidak cukup;sampai jumpa;berhenti;tunggu
-bahasa inggris;berapa berat kamu;apa arti namamu;bisa melihat saya
-"""
+tolong jelaskan pameran ini;siapa kamu;berapa tinggi kamu;berapa umurmu;siapa yang membuat kamu
+tidak cukup;sampai jumpa;bahasa inggris;berapa berat kamu;apa arti namamu;bisa melihat saya
+""",
+    "how_are_you": "saya baik;baik terima kasih;saya sehat;saya lelah",
+    "ask_name": "nama saya budi;nama saya dewi;saya siti",
+    "dance": "berhenti;tunggu",
+}
 VOICES = ("", "+f3", "+m3")
 NOISES: Mapping[str, float | None] = {"quiet": None, "20 dB": 20.0}
 PACE = 150
-WORD = re.compile("[a-z']+")
+ALONE, ALL, ACTIVE = "alone", "all states", "active states"
 
 
 class Spoken(NamedTuple):
-    """A sentence and how it sounds."""
+    """A sentence, how it sounds, and the state in which it is said."""
 
     text: str
     sound: Sound
+    state: str
 
 
-def spoken(sentences: str, language: str, noise: float | None) -> list[Spoken]:
+def spoken(sentences: Mapping[str, str], language: str, noise: float | None) -> list[Spoken]:
     """Each sentence by the next voice, with so much less noise than voice [dB]."""
-    random, texts = np.random.default_rng(1), re.split("[;\n]", sentences.strip())
+    random = np.random.default_rng(1)
     found = []
-    for i, text in enumerate(texts):
+    pairs = [(text, state) for state, lines in sentences.items() for text in re.split("[;\n]", lines.strip())]
+    for i, (text, state) in enumerate(pairs):
         said = resampled(espeak().speak(text, language + VOICES[i % len(VOICES)], PACE), 16_000)
         samples = np.frombuffer(said.samples, "<i2").astype(float)
         if noise is not None:
             loud = sqrt(float(np.mean(samples[np.abs(samples) > 200] ** 2)))
             samples = samples + random.normal(0.0, loud / 10 ** (noise / 20), samples.shape)
-        found.append(Spoken(text, Sound(16_000, np.clip(samples, -32_768, 32_767).astype("<i2").tobytes())))
+        found.append(Spoken(text, Sound(16_000, np.clip(samples, -32_768, 32_767).astype("<i2").tobytes()), state))
     return found
-
-
-def heard(machine: MachineDefinition, text: str) -> frozenset[str]:
-    """Which phrases and questions of a behaviour stand in a text, in any language."""
-    rows = {f"{table} {i}": row.phrases for table, rows in machine.answers.items() for i, row in enumerate(rows)}
-    found = {**machine.phrases, **rows}.items()
-    return frozenset(name for name, by in found if any(_plain(p) in _plain(text) for ps in by.values() for p in ps))
-
-
-def _plain(text: str) -> str:
-    return f" {' '.join(WORD.findall(text.lower()))} "
 
 
 def wrong(text: str, found: str) -> int:
@@ -90,18 +91,28 @@ def wrong(text: str, found: str) -> int:
     return row[-1]
 
 
-def line(
-    machine: MachineDefinition, recognise: Callable[[Sound], str], said: Sequence[Spoken], talk: Sequence[Spoken]
-) -> str:
-    """How well they were understood, and what that took."""
-    begin = time.process_time()
-    found = [recognise(one.sound) for one in (*said, *talk)]
+def line(project: Project, told: str, said: Sequence[Spoken], talk: Sequence[Spoken]) -> str:
+    """How well they were understood by a recogniser that was told this, and what that took."""
+    heard = {one.state: heard_names(project, listening.around(project.machine, one.state)) for one in (*said, *talk)}
+    by_state = {state: expected(project, names) for state, names in heard.items()} if told == ACTIVE else {}
+    everything = expected(project, heard_names(project, None)) if told == ALL else []
+    recogniser = Sphinx()
+    recogniser.expect(everything)
+    recogniser.recognise(said[0].sound)
+    begin, found = time.process_time(), []
+    for one in (*said, *talk):
+        recogniser.expect(by_state.get(one.state, everything))
+        found.append(recogniser.recognise(one.sound))
     spent = (time.process_time() - begin) / sum(one.sound.duration for one in (*said, *talk))
     pairs = list(zip(said, found, strict=False))
     words = 1 - sum(wrong(one.text, text) for one, text in pairs) / sum(len(one.text.split()) for one in said)
     whole = sum(one.text == text for one, text in pairs) / len(said)
-    understood = sum(heard(machine, one.text) == heard(machine, text) for one, text in pairs) / len(said)
-    false = sum(bool(heard(machine, t) - heard(machine, o.text)) for o, t in zip(talk, found[len(said) :], strict=True))
+
+    def meant(one: Spoken, text: str) -> frozenset[str]:
+        return listening.meant_by(heard[one.state], text)
+
+    understood = sum(meant(one, one.text) == meant(one, text) for one, text in pairs) / len(said)
+    false = sum(bool(meant(o, t) - meant(o, o.text)) for o, t in zip(talk, found[len(said) :], strict=True))
     parts = f"words {words:4.0%}   sentences {whole:4.0%}   understood {understood:4.0%}"
     return f"{parts}   false {false} of {len(talk)}   {spent:.2f} s of CPU a second"
 
@@ -109,17 +120,13 @@ def line(
 def main() -> None:
     listening.main()
     project = lumen.load(".")
-    machine = project.behaviors[project.behavior]
+    print("what is understood, by what the recogniser is told to expect:")
     for noise, level in NOISES.items():
-        talk = spoken(listening.TALK, "en-us", level)
+        talk = spoken({"offer": listening.TALK}, "en-us", level)
         for language, sentences in (("en-us", ENGLISH), ("id", INDONESIAN)):
             said = spoken(sentences, language, level)
-            for name in ("alone", "told what is expected"):
-                recogniser = Sphinx()
-                if name != "alone":
-                    recogniser.expect(expected(project))
-                recogniser.recognise(said[0].sound)
-                print(f"{language:6} {noise:6} {name:22} {line(machine, recogniser.recognise, said, talk)}", flush=True)
+            for told in (ALONE, ALL, ACTIVE):
+                print(f"{language:6} {noise:6} {told:14} {line(project, told, said, talk)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 import lumen
 from lumen.bus import connect
-from lumen.interpreters.talk.folding import padded
+from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
 from lumen.modules.ears import Ears
-from lumen.modules.ears.expected import expected
+from lumen.modules.ears.expected import HeardName, expected, heard_names
 from lumen.modules.ears.recogniser import Recogniser
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.shared_recogniser import shared_sphinx
@@ -39,13 +39,16 @@ Samples = NDArray[np.float64]
 RATE = 16_000
 VOICES = (("en-us", 150), ("en-us+f3", 190), ("en-us+m3", 120), ("en-us+f5", 150), ("id", 150), ("id+f3", 190))
 NOISES: tuple[float | None, ...] = (None, 20.0, 10.0, 0.0)
-VISITOR = """can you dance for me;how tall are you;please sing a song;my name is peter;what happens at this booth
-tell me about yourself;i am fine thank you;can we take a photo"""
+VISITOR = """offer: can you dance for me;offer: how tall are you;offer: please sing a song;ask_name: my name is peter
+offer: what happens at this booth;offer: tell me about yourself;how_are_you: i am fine thank you
+offer: can we take a photo"""
+"""What is said, and the state that it is said in."""
 ROBOT = """Good morning!;May I know your name?;How are you, Ani?;I am glad to hear that.
 What can I do for you? I can explain, dance, sing, or take a photo with you.;Do you have a question for me?
 I am 57 centimetres tall.;With pleasure! Please leave me some room.;Thank you for listening!
 I will sing Manuk Jajali for you.;My body was developed by Aldebaran Robotics.;I am sorry, I did not understand that."""
-STOP = "stop"
+STOP, STOPPABLE = "stop", "dance"
+"""What interrupts the robot, and a state in which it does."""
 TALK = """the weather is nice;where can i buy something to drink;the train leaves at seven;my brother works in a bank
 look at those people over there;the moon is very bright tonight;we parked the car behind the building
 what time does the museum open;i left my umbrella at home;these shoes are too small;the children are playing outside
@@ -63,6 +66,21 @@ WALL_DELAY, WALL_LEVEL = 0.08, 0.3
 
 def texts(lines: str) -> list[str]:
     return re.split("[;\n]", lines.strip())
+
+
+def in_states(lines: str) -> list[tuple[str, str]]:
+    """Texts with the state before each."""
+    return [(text, state) for state, text in (line.split(": ") for line in texts(lines))]
+
+
+def around(machine: MachineDefinition, name: str) -> list[str]:
+    """The names of the active states if this one is, as far as it says that: it, those around it, and the regions."""
+    state = next(state for state in machine.states.values() if state.name == name)
+    names = [machine.states[path].name for path in machine.root.children]
+    while state.parent is not None and state.name not in names:
+        names.append(state.name)
+        state = machine.states[state.parent]
+    return names
 
 
 def spoken(text: str, voice: str, pace: int) -> Samples:
@@ -102,7 +120,7 @@ def activity() -> None:
     finder = VoiceActivity()
     for level in NOISES:
         begins, ends, missed = [], [], 0
-        pairs = [(text, *VOICES[i % len(VOICES)]) for i, text in enumerate(texts(VISITOR) * 3)]
+        pairs = [(text, *VOICES[i % len(VOICES)]) for i, (text, _) in enumerate(in_states(VISITOR) * 3)]
         for seed, (text, voice, pace) in enumerate(pairs):
             said = spoken(text, voice, pace)
             spans = [
@@ -159,6 +177,10 @@ class Hall:
         assert self.ears.settle(60.0)
         return [body["result"] for body in self.heard.bodies[before:]]
 
+    def enter(self, state: str) -> None:
+        """Tell them that the behaviour is in that state."""
+        self._tell(self.now + 1.0, {"states": around(self.project.machine, state)})
+
     def overhear(self, said: Samples, faces: Mapping[str, object]) -> list[str]:
         """What they hear of somebody whose face the eyes see so, ten times a second."""
         begin, before = self.now + 20.0, len(self.heard.bodies)
@@ -183,17 +205,24 @@ def half_duplex(project: Project) -> None:
     for name, knows in (("always listening", False), ("half duplex", True)):
         hall = Hall(project, recogniser, knows=knows)
         try:
+            hall.enter(STOPPABLE)
             itself = sum(bool(hall.listen(text, own, nothing, 0.0)) for text, own in said)
-            stops = [hall.listen(text, 0.3 * own, spoken(STOP, "en-us+f3", 130), 0.4) for text, own in said]
+            stops = {
+                level: sum(
+                    bool(hall.listen(text, level * own, spoken(STOP, "en-us+f3", 130), 0.4)) for text, own in said
+                )
+                for level in (0.3, 0.1)
+            }
             answers = []
-            for (text, own), words in zip(said, texts(VISITOR), strict=False):
+            for (text, own), (words, state) in zip(said, in_states(VISITOR), strict=False):
+                hall.enter(state)
                 found = hall.listen(text, own, spoken(words, "en-us", 150), len(own) / RATE + 0.6)
                 answers.append(found == [words])
         finally:
             hall.close()
-        stopped = sum(any(STOP in heard.split() for heard in found) for found in stops)
         print(f"  {name:17} hears itself {itself:2} of {len(said)}")
-        print(f"  {'':17} `{STOP}` over its quiet voice {stopped:2} of {len(said)}")
+        for level, stopped in stops.items() if knows else ():
+            print(f"  {'':17} interrupted by `{STOP}` over its voice at {level:.0%} {stopped:2} of {len(said)}")
         print(f"  {'':17} an answer 0.6 s after it, word by word: {sum(answers)} of {len(answers)}", flush=True)
 
 
@@ -202,37 +231,43 @@ def talk_beside(project: Project) -> None:
     listens = {"face": {"within": 1.5, "after": 3}}
     settings = ModuleSettings(True, {"listens": listens})
     choosing = replace(project, modules={**project.modules, EARS: settings})
-    machine, recogniser = project.behaviors[project.behavior], shared_sphinx()
-    talk, asked = texts(TALK), texts(VISITOR)
+    recogniser = shared_sphinx()
+    said = [(text, FAR, "offer") for text in texts(TALK)] + [(text, NEAR, state) for text, state in in_states(VISITOR)]
     for name, chosen in (("always listening", project), ("a face near and looking", choosing)):
         hall = Hall(chosen, recogniser, knows=True)
         try:
             for level in (None, 20.0):
-                aside, meant = [], []
-                for seed, (text, faces) in enumerate([(t, FAR) for t in talk] + [(t, NEAR) for t in asked]):
+                aside, taken, meant = [], [], []
+                for seed, (text, faces, state) in enumerate(said):
                     voice, pace = VOICES[seed % 4]
+                    hall.enter(state)
                     found = hall.overhear(rested(spoken(text, voice, pace), level, seed), faces)
-                    (meant if faces is NEAR else aside).append((text, found))
-                texts_heard = sum(bool(found) for _, found in aside)
-                phrases = sum(any(_phrases(machine, one) for one in found) for _, found in aside)
-                right = sum(any(_phrases(machine, t) <= _phrases(machine, one) for one in found) for t, found in meant)
-                print(f"  {name:23} {_noise(level):6} talk heard {texts_heard:2} of {len(aside)}, ", end="")
-                print(f"taken for something {phrases:2}; a visitor understood {right} of {len(meant)}", flush=True)
+                    heard = heard_names(project, around(project.machine, state))
+                    meanings = [meant_by(heard, one) for one in found]
+                    if faces is NEAR:
+                        meant.append(any(meant_by(heard, text) <= one for one in meanings))
+                    else:
+                        aside.append(bool(found))
+                        taken.append(any(meanings))
+                print(f"  {name:23} {_noise(level):6} talk heard {sum(aside):2} of {len(aside)}, ", end="")
+                print(
+                    f"taken for something {sum(taken):2}; a visitor understood {sum(meant)} of {len(meant)}", flush=True
+                )
         finally:
             hall.close()
 
 
-def _phrases(machine: MachineDefinition, text: str) -> frozenset[str]:
-    """Which phrases and questions of a behaviour stand in a text, in any language."""
-    rows = {f"{table} {i}": row.phrases for table, rows in machine.answers.items() for i, row in enumerate(rows)}
-    found = {**machine.phrases, **rows}.items()
-    return frozenset(name for name, by in found if any(padded(p) in padded(text) for ps in by.values() for p in ps))
+def meant_by(heard: Sequence[HeardName], text: str) -> frozenset[str]:
+    """Which phrases of these names are in a text, in any language; of tables of answers with the row."""
+    rows = {f"{n} {i}": row.phrases for m, n in heard for i, row in enumerate(m.answers.get(n, ()))}
+    phrases = {name: machine.phrases[name] for machine, name in heard if name in machine.phrases}
+    return frozenset(name for name, table in (phrases | rows).items() if is_heard(text, table))
 
 
 def names(project: Project) -> None:
     """How many names are understood, and how sure the ears are of what they make of them."""
     recogniser = shared_sphinx()
-    recogniser.expect(expected(project))
+    recogniser.expect(expected(project, heard_names(project, around(project.machine, "ask_name"))))
     right, wrong = [], []
     for language, begin, those in NAMES:
         for seed, name in enumerate(those.split()):

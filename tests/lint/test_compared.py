@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from benchmarks.compare_lint import Mistake, cell, mistakes
+from benchmarks.compare_lint import PROJECT, Mistake, cell, mistakes
 
 from lumen.loading.files import read_files
 from lumen.rules import check_files
@@ -20,9 +20,9 @@ def without_places(text: str) -> str:
 
 @for_each("mistake", mistakes(), ids=lambda mistake: mistake.what)
 def test_the_page_shows_what_lint_says(mistake: Mistake) -> None:
-    files = read_files(ROOT)
+    files = read_files(PROJECT)
     files[mistake.file] = files[mistake.file].decode().replace(mistake.old, mistake.new, 1).encode()
-    found = [d for d in check_files(ROOT, files)[1] if d.place.file == mistake.file]
+    found = [d for d in check_files(PROJECT, files)[1] if d.place.file == mistake.file]
     said = "; ".join(f"{d.place.line}:{d.place.column} {d.message}{f' ({d.hint})' if d.hint else ''}" for d in found)
     [row] = re.findall(rf"\*\*{re.escape(mistake.what)}\*\*[\s\S]*?\| lumen lint \| (.*) \|\n", PAGE)
     assert without_places(row) == without_places(cell(said, ROOT))

@@ -1,5 +1,6 @@
 """Lint of files of sayings: names that are not there, at their places."""
 
+from lumen.loading.files import read_files
 from lumen.rules import check_files
 from tests.lint.spans import assert_marks_what_is_spoken_of
 from tests.lint.test_cases import HERE, changed, said
@@ -113,7 +114,8 @@ ROWS: dict[str, tuple[dict[str, str], dict[str, list[str]], list[str]]] = {
 def test_what_is_wrong_in_a_file_of_sayings(
     files: dict[str, str], edit: dict[str, list[str]], expected: list[str]
 ) -> None:
-    written = changed({"edit": edit, "write": {"behaviors/words/common.yaml": "description: None.\n", **files}})
+    base = read_files(HERE / "base")
+    written = changed(base, {"edit": edit, "write": {"behaviors/words/common.yaml": "description: None.\n", **files}})
     (file,) = files
     found = [one for one in check_files(HERE / "base", written)[1] if one.place.file == file]
     for line, wanted in zip(map(said, found), expected, strict=True):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lumen.language.projects import Project
 from lumen.modules.ears import Ears, Hypothesis
 from lumen.modules.ears.bigrams import arpa
-from lumen.modules.ears.expected import expected
+from lumen.modules.ears.expected import expected, heard_names
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
 from lumen.modules.ears.sphinx import Sphinx
@@ -128,24 +128,37 @@ def test_another_rate_lasts_as_long() -> None:
     assert set(resampled(sound, 16_000).samples) == {0x10, 0x00}
 
 
+def active(project: Project, name: str) -> list[str]:
+    """The names of the active states while the tour is in that state of its guide, as the brain publishes them."""
+    state = next(state for state in project.machine.states.values() if state.name == name)
+    names = ["safety", "watching", "touch", "touch.free", "face", "unwatched", "language"]
+    while state.path:
+        names.append(state.name)
+        state = project.machine.states[state.parent or ""]
+    return names
+
+
 @pytest.fixture(scope="module")
 def sphinx(project: Project) -> Sphinx:
-    """PocketSphinx, offline, by the model that comes in its package, told what the tour expects."""
+    """PocketSphinx, offline, by the model that comes in its package, told what the tour expects in `offer`."""
     sphinx = Sphinx()
-    sphinx.expect(expected(project))
+    sphinx.expect(expected(project, heard_names(project, active(project, "offer"))))
     return sphinx
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("text", "voice"),
+    ("text", "voice", "state"),
     [
-        (SONG, "en-us"),
-        ("how many joints do you have", "en-us"),
-        ("nama saya budi", "id"),
+        (SONG, "en-us", "offer"),
+        ("how many joints do you have", "en-us", "any_question"),
+        ("nama saya budi", "id", "ask_name"),
     ],
 )
-def test_what_visitors_may_say_is_understood(sphinx: Sphinx, text: str, voice: str) -> None:
+def test_what_visitors_may_say_is_understood(
+    project: Project, sphinx: Sphinx, text: str, voice: str, state: str
+) -> None:
+    sphinx.expect(expected(project, heard_names(project, active(project, state))))
     assert sphinx.recognise(espeak().speak(text, voice, pace=150)) == text
 
 
@@ -158,6 +171,7 @@ def test_silence_is_nothing_also_to_who_expects_something(sphinx: Sphinx) -> Non
 def test_words_that_were_spoken_are_recognised_on_the_bus(stand: Make, sphinx: Sphinx) -> None:
     here = stand()
     listening(here, sphinx)
+    here.bus.publish("lumen.NAO.state", {"robot": "NAO", "time": 0.0, "states": active(here.project, "offer")})
     heard = here.listen(HEARD)
     here.bus.publish(STREAM, {"name": "s", "content": espeak().speak(SONG, "en-us", pace=150).text(), "language": "en"})
     [said] = heard.wait(1)
@@ -184,14 +198,28 @@ def test_what_else_may_have_been_said_is_on_the_bus(stand: Make) -> None:
     assert said["alternatives"] == [{"result": "can you sing"}, {"result": "can you ring", "confidence": 0.1}]
 
 
-def test_expects_what_the_tour_listens_for_and_what_visitors_say_in_stories(stand: Make, project: Project) -> None:
+def test_expects_what_the_active_states_hear_and_what_visitors_say_in_stories(stand: Make, project: Project) -> None:
     here, parrot = stand(), Parrot()
     ears = listening(here, parrot)
-    assert ["speak", "english"] in parrot.expected
-    assert ["how", "many", "joints"] in parrot.expected
-    assert ["my", "name", "is", "budi"] in parrot.expected
+    heard = here.listen(HEARD)
+    sound = Sound(16_000, b"\x01\x00" * 8_000).text()
+
+    def expected_at(count: int) -> Sequence[Sequence[str]]:
+        here.bus.publish(RECORDING, {"name": "r", "content": sound})
+        heard.wait(count)
+        return parrot.expected
+
+    everywhere = expected_at(1)
+    assert ["speak", "english"] in everywhere
+    assert ["how", "many", "joints"] in everywhere
+    assert ["my", "name", "is", "budi"] in everywhere
+    states = active(project, "dance")
+    here.bus.publish("lumen.NAO.state", {"robot": "NAO", "time": 0.0, "states": states})
+    dancing = expected_at(2)
+    assert ["stop"] in dancing
+    assert ["how", "many", "joints"] not in dancing
     ears.use(replace(project, behaviors={}, stories={}))
-    assert parrot.expected == []
+    assert expected_at(3) == []
 
 
 @pytest.mark.slow
@@ -200,7 +228,7 @@ def test_another_language_model_for_another_tour(sphinx: Sphinx, project: Projec
     assert sphinx.recognise(sound) != "kucing"
     sphinx.expect([["kucing"], ["anjing"]])
     assert sphinx.recognise(sound) == "kucing"
-    sphinx.expect(expected(project))
+    sphinx.expect(expected(project, heard_names(project, None)))
 
 
 def chances(model: str) -> tuple[dict[str, float], dict[str, float], dict[tuple[str, str], float]]:

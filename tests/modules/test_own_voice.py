@@ -81,7 +81,7 @@ def test_is_told_to_wait_while_it_speaks_but_takes_no_word_of_its_own_for_that(e
     ear.state(100.0, command=SAY)
     assert ear.record(101.0, 1, 4) == []
     assert ear.record(102.0, 1, 3) == [], "its text has the word `stop`"
-    assert ear.record(103.0, 1, 2) == ["wait"]
+    assert ear.record(103.0, 1, 2) == ["wait a moment"]
 
 
 def test_a_command_of_somebody_else_is_its_voice_too(ear: Ear) -> None:
@@ -102,7 +102,7 @@ def test_which_words_interrupt_is_written(stand: Make, ear: Ear) -> None:
 
 def test_phrases_that_nobody_has_are_told(stand: Make, ear: Ear) -> None:
     other = Ear(stand(with_options(ear.stand.project, "ears", interrupts=["stop", "stpo"])))
-    assert other.stand.told == ["`interrupts` names phrases that no behaviour has: `stpo` (did you mean `stop`?)"]
+    assert other.stand.told == ["`interrupts` names phrases that no state hears: `stpo` (did you mean `stop`?)"]
     assert ear.stand.told == []
 
 

@@ -33,6 +33,8 @@ LUMEN_FUNCTIONS = frozenset(
         "matches",
         "contains",
         "size",
+        "pick",
+        "shuffle",
         *SIGN_FUNCTIONS,
     )
 )

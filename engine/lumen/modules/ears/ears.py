@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.talk.folding import padded
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
+from lumen.modules.ears.active_states import ActiveStates
 from lumen.modules.ears.addressing import NOBODY, SPEAKS, Addressing
-from lumen.modules.ears.expected import expected
+from lumen.modules.ears.expected import HeardName, expected, heard_names
 from lumen.modules.ears.own_voice import OwnVoice, Utterance
 from lumen.modules.ears.recogniser import Hypothesis, Recogniser, hypotheses
 from lumen.modules.ears.shared_recogniser import shared_sphinx
@@ -33,7 +33,8 @@ class Ears(Module):
     """The speech half of the audio module: the robot's recordings, and sounds that others send, become texts.
 
     Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard; so it is
-    where `listens` is set and nobody means the robot. A sound has just ended when it comes. Whether they listen, and
+    where `listens` is set and nobody means the robot. What is expected, and what interrupts, depends on the states that
+    are active when a sound comes. A sound has just ended when it comes. Whether they listen, and
     why, goes out on the route `listening` as it changes. A recogniser of one's own may be handed in, and who finds
     speech in sounds; else they are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises
     ModuleError where the recogniser is not there.
@@ -53,8 +54,8 @@ class Ears(Module):
         super().__init__(project, bus, tell, clock)
         self._activity = activity if recogniser else voice_activity()
         self._recogniser = recogniser or _recogniser(project, self.settings.options)
-        self._recogniser.expect(expected(project))
-        self._own_voice = OwnVoice()
+        self._expected: Sequence[Sequence[str]] = ()
+        self._own_voice, self._active = OwnVoice(), ActiveStates(project.robot)
         self._addressing = Addressing(self.settings.options.get("listens", {}), self.tell)
         self._shown: dict[str, object] = {}
 
@@ -62,7 +63,8 @@ class Ears(Module):
         return {
             "recording": self._sound,
             "wav_stream": self._sound,
-            "state": lambda message: self._own_voice.state(message.body, self.came),
+            "state": self._state,
+            "presence": lambda message: self._active.presence(message.body, self.came),
             "report": lambda message: self._own_voice.report(message.body, self.came),
             **dict.fromkeys(self._addressing.routes(), lambda _: None),
         }
@@ -76,7 +78,6 @@ class Ears(Module):
         if options.get("listens", {}) != self.settings.options.get("listens", {}):
             self._addressing = Addressing(options.get("listens", {}), self.tell)
         super().use(project)
-        self._recogniser.expect(expected(project))
         self._look_for_phrases()
 
     def idle(self) -> float | None:
@@ -98,12 +99,19 @@ class Ears(Module):
         super()._take(route, message)
 
     def _look_for_phrases(self) -> None:
-        """Say which phrases of `interrupts` no behaviour has: nobody could stop the robot by them."""
-        known = {name: None for machine in self.project.behaviors.values() for name in machine.phrases}
+        """Report names in `interrupts` that no state hears: nobody could stop the robot by them."""
+        known = dict.fromkeys(one.name for one in heard_names(self.project, None))
         for name in self.settings.options.get("interrupts", ()):
             if name not in known:
-                hint = did_you_mean(name, known)
-                self.tell(f"`interrupts` names phrases that no behaviour has: `{name}`{f' ({hint})' if hint else ''}")
+                hint = did_you_mean(name, known) or "list it in `hears` of a state"
+                self.tell(f"`interrupts` names phrases that no state hears: `{name}` ({hint})")
+
+    def _state(self, message: Message) -> None:
+        self._own_voice.state(message.body, self.came)
+        self._active.state(message.body, self.came)
+
+    def _heard_names(self) -> list[HeardName]:
+        return heard_names(self.project, self._active.names(self.came))
 
     def _sound(self, message: Message) -> None:
         body = message.body if isinstance(message.body, dict) else {}
@@ -130,29 +138,35 @@ class Ears(Module):
         found = self._words(left) if not deaf or left.samples.strip(b"\0") else []
         if found or not deaf:
             return found
-        phrase = next((p for one in self._words(sound) if (p := self._interrupting(one.text, own))), "")
+        names = self.settings.options.get("interrupts", INTERRUPTS)
+        sought = [one for one in self._heard_names() if one.name in names]
+        likeliest = self._words(sound, own)[:1] if sought else []
+        phrase = next((_interrupting(one.text, sought, own) for one in likeliest), "")
         return [Hypothesis(phrase)] if phrase else []
 
-    def _words(self, sound: Sound) -> Sequence[Hypothesis]:
-        """What is said in it."""
+    def _words(self, sound: Sound, own: Sequence[Utterance] = ()) -> Sequence[Hypothesis]:
+        """Return what is said in it, the likeliest first; with the robot's `own` voice its words are expected, too."""
         if self._activity:
             spans = self._activity.spans(sound)
             if not spans:
                 return []
             sound = sound.between(spans[0][0] - REST, spans[-1][1] + REST)
+        sentences = expected(self.project, self._heard_names(), [u.text for u in own])
+        if sentences != self._expected:
+            self._expected = sentences
+            self._recogniser.expect(sentences)
         return hypotheses(self._recogniser, sound)
 
-    def _interrupting(self, text: str, own: list[Utterance]) -> str:
-        """The phrase in it that interrupts the robot, unless the robot itself says it."""
-        said, ours = padded(text), " ".join(padded(u.text) for u in own)
-        names = self.settings.options.get("interrupts", INTERRUPTS)
-        for machine in self.project.behaviors.values():
-            for name in names:
-                for phrases in machine.phrases.get(name, {}).values():
-                    for phrase in phrases:
-                        if padded(phrase) in said and padded(phrase) not in ours:
-                            return phrase
-        return ""
+
+def _interrupting(text: str, sought: Sequence[HeardName], own: Sequence[Utterance]) -> str:
+    """Return the longest phrase of these names in a text that the robot itself does not say."""
+    for one in sought:
+        finder = one.finder()
+        said, ours = finder.read(text), " ".join(f" {' '.join(finder.read(u.text).words)} " for u in own)
+        for find in sorted(said.finds.get(one.name, ()), key=lambda find: find.start - find.end):
+            if f" {' '.join(said.words[find.start : find.end])} " not in ours:
+                return said.said(find.start, find.end)
+    return ""
 
 
 def _row(found: Hypothesis) -> dict[str, object]:

@@ -1,27 +1,139 @@
-"""What visitors are expected to say, by what the behaviours wait for and what visitors say in the stories."""
+"""What visitors are expected to say, by what the active states hear and what visitors say in the stories."""
 
-import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import islice, pairwise
+from typing import Any, NamedTuple
 
-from lumen.language.machines import MachineDefinition
+from lumen.interpreters.expressions.parser import parse_expression
+from lumen.interpreters.expressions.tree import FunctionCall, Literal, path_of, walk
+from lumen.interpreters.statechart.nesting import resolutions
+from lumen.interpreters.talk.finder import Finder
+from lumen.interpreters.talk.folding import APOSTROPHES, folded, words
+from lumen.interpreters.talk.hearing import phrases_in
+from lumen.interpreters.talk.patterns import Slot, forms
+from lumen.interpreters.talk.speech import TABLES, WORD_LISTS, Speech
+from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
 from lumen.language.stories import Speak
 
-_WORD = re.compile(r"[a-z][a-z']*")
+MAX_SENTENCES = 1_000
+"""How many sentences of one phrase are looked at: its forms, with the entries of lists in their slots."""
+_NO_MEANINGS = frozenset((*WORD_LISTS, *TABLES))
+_ENTRY = "context."
+_STRAIGHT = dict.fromkeys(map(ord, APOSTROPHES), "'")
+
+Lists = Mapping[str, Sequence[Mapping[str, Any]]]
 
 
-def expected(project: Project) -> list[list[str]]:
-    """Sentences as words: the phrases and questions that the behaviours listen for in any language, and examples."""
-    found = [phrase for machine in project.behaviors.values() for phrase in _phrases(machine)]
-    found += [s.action.text for story in project.stories.values() for s in story.steps if isinstance(s.action, Speak)]
-    return [words for text in dict.fromkeys(found) if (words := _WORD.findall(text.lower()))]
+class HeardName(NamedTuple):
+    """A name that a state hears, of the phrases, answers or entries of a behaviour."""
+
+    machine: MachineDefinition
+    name: str
+
+    def phrases(self) -> list[str]:
+        """Its phrases in all languages; of an entry's field those of all entries, for any of them may be the one."""
+        machine, name = self
+        tables: list[Any] = [machine.phrases.get(name), *(row.phrases for row in machine.answers.get(name, ()))]
+        if name.startswith(_ENTRY):
+            field = name.rpartition(".")[2]
+            tables += [entry.get(field) for entries in machine.lists.values() for entry in entries]
+        return list(dict.fromkeys(_texts(tables)))
+
+    def finder(self) -> Finder:
+        """What finds its phrases in a text, whether or not they are whole clauses."""
+        machine, name = self
+        lists = {key: [(phrases_in(entry), entry) for entry in entries] for key, entries in machine.lists.items()}
+        return Finder(Speech(machine.phrases, machine.answers), {name: {"": self.phrases()}}, lists=lists)
 
 
-def _phrases(machine: MachineDefinition) -> Iterator[str]:
-    for by_language in machine.phrases.values():
-        for phrases in by_language.values():
-            yield from phrases
-    for rows in machine.answers.values():
-        for row in rows:
-            for phrases in row.phrases.values():
-                yield from phrases
+def heard_names(project: Project, states: Collection[str] | None) -> list[HeardName]:
+    """Return what the active states hear, in `hears` and in guards that call `heard` or `lookup`.
+
+    `states` are the names of all active states, those around others included. If they are unknown, or other files are
+    running than these, all states of all behaviours count.
+    """
+    active = None if states is None else _active(project.machine, states)
+    if active is None:
+        active = [(machine, state) for machine in project.behaviors.values() for state in machine.states.values()]
+    found = {(id(machine), name): HeardName(machine, name) for machine, state in active for name in _names(state)}
+    return [one for one in found.values() if one.name not in _NO_MEANINGS]
+
+
+def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = ()) -> list[list[str]]:
+    """Return sentences as words in small letters: forms of what is heard, and what visitors of stories say.
+
+    `own` are texts that the robot itself says meanwhile.
+    """
+    found: list[list[str]] = []
+    for one in heard:
+        for phrase in one.phrases():
+            found += _new_pairs(islice(_sentences(phrase, one.machine.lists), MAX_SENTENCES))
+    stories = [s.action.text for story in project.stories.values() for s in story.steps if isinstance(s.action, Speak)]
+    found += map(_spoken, (*stories, *own))
+    return [list(sentence) for sentence in dict.fromkeys(map(tuple, found)) if sentence]
+
+
+def _active(machine: MachineDefinition, names: Collection[str]) -> list[tuple[MachineDefinition, State]] | None:
+    """The states of these names with their machines, and the roots of these; None if a name is unknown."""
+    machines, active = {id(machine): machine}, {(id(machine), "")}
+    for name in sorted(names):
+        known = [(m, s.path) for m, local in resolutions(machine, name) for s in m.states.values() if s.name == local]
+        if not known:
+            return None
+        machines |= {id(inner): inner for inner, _ in known}
+        active |= {(id(inner), path) for inner, own in known for path in (own, "")}
+    return [(m, state) for m in machines.values() for state in m.states.values() if (id(m), state.path) in active]
+
+
+def _names(state: State) -> Iterator[str]:
+    for transition in state.transitions:
+        if transition.hears:
+            yield from transition.hears.names
+        if transition.guard:
+            for node, _ in walk(parse_expression(transition.guard.source)):
+                match node:
+                    case FunctionCall("heard" | "lookup", (_, Literal(value=str() as name))):
+                        yield name
+                    case FunctionCall("heard", (_, other)) if path := path_of(other):
+                        yield ".".join(path)
+
+
+def _sentences(phrase: str, lists: Lists) -> Iterator[list[str]]:
+    """The forms of a phrase, words with their apostrophes; entries of lists in their slots, other slots left out."""
+    written = {"".join(folded(word)): word for word in _spoken(phrase)}
+    for form in forms(phrase):
+        parts = [_entries(p, lists) if isinstance(p, Slot) else [[written.get(p, p)]] for p in form.parts]
+        for i in range(max(map(len, parts))):
+            yield [word for several in parts for word in several[i % len(several)]]
+
+
+def _entries(slot: Slot, lists: Lists) -> list[list[str]]:
+    phrases = _texts([entry.get("phrases") for entry in lists.get(slot.type, ())])
+    return [sentence for phrase in phrases for sentence in _sentences(phrase, {})] or [[]]
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """The texts in lists and maps of them."""
+    match value:
+        case str():
+            yield value
+        case Mapping():
+            yield from _texts(list(value.values()))
+        case list() | tuple():
+            for one in value:
+                yield from _texts(one)
+
+
+def _new_pairs(sentences: Iterable[list[str]]) -> Iterator[list[str]]:
+    """Those with a neighbourhood of two words that none before them has: language models learn no more from others."""
+    seen: set[tuple[str, str]] = set()
+    for sentence in sentences:
+        pairs = {*pairwise(["", *sentence, ""])}
+        if not pairs <= seen:
+            seen |= pairs
+            yield sentence
+
+
+def _spoken(text: str) -> list[str]:
+    return [word.lower() for word in words(text.translate(_STRAIGHT))]

@@ -30,6 +30,8 @@ SILENCE_LEVEL = 300
 """A sound that nowhere reaches this level, of 32,768, is silence."""
 COMMON_WORDS = 8_000
 """How many common words it knows beside what is expected."""
+MAX_MODELS = 4
+"""How many language models are kept: one takes 0.2 s of processor time to make, and 19 MB."""
 LOG_STEP = 1e-4
 """PocketSphinx counts logarithms in such steps."""
 
@@ -58,9 +60,10 @@ class Sphinx(RankingRecogniser):
             self._decoder: Any = pocketsphinx.Decoder(samprate=SAMPLE_RATE, cmn="batch", loglevel="FATAL")
         except (RuntimeError, ValueError) as error:
             raise ModuleError(f"PocketSphinx can't load its model ({error}): {INSTALL_EARS} again") from None
-        self._english = self._decoder.get_lm(self._decoder.current_search())
+        self._freely = self._decoder.current_search()
+        self._english = self._decoder.get_lm(self._freely)
         self._expected: Sequence[Sequence[str]] = ()
-        self._ready: Sequence[Sequence[str]] = ()
+        self._models: dict[tuple[tuple[str, ...], ...], str] = {}
         self._common: dict[str, float] = {}
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
@@ -86,19 +89,27 @@ class Sphinx(RankingRecogniser):
         return [Hypothesis(text, None if i else confidence) for i, text in enumerate(islice(texts, MAX_HYPOTHESES))]
 
     def _prepare(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Make the model of what is expected now."""
-        if not sentences or sentences == self._ready:
-            return
+        """Use the language model of what is expected now: one of those used last, else a new one."""
+        spoken = (tuple(word for word in sentence if pronounced(word)) for sentence in sentences)
+        key = tuple(sentence for sentence in spoken if sentence)
+        name = self._models.pop(key, "") if key else self._freely
+        if not name:
+            full = len(self._models) == MAX_MODELS
+            name = self._models.pop(next(iter(self._models))) if full else f"expected {len(self._models)}"
+            self._make(name, key)
+        if key:
+            self._models[key] = name
+        self._decoder.activate_search(name)
+
+    def _make(self, name: str, sentences: Sequence[Sequence[str]]) -> None:
         self._common = self._common or self._commonest()
         for word in sorted({word for sentence in sentences for word in sentence}):
             if not self._decoder.lookup_word(word):
                 self._decoder.add_word(word, pronounced(word), False)
         with TemporaryDirectory() as folder:
             file = Path(folder) / "expected.lm"
-            file.write_text(arpa(sentences, self._common))
-            self._decoder.add_lm_file("expected", str(file))
-        self._decoder.activate_search("expected")
-        self._ready = sentences
+            file.write_text(arpa(sentences, self._common), "utf-8")
+            self._decoder.add_lm_file(name, str(file))
 
     def _commonest(self) -> dict[str, float]:
         """The commonest words with their chances, by the model in the package."""
