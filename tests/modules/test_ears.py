@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lumen.interpreters.explaining.sayings import path_of
+from lumen.interpreters.explaining.sentences import explained, first_context
 from lumen.language.projects import Project
 from lumen.modules.ears import Ears, Hypothesis
 from lumen.modules.ears.bigrams import arpa
@@ -159,7 +161,17 @@ def test_what_visitors_may_say_is_understood(
     project: Project, sphinx: Sphinx, text: str, voice: str, state: str
 ) -> None:
     sphinx.expect(expected(project, heard_names(project, active(project, state))))
-    assert sphinx.recognise(espeak().speak(text, voice, pace=150)) == text
+    assert meaning(project, state, sphinx.recognise(espeak().speak(text, voice, pace=150))) == meaning(
+        project, state, text
+    )
+
+
+def meaning(project: Project, state: str, text: str) -> tuple[str, dict[str, Any]]:
+    """The row of `hears` that a sentence takes in a state of the tour, and what is caught."""
+    machine = project.machine
+    taken = explained(machine, path_of(machine, state), text, first_context(machine)).taken
+    assert taken
+    return taken.key, taken.slots
 
 
 def test_silence_is_nothing_also_to_who_expects_something(sphinx: Sphinx) -> None:
@@ -175,10 +187,11 @@ def test_words_that_were_spoken_are_recognised_on_the_bus(stand: Make, sphinx: S
     heard = here.listen(HEARD)
     here.bus.publish(STREAM, {"name": "s", "content": espeak().speak(SONG, "en-us", pace=150).text(), "language": "en"})
     [said] = heard.wait(1)
-    assert (said["result"], said["language"]) == (SONG, "en")
+    assert meaning(here.project, "offer", said["result"]) == meaning(here.project, "offer", SONG)
+    assert said["language"] == "en"
     assert 0.3 < said["confidence"] <= 1.0
     others = [row["result"] for row in said["alternatives"]]
-    assert len({SONG, *others}) == len(others) + 1 == 5
+    assert len({said["result"], *others}) == len(others) + 1 == 5
 
 
 class Doubter(Parrot):
@@ -218,8 +231,9 @@ def test_expects_what_the_active_states_hear_and_what_visitors_say_in_stories(st
     dancing = expected_at(2)
     assert ["stop"] in dancing
     assert ["how", "many", "joints"] not in dancing
-    ears.use(replace(project, behaviors={}, stories={}))
-    assert expected_at(3) == []
+    assert ["my", "name", "is", "budi"] in dancing
+    ears.use(replace(project, stories={}))
+    assert ["my", "name", "is", "budi"] not in expected_at(3)
 
 
 @pytest.mark.slow
