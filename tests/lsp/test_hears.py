@@ -201,14 +201,16 @@ def test_a_renaming_reaches_the_keys_of_hears(file: str, text: str, name: str, r
     ("name", "reason"),
     [
         ("not", "keys of `hears`"), ("asked", "keys of `hears`"), ("else", "keys of `hears`"),
-        ("fillers", "word list"), ("not_names", "word list"),
+        ("fillers", "word list"), ("not_names", "word list"), ("questions", "word list"), ("numbers", "word list"),
     ],
 )  # fmt: skip
 def test_what_means_something_to_hears_is_no_name(name: str, reason: str) -> None:
-    use = renamable(PROJECT, *place(PROJECT, T, "      dan¦ce: dance"))
-    assert use
-    with pytest.raises(UsageError, match=reason):
-        rename(PROJECT, use, name)
+    """Neither of phrases nor of answers."""
+    for text in ("      dan¦ce: dance", "      fa¦q:"):
+        use = renamable(PROJECT, *place(PROJECT, T, text))
+        assert use
+        with pytest.raises(UsageError, match=reason):
+            rename(PROJECT, use, name)
 
 
 @for_each("text", ["      ¦no: offer", "my_¦name:", "words: [comm¦on", "el¦se: .", "{¦exhibit.phrases: over}"])

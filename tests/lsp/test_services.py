@@ -67,7 +67,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         (
             TOUR,
             "  safety.alarm: interrupted\n",
-            "  safety.alarm: interrupted\n          |\n",
+            "  safety.alarm: paused\n          |\n",
             ["heard: ", "fallen: "],
             ["on: "],
         ),
@@ -196,7 +196,7 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
         (TOUR, "whenever: In('fall|en')", "lying", 8, None),
         (TOUR, "context.name_|tries <", "tries", 18, None),
         (TOUR, "heard(event.data.result, 'dan|ce')", "tarian", 8, None),
-        (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 6, None),
+        (TOUR, "lookup(event.data.result, 'f|aq')", "queries", 6, None),
         (TOUR, "words: [common, visitors, f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
         (VISITOR, "played: dan|ce", "horse", 4, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),
@@ -309,3 +309,13 @@ def test_a_renaming_that_would_break_the_project_is_refused() -> None:
     refuse_harm(before, before)
     with pytest.raises(UsageError, match="nonsense"):
         refuse_harm(before, after)
+
+
+def test_an_error_is_harm_although_warnings_are_no_longer_reported() -> None:
+    """Names that nothing uses are reported of files without errors only."""
+    used = "initial: a\ncontext: {b: 1, c: 2, d: 3}\nstates: {a: {on: {heard: a}}}\n"
+    before, _ = first(f"|{used}")
+    after = before.changed(HOST, before.text(HOST).replace("heard: a", "heard: z"))
+    assert len(after.diagnostics) < len(before.diagnostics)
+    with pytest.raises(UsageError, match="`z`"):
+        refuse_harm(before.diagnostics, after.diagnostics)

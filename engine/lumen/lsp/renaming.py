@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from lumen.errors import UsageError
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
-from lumen.language.diagnostics import Diagnostic
+from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.routes import MEANINGS
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.heard_rows import ELSE, WAYS
@@ -30,7 +30,6 @@ _NAMES = {
     NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
 }
 """The kinds that can be renamed, and what their names look like."""
-_WORD_LISTS = {NameKind.PHRASE: WORD_LISTS, NameKind.ANSWERS: TABLES}
 _RESERVED = re.compile(r"(?i:null|true|false|yes|no|on|off|y|n|~|any)|[\d.+-].*")
 
 
@@ -61,7 +60,7 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has to be {look}")
     if use.kind in WORD_KINDS and name in (*WAYS, ELSE):
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: it means something in the keys of `hears`")
-    if name in _WORD_LISTS.get(use.kind, ()):
+    if use.kind in WORD_KINDS and name in (*WORD_LISTS, *TABLES):
         raise UsageError(
             f"`{name}` can't be the name of a {use.kind}: it is a word list by which `hears` reads sentences"
         )
@@ -87,10 +86,15 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
 
 def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
     """Raises UsageError where more is wrong with the project after a renaming than was before it."""
-    if len(after) > len(before):
+    # An error keeps other findings from being reported, such as unused names: the number of all findings may fall.
+    if len(after) > len(before) or _errors(after) > _errors(before):
         known = {(d.code, d.message) for d in before}
         new = next((d for d in after if (d.code, d.message) not in known), after[0])
         raise UsageError(f"that would break the project: {new}")
+
+
+def _errors(found: Sequence[Diagnostic]) -> int:
+    return sum(d.severity is Severity.ERROR for d in found)
 
 
 def _taken(analysis: Analysis, use: NameUse, name: str) -> bool:
