@@ -105,11 +105,11 @@ def test_a_fault_of_the_world_is_no_fault_of_the_files(
 @pytest.mark.slow
 def test_bad_files_and_last_good_are_journaled(copy: Path, run: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(run) == 0
-    save(copy, "onDone: any_question", "onDone: any_questoin")
+    save(copy, 'done.do.*: "#any_question"', 'done.do.*: "#any_questoin"')
     assert main([*run, "--last-good"]) == 0
     told = capsys.readouterr()
     assert "THE FILES HAVE ERRORS: IT STARTS WITH THE LAST GOOD ONES" in told.err
-    assert "did you mean `any_question`?" in told.out
+    assert "did you mean `#any_question`?" in told.out
     [entry] = journal(copy)
     assert (entry["verdict"], entry["who"]) == ("refused", "start")
     assert entry["diagnostics"][0]["code"] == "unknown-state"

@@ -136,14 +136,17 @@ def test_lenses_hints_signatures_folds_links_highlights_and_symbols(client: Clie
     text = client.open(TOUR)
     document = {"uri": client.uri(TOUR)}
     lenses = client.request("textDocument/codeLens", textDocument=document)
-    dance = next(e for e in lenses if e["range"]["start"]["line"] == at(text, "              dan|ce:")[0])
+    dance = next(e for e in lenses if e["range"]["start"]["line"] == at(text, "dan|ce:                  # 10.")[0])
     assert dance["command"]["title"] == "2 transitions lead here"
     uri, start, places = dance["command"]["arguments"]
     assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 2)
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 900, "character": 0}}
     hints = client.request("textDocument/inlayHint", textDocument=document, range=whole)
     assert {"24 s after its do", "after entering"} <= {hint["label"] for hint in hints}
-    help = client.ask("signatureHelp", TOUR, *at(text, "heard(event.data.result, 'engl|ish')"))
+    asking = text.replace("guard: context.name_tries < 2", "guard: heard(event.data.result, 'english')", 1)
+    client.change(TOUR, asking, 7)
+    help = client.ask("signatureHelp", TOUR, *at(asking, "heard(event.data.result, 'engl|ish')"))
+    client.change(TOUR, text, 8)
     assert (help["signatures"][0]["label"][:6], help["activeParameter"]) == ("heard(", 1)
     assert client.request("textDocument/foldingRange", textDocument=document)
     links = client.request("textDocument/documentLink", textDocument=document)
@@ -172,7 +175,7 @@ def test_a_story_is_run_by_its_lens(client: Client) -> None:
 def test_a_fix_is_offered(client: Client) -> None:
     text = client.open(TOUR)
     wrong = text.replace("onDone: watching", "onDone: wathing", 1)
-    client.change(TOUR, wrong, 7)
+    client.change(TOUR, wrong, 9)
     line, character = at(wrong, "onDone: wat|hing")
     here = {"line": line, "character": character}
     actions = client.request(
@@ -184,7 +187,7 @@ def test_a_fix_is_offered(client: Client) -> None:
     assert [action["title"] for action in actions] == ["write watching"]
     edit = actions[0]["edit"]["documentChanges"][0]["edits"][0]
     assert (shown(wrong, edit["range"]), edit["newText"]) == ("wathing", "watching")
-    client.change(TOUR, text, 8)
+    client.change(TOUR, text, 10)
 
 
 @for_each("text", ["", "{{{", "a: b: c", "\t- x", "- 1\n- 2\n", "states: 5\n", "&a [*a]", "\x00", "🤖: {🤖"])

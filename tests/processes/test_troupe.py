@@ -139,7 +139,7 @@ def test_a_robot_whose_brain_is_gone_rests_after_5_seconds_and_tells_the_next_on
 
 @pytest.mark.soak
 def test_a_network_that_is_cut_for_10_seconds_ends_safely_and_goes_on(troupe: Troupe) -> None:
-    port = int(troupe.url.rpartition(":")[2].strip("/"))
+    port = int(troupe.url.rpartition(":")[2].partition("/")[0])
     cable = Relay(port)
     robot, motion = troupe.join("robot"), troupe.join("motion")
     brain = troupe.join("brain", story="dancing", url=troupe.url.replace(str(port), str(cable.port)))
