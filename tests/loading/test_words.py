@@ -113,5 +113,5 @@ def test_the_shipped_answers_stand_in_words() -> None:
     common_phrases = {name: spoken(phrases) for name, phrases in words["common"].phrases.items()}
     assert {machine.borrowed["answers", name] for name in machine.answers} == {"common", "faq"}
     assert {machine.borrowed["phrases", name] for name in machine.phrases} == {"common", "visitors"}
-    assert words["faq"].answers | common_answers == machine.answers
-    assert words["visitors"].phrases | common_phrases == machine.phrases
+    assert {**words["faq"].answers, **common_answers} == machine.answers
+    assert {**words["visitors"].phrases, **common_phrases} == machine.phrases
