@@ -63,7 +63,7 @@ def test_it_goes_on_where_it_was_and_what_was_under_way_as_the_state_says(copy: 
     assert {event.data["reason"] for event in found.answers(0.0)} == {LOST_COMMAND_REASON}
     again = Live(copy)
     again.show.loop.resume(found)
-    again.until_told("offer  (done)")  # of a dance that is resumed never
+    again.until_told("offer, face.watched.armed  (done, then visitor.asked)")  # of a dance that is resumed never
     assert "offer" in again.states
     assert again.show.loop.tracking.on == ("head",)
     again.show.close()
