@@ -14,6 +14,7 @@ import pytest
 
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.validator import Validation
+from lumen.loading.common_words import COMMON_FILE
 from lumen.loading.files import read_files
 from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
@@ -76,7 +77,8 @@ class Bench:
 
 
 def _ours(path: str) -> bool:
-    return path.endswith(".yaml") and not path.startswith(("models/", "behaviors/stories/"))
+    """Whether that file is marked: not stories, which would be played, nor the words that come with Lumen."""
+    return path.endswith(".yaml") and path != COMMON_FILE and not path.startswith(("models/", "behaviors/stories/"))
 
 
 @pytest.fixture
