@@ -22,7 +22,7 @@ _NO_MEANINGS = frozenset((*WORD_LISTS, *TABLES))
 _ENTRY = "context."
 _STRAIGHT = dict.fromkeys(map(ord, APOSTROPHES), "'")
 
-Lists = Mapping[str, Sequence[Mapping[str, Any]]]
+PhraseLists = Mapping[str, Sequence[Mapping[str, Any]]]
 
 
 class HeardName(NamedTuple):
@@ -99,7 +99,7 @@ def _names(state: State) -> Iterator[str]:
                         yield ".".join(path)
 
 
-def _sentences(phrase: str, lists: Lists) -> Iterator[list[str]]:
+def _sentences(phrase: str, lists: PhraseLists) -> Iterator[list[str]]:
     """The forms of a phrase, words with their apostrophes; entries of lists in their slots, other slots left out."""
     written = {"".join(folded(word)): word for word in _spoken(phrase)}
     for form in forms(phrase):
@@ -108,7 +108,7 @@ def _sentences(phrase: str, lists: Lists) -> Iterator[list[str]]:
             yield [word for several in parts for word in several[i % len(several)]]
 
 
-def _entries(slot: Slot, lists: Lists) -> list[list[str]]:
+def _entries(slot: Slot, lists: PhraseLists) -> list[list[str]]:
     phrases = _texts([entry.get("phrases") for entry in lists.get(slot.type, ())])
     return [sentence for phrase in phrases for sentence in _sentences(phrase, {})] or [[]]
 
