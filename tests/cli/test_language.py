@@ -1,6 +1,7 @@
 """`lumen language`: a place for a new language wherever one is, and what is missing."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,12 @@ def without(data: Any, language: str) -> Any:
     return [without(value, language) for value in data if value != language] if isinstance(data, list) else data
 
 
+def comments(content: bytes) -> list[str]:
+    """The comments but for what is to be translated; a target such as "#goodbye" is none."""
+    lines = (line for line in content.decode().splitlines() if TO_DO not in line)
+    return [line[found.start() :] for line in lines if (found := re.search(r"(^|\s)#(?=\s)", line))]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("folder", [".", "examples/museum"])
 def test_a_new_language_has_a_place_everywhere_and_nothing_else_changes(folder: str) -> None:
@@ -100,10 +107,7 @@ def test_a_new_language_has_a_place_everywhere_and_nothing_else_changes(folder: 
     then = draft(after)
     for file in (file for file in files if after[file] != files[file]):
         assert without(then.reports[file].document.data, "fr") == before.reports[file].document.data
-        lines = after[file].decode().splitlines()
-        assert [line for line in lines if "#" in line and TO_DO not in line and not line.startswith("languages")] == [
-            line for line in files[file].decode().splitlines() if "#" in line and not line.startswith("languages")
-        ]
+        assert comments(after[file]) == comments(files[file])
     entries = language_entries(then)
     assert len(entries) == len(language_entries(before)) == len(list(untranslated(entries, "fr")))
     assert list(untranslated(entries, "en")) == []

@@ -217,11 +217,16 @@ def alone(folder: Path, name: str) -> list[object]:
 
 
 def deeds(bodies: list[Any], robot: str = "NAO") -> list[Any]:
-    """What a behaviour did by its trace, without times and ids: states entered and left, and commands."""
+    """What a behaviour did by its trace, without times and ids: states entered and left, and commands.
+
+    Without the states of the tour's region `face`, which depend on how many faces a camera sends.
+    """
     found: list[Any] = []
     for body in bodies:
         if body["robot"] == robot and "command" in body:
             found.append({name: value for name, value in body["command"].items() if name != "id"})
         elif body["robot"] == robot and body.get("entered"):
-            found.append((body["exited"], body["entered"]))
+            exited, entered = ([s for s in body[key] if not s.startswith("face.")] for key in ("exited", "entered"))
+            if exited or entered:
+                found.append((exited, entered))
     return found
