@@ -12,7 +12,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.project import draft
 from lumen.loading.yaml_reader import parse
-from lumen.lsp.broken_files import BrokenFile, Known, broken_files, follows, signature
+from lumen.lsp.broken_files import BrokenFile, KnownFindings, broken_files, follows, signature
 from lumen.lsp.grammar import kind_of
 from lumen.lsp.index import NameIndex
 from lumen.rules import check_files
@@ -39,7 +39,7 @@ class Analysis:
         self.files = {file: files[file] for file in sorted(files) if not (shipped and file == COMMON_FILE)}
         self._before: Mapping[str, bytes] = before.__dict__.get("readable", before._before) if before else {}
         self._last_index = before.known_index if before else None
-        self._known: Known = before.known if before else frozenset()
+        self._known: KnownFindings = before.known if before else frozenset()
 
     def __getstate__(self) -> dict[str, Any]:
         return {
@@ -82,7 +82,7 @@ class Analysis:
         _ = self.draft, self.index.uses
 
     @property
-    def known(self) -> Known:
+    def known(self) -> KnownFindings:
         """What was found when all files could last be read, as far as that was worked out."""
         found = self.__dict__.get("diagnostics")
         return self._known if found is None or self.broken else frozenset(map(signature, found))

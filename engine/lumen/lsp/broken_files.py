@@ -13,7 +13,7 @@ from lumen.lsp.mending import MendedText, mended
 
 _QUOTED = re.compile(r"[^`.#]+(?=[`.])")
 
-Known = frozenset[tuple[str, str, str]]
+KnownFindings = frozenset[tuple[str, str, str]]
 """Findings by code, file and message."""
 
 
@@ -30,7 +30,7 @@ def broken_files(files: Mapping[str, bytes], before: Mapping[str, bytes]) -> dic
     return {file: found for file, content in files.items() if (found := _broken(file, content, before))}
 
 
-def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: Known) -> bool:
+def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownFindings) -> bool:
     """Whether a finding may only say that a part of a file can't be read; `known` are those from before that."""
     here = broken.get(finding.place.file)
     if here and (here.mended is None or finding.place.line - 1 in here.mended.around | here.mended.cut):
