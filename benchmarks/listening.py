@@ -207,12 +207,8 @@ def half_duplex(project: Project) -> None:
         try:
             hall.enter(STOPPABLE)
             itself = sum(bool(hall.listen(text, own, nothing, 0.0)) for text, own in said)
-            stops = {
-                level: sum(
-                    bool(hall.listen(text, level * own, spoken(STOP, "en-us+f3", 130), 0.4)) for text, own in said
-                )
-                for level in (0.3, 0.1)
-            }
+            stop, levels = spoken(STOP, "en-us+f3", 130), (0.3, 0.1)
+            stops = {x: sum(bool(hall.listen(text, x * own, stop, 0.4)) for text, own in said) for x in levels}
             answers = []
             for (text, own), (words, state) in zip(said, in_states(VISITOR), strict=False):
                 hall.enter(state)
@@ -249,10 +245,9 @@ def talk_beside(project: Project) -> None:
                     else:
                         aside.append(bool(found))
                         taken.append(any(meanings))
-                print(f"  {name:23} {_noise(level):6} talk heard {sum(aside):2} of {len(aside)}, ", end="")
-                print(
-                    f"taken for something {sum(taken):2}; a visitor understood {sum(meant)} of {len(meant)}", flush=True
-                )
+                talk = f"talk heard {sum(aside):2} of {len(aside)}, taken for something {sum(taken):2}"
+                right = f"a visitor understood {sum(meant)} of {len(meant)}"
+                print(f"  {name:23} {_noise(level):6} {talk}; {right}", flush=True)
         finally:
             hall.close()
 
