@@ -17,7 +17,7 @@ from lumen.modules.ears.bigrams import arpa
 from lumen.modules.ears.expected import expected, heard_names
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
-from lumen.modules.ears.sphinx import Sphinx
+from lumen.modules.ears.sphinx import MAX_MODELS, Sphinx
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 from tests.modules.conftest import Stand
@@ -243,6 +243,24 @@ def test_another_language_model_for_another_tour(sphinx: Sphinx, project: Projec
     sphinx.expect([["kucing"], ["anjing"]])
     assert sphinx.recognise(sound) == "kucing"
     sphinx.expect(expected(project, heard_names(project, None)))
+
+
+def test_the_language_models_used_last_are_kept(sphinx: Sphinx, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[str] = []
+    make = sphinx._make
+
+    def counted(name: str, sentences: Sequence[Sequence[str]]) -> None:
+        made.append(sentences[0][0])
+        make(name, sentences)
+
+    monkeypatch.setattr(sphinx, "_make", counted)
+    words = ["one", "two", "three", "four", "five"][: MAX_MODELS + 1]
+    for word in (*words[:-1], *words[:-1], words[-1], words[1], words[0]):
+        sphinx._prepare([[word], ["größe"], ["7"], []])
+    assert made == [*words, words[0]], "the oldest gave way"
+    assert sphinx._decoder.get_lm(sphinx._decoder.current_search()).prob(["one"]) > sphinx._english.prob(["one"])
+    sphinx._prepare([["7"], []])
+    assert sphinx._decoder.current_search() == sphinx._freely, "nothing that it could say is expected"
 
 
 def chances(model: str) -> tuple[dict[str, float], dict[str, float], dict[tuple[str, str], float]]:

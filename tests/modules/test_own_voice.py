@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumen.modules.ears import Ears
+from lumen.modules.ears import Ears, Recogniser
 from lumen.modules.ears.own_voice import ECHO, LONGEST, OwnVoice
 from lumen.modules.ears.voice_activity import VoiceActivity
 from lumen.modules.sound import Sound
@@ -37,9 +37,9 @@ class Writer:
 class Ear:
     """Ears at a time of one's own, and what they heard."""
 
-    def __init__(self, stand: Stand) -> None:
+    def __init__(self, stand: Stand, recogniser: Recogniser | None = None) -> None:
         self.stand, self.now = stand, 100.0
-        stand.add(Ears(stand.project, stand.bus, stand.told.append, Writer(), clock=lambda: self.now))
+        stand.add(Ears(stand.project, stand.bus, stand.told.append, recogniser or Writer(), clock=lambda: self.now))
         self.collector = stand.listen(HEARD)
 
     def send(self, at: float, key: str, body: Any) -> None:
@@ -100,9 +100,12 @@ def test_which_words_interrupt_is_written(stand: Make, ear: Ear) -> None:
     assert other.record(102.0, 1, 4) == ["dance"]
 
 
-def test_phrases_that_nobody_has_are_told(stand: Make, ear: Ear) -> None:
+def test_phrases_that_no_state_hears_are_told(stand: Make, ear: Ear) -> None:
     other = Ear(stand(with_options(ear.stand.project, "ears", interrupts=["stop", "stpo"])))
     assert other.stand.told == ["`interrupts` names phrases that no state hears: `stpo` (did you mean `stop`?)"]
+    assert ear.stand.project.machine.phrases["german"]
+    unheard = Ear(stand(with_options(ear.stand.project, "ears", interrupts=["german"])))
+    assert "no state hears: `german`" in unheard.stand.told[0]
     assert ear.stand.told == []
 
 

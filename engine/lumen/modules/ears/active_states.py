@@ -3,13 +3,13 @@
 from typing import Any
 
 LOST_AFTER = 4.0
-"""How long the brain may be silent before its states no longer count [s]."""
+"""The states of a brain that is silent for longer no longer count [s]."""
 
 
 class ActiveStates:
     """The active states of one robot's behaviour, from the routes `state` and `presence`.
 
-    A brain in the same process announces no presence, and is never lost.
+    A brain that has not announced itself, such as one on a bus within this process, is never lost.
     """
 
     def __init__(self, robot: str) -> None:

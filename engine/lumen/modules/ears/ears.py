@@ -34,10 +34,10 @@ class Ears(Module):
 
     Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard; so it is
     where `listens` is set and nobody means the robot. What is expected, and what interrupts, depends on the states that
-    are active when a sound comes. A sound has just ended when it comes. Whether they listen, and
-    why, goes out on the route `listening` as it changes. A recogniser of one's own may be handed in, and who finds
-    speech in sounds; else they are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises
-    ModuleError where the recogniser is not there.
+    are active when a sound comes. A sound has just ended when it comes. Whether they listen, and why, goes out on the
+    route `listening` as it changes. A recogniser of one's own may be handed in, and who finds speech in sounds; else
+    they are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises ModuleError where the recogniser
+    is not there.
     """
 
     name = EARS
@@ -99,12 +99,12 @@ class Ears(Module):
         super()._take(route, message)
 
     def _look_for_phrases(self) -> None:
-        """Report names in `interrupts` that no state hears: nobody could stop the robot by them."""
-        known = dict.fromkeys(one.name for one in heard_names(self.project, None))
+        """Report names in `interrupts` that no state hears: they interrupt nothing."""
+        known = dict.fromkeys(one.name for one in heard_names(self.project, None) if "." not in one.name)
         for name in self.settings.options.get("interrupts", ()):
             if name not in known:
-                hint = did_you_mean(name, known) or "list it in `hears` of a state"
-                self.tell(f"`interrupts` names phrases that no state hears: `{name}` ({hint})")
+                hint = did_you_mean(name, known)
+                self.tell(f"`interrupts` names phrases that no state hears: `{name}`{f' ({hint})' if hint else ''}")
 
     def _state(self, message: Message) -> None:
         self._own_voice.state(message.body, self.came)
@@ -130,7 +130,10 @@ class Ears(Module):
         self.well()
 
     def _heard(self, sound: Sound) -> Sequence[Hypothesis]:
-        """What others may have said in a sound that has just ended, none where nobody did."""
+        """Return what others may have said in a sound that has just ended; none if they said nothing.
+
+        Only the likeliest text interrupts the robot: what else its own words may have been often holds a phrase.
+        """
         began = self.came - sound.duration
         own = self._own_voice.during(began, self.came)
         deaf = [*((u.begin, u.end) for u in own), *self._addressing.closed(began, self.came)]
@@ -145,7 +148,7 @@ class Ears(Module):
         return [Hypothesis(phrase)] if phrase else []
 
     def _words(self, sound: Sound, own: Sequence[Utterance] = ()) -> Sequence[Hypothesis]:
-        """Return what is said in it, the likeliest first; with the robot's `own` voice its words are expected, too."""
+        """Return what may be said in a sound, the likeliest first; words of the robot's `own` voice are expected."""
         if self._activity:
             spans = self._activity.spans(sound)
             if not spans:

@@ -1,7 +1,7 @@
-"""What visitors are expected to say, by what the active states hear and what visitors say in the stories."""
+"""Sentences that visitors probably say: what the active states hear, and what visitors say in the stories."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import islice, pairwise
+from itertools import islice
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.parser import parse_expression
@@ -10,14 +10,16 @@ from lumen.interpreters.statechart.nesting import resolutions
 from lumen.interpreters.talk.finder import Finder
 from lumen.interpreters.talk.folding import APOSTROPHES, folded, words
 from lumen.interpreters.talk.hearing import phrases_in
-from lumen.interpreters.talk.patterns import Slot, forms
+from lumen.interpreters.talk.patterns import Slot, forms, slots_of
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS, Speech
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
 from lumen.language.stories import Speak
 
 MAX_SENTENCES = 1_000
-"""How many sentences of one phrase are looked at: its forms, with the entries of lists in their slots."""
+"""The bound on sentences of one phrase: its forms, with the entries of lists in their slots."""
+STORY_WEIGHT = 10
+"""A sentence of a story counts as much as so many forms: it is how people talk, and there are thousands of forms."""
 _NO_MEANINGS = frozenset((*WORD_LISTS, *TABLES))
 _ENTRY = "context."
 _STRAIGHT = dict.fromkeys(map(ord, APOSTROPHES), "'")
@@ -41,7 +43,7 @@ class HeardName(NamedTuple):
         return list(dict.fromkeys(_texts(tables)))
 
     def finder(self) -> Finder:
-        """What finds its phrases in a text, whether or not they are whole clauses."""
+        """Return a finder of its phrases, which need not be whole clauses."""
         machine, name = self
         lists = {key: [(phrases_in(entry), entry) for entry in entries] for key, entries in machine.lists.items()}
         return Finder(Speech(machine.phrases, machine.answers), {name: {"": self.phrases()}}, lists=lists)
@@ -61,17 +63,15 @@ def heard_names(project: Project, states: Collection[str] | None) -> list[HeardN
 
 
 def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = ()) -> list[list[str]]:
-    """Return sentences as words in small letters: forms of what is heard, and what visitors of stories say.
+    """Return sentences as words in small letters: forms of these names in any language, and what stories say.
 
-    `own` are texts that the robot itself says meanwhile.
+    `own` are texts that the robot itself says meanwhile. Sentences that are likelier than others are repeated.
     """
-    found: list[list[str]] = []
-    for one in heard:
-        for phrase in one.phrases():
-            found += _new_pairs(islice(_sentences(phrase, one.machine.lists), MAX_SENTENCES))
-    stories = [s.action.text for story in project.stories.values() for s in story.steps if isinstance(s.action, Speak)]
-    found += map(_spoken, (*stories, *own))
-    return [list(sentence) for sentence in dict.fromkeys(map(tuple, found)) if sentence]
+    phrases = ((phrase, one.machine.lists) for one in heard for phrase in one.phrases())
+    found = dict.fromkeys(tuple(words) for phrase in phrases for words in islice(_sentences(*phrase), MAX_SENTENCES))
+    steps = (step for story in project.stories.values() for step in story.steps)
+    said = dict.fromkeys(_spoken(step.action.text) for step in steps if isinstance(step.action, Speak))
+    return [list(words) for words in (*found, *(*said,) * STORY_WEIGHT, *map(_spoken, own)) if words]
 
 
 def _active(machine: MachineDefinition, names: Collection[str]) -> list[tuple[MachineDefinition, State]] | None:
@@ -100,10 +100,11 @@ def _names(state: State) -> Iterator[str]:
 
 
 def _sentences(phrase: str, lists: PhraseLists) -> Iterator[list[str]]:
-    """The forms of a phrase, words with their apostrophes; entries of lists in their slots, other slots left out."""
+    """The forms of a phrase, with the entries of lists in their slots and without what other slots catch."""
     written = {"".join(folded(word)): word for word in _spoken(phrase)}
+    entries = {slot: _entries(slot, lists) for slot in slots_of(phrase)}
     for form in forms(phrase):
-        parts = [_entries(p, lists) if isinstance(p, Slot) else [[written.get(p, p)]] for p in form.parts]
+        parts = [entries[p] if isinstance(p, Slot) else [[written.get(p, p)]] for p in form.parts]
         for i in range(max(map(len, parts))):
             yield [word for several in parts for word in several[i % len(several)]]
 
@@ -125,15 +126,5 @@ def _texts(value: Any) -> Iterator[str]:
                 yield from _texts(one)
 
 
-def _new_pairs(sentences: Iterable[list[str]]) -> Iterator[list[str]]:
-    """Those with a neighbourhood of two words that none before them has: language models learn no more from others."""
-    seen: set[tuple[str, str]] = set()
-    for sentence in sentences:
-        pairs = {*pairwise(["", *sentence, ""])}
-        if not pairs <= seen:
-            seen |= pairs
-            yield sentence
-
-
-def _spoken(text: str) -> list[str]:
-    return [word.lower() for word in words(text.translate(_STRAIGHT))]
+def _spoken(text: str) -> tuple[str, ...]:
+    return tuple(word.lower() for word in words(text.translate(_STRAIGHT)))
