@@ -73,6 +73,12 @@ def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
     missing = next((key for key in absent if error.message.startswith(repr(key))), absent[0])
     hint = describe(_property(schema, missing)) or f"write `{missing}:` here"
     message = f"{node(path)} needs the key `{missing}`"
+    if holder := next((k for k, v in error.instance.items() if isinstance(v, Mapping) and missing in v), ""):
+        message += f", which stands in its `{holder}`"
+        hint = (
+            f"take blanks away before `{missing}:` and what is below it, so that it begins in the column of `{holder}:`"
+        )
+        return Complaint(MISSING_KEY, (*path, holder, missing), message, hint, path, _spared(path), True, missing)
     return Complaint(MISSING_KEY, (*path, missing), message, hint, path, _spared(path), missing=missing)
 
 

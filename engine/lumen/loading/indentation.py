@@ -37,6 +37,8 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
     if among and indent(among[0]) < column and here[column] not in "{[":
         among = []  # it goes on with the item above
     if among and not _ITEM.match(here):
+        if _usual(lines, index):
+            yield from _moved(lines, index, [column + 2])
         hint = "write `- ` before it too, or delete the one above"
         meant = {index: f"{here[: indent(among[0])]}- {here[column:]}"}
         what = "a key" if _KEYED.match(here) else "something"
@@ -48,6 +50,12 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
             yield Slip(at + 1, column + 1, 1, AMONG_KEYS, DELETE_HYPHEN, meant)
     if _ITEM.match(here) and indent(above) == column and _KEYED.match(above):
         yield Slip(index + 1, column + 1, 1, AMONG_KEYS, DELETE_HYPHEN, {index: here[:column] + here[column + 2 :]})
+
+
+def _usual(lines: Sequence[str], index: int) -> bool:
+    """Whether the key in that line stands two blanks further in elsewhere, as it does in the other items of a list."""
+    key = f"  {lines[index].split(':')[0]}:"
+    return bool(_KEYED.match(lines[index])) and any(line.startswith(key) for line in lines)
 
 
 def too_deep(lines: Sequence[str], row: int) -> Iterator[Slip]:

@@ -1,16 +1,19 @@
-"""Rows of answers that are never given, because every state that looks them up asks for a phrase in them first."""
+"""Rows of answers that are never given: a state asks for a phrase in them first, or a row above has the same phrase."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, walk
+from lumen.interpreters.talk.patterns import Form, forms
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Answer, MachineDefinition, State
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.rules.examples import SHADOWED_PHRASE
 from lumen.rules.guards import covers, heard_call
 from lumen.rules.logic import tree
 from lumen.rules.speech import SHADOWED_ANSWER
-from lumen.rules.word_tables import is_taken, word_tables
+from lumen.rules.word_tables import is_taken, word_tables, written_phrases
 
 
 class Asking(NamedTuple):
@@ -28,6 +31,9 @@ def check(draft: ProjectDraft) -> None:
         for name, rows in t.answers.items()
         for i, row in enumerate(rows)
     }
+    for tables in word_tables(draft):
+        for name, rows in tables.answers.items():
+            _repeated(tables.report, name, len(rows))
     for machine in draft.behaviors.values():
         askings = list(_askings(machine))
         for table in dict.fromkeys(asking.table for asking in askings):
@@ -35,6 +41,24 @@ def check(draft: ProjectDraft) -> None:
             for row in machine.answers.get(table, ()):
                 if id(row) in owners:
                     _taken(machine, row, several, *owners[id(row)])
+
+
+def _repeated(report: DocumentReport, table: str, rows: int) -> None:
+    """Report phrases of a row that a row above it has, too: of equal ones the upper is taken.
+
+    A row of which each phrase is taken is reported as one that is never answered.
+    """
+    first: dict[tuple[str, Form], tuple[int, NodePath]] = {}
+    for i in range(rows):
+        phrases = list(written_phrases(report, ("answers", table, i, "phrases")))
+        found = [[first.setdefault((p.language, form), (i, p.path)) for form in forms(p.text)] for p in phrases]
+        repeated = [(p, above) for p, above in zip(phrases, found, strict=True) if all(row < i for row, _ in above)]
+        for phrase, above in repeated if len(repeated) < len(phrases) else ():
+            row, path = above[0]
+            message = f"`{phrase.text}` gives the answer in row {row + 1} of `{table}`, which has this phrase, too"
+            report(
+                SHADOWED_PHRASE, phrase.path, message, "leave it to one of the two", related=[(path, "the same phrase")]
+            )
 
 
 def _askings(machine: MachineDefinition) -> Iterator[Asking]:

@@ -1,4 +1,4 @@
-"""Texts that YAML reads otherwise than they were meant: cut off by a comment, or torn at a comma."""
+"""Texts that YAML reads otherwise than they were meant: cut off by a comment, torn at a comma, or a map by a colon."""
 
 import re
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import value_at
 
 CUT_TEXT = Code("cut-text", "speech", WARNING, "a text is cut off by ` #`, which begins a comment")
-TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is torn into several by a comma")
+TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is torn by a comma or a colon")
 
 _CUT = re.compile(r" +#(?=[^\s#!:-])")
 _HAS_CUT = re.compile(r"[^\s#] +#[^\s#!:-]")
@@ -28,6 +28,7 @@ def check(draft: ProjectDraft) -> None:
 def _texts(report: DocumentReport) -> None:
     _cut(report)
     _torn(report)
+    _mapped(report)
 
 
 def _cut(report: DocumentReport) -> None:
@@ -68,6 +69,20 @@ def _torn(report: DocumentReport) -> None:
                     shown = whole if len(whole) <= 60 else f"{whole[:59]}…"
                     report(TORN_TEXT, (*path, i), message, f'put quotes around a text with a comma in it: "{shown}"')
                     break
+
+
+def _mapped(report: DocumentReport) -> None:
+    """Texts in a list of answers that a colon makes maps; a map with brackets is meant to be one."""
+    lines = report.document.text.split("\n")
+    for path in report.document.spans:
+        if "answers" not in path or "value" not in path[:-1] or not isinstance(path[-1], int):
+            continue
+        value, place = value_at(report, path), report.document.place(path)
+        if isinstance(value, dict) and len(value) == 1 and lines[place.line - 1][place.column - 1] != "{":
+            ((key, rest),) = value.items()
+            if isinstance(rest, str) and " " in f"{key}{rest}":
+                message = f"this is no text but a map with the key `{key}`, since a colon ends a key"
+                report(TORN_TEXT, path, message, f'put quotes around a text with a colon in it: "{key}: {rest}"')
 
 
 def _parts(texts: list[str]) -> Iterator[int]:
