@@ -118,7 +118,7 @@ def test_values_that_change_their_kind_are_of_any() -> None:
         ("<state><onentry>\n<send event='e' target='http://x'/></onentry></state>",
          ["3: `<send>` to `http://x`"]),
         ("<state>\n<transition/></state>", ["3: a transition without event, condition and target runs for ever"]),
-        ("<state>\n<custom xmlns='urn:x'/></state>", ["3: `<custom>` has no counterpart"]),
+        ("<state>\n<custom xmlns='urn:x'/></state>", ["3: `<custom>` of the namespace `urn:x` means nothing here"]),
     ],
 )  # fmt: skip
 def test_nothing_is_dropped_in_silence(body: str, said: list[str]) -> None:

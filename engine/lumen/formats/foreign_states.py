@@ -7,6 +7,9 @@ from typing import Any
 
 from lumen.formats.unused_names import unused_name
 
+MAX_RENAMED = 1000
+"""Ids of one file that become the same text; more take longer to find a number for."""
+
 MAX_STATE_LEVELS = 40
 """Of nested states; a YAML file has two levels for each."""
 
@@ -68,6 +71,12 @@ class ForeignState:
 def clean_id(text: str) -> str:
     """An id that `#id` can hold."""
     return _UNFIT_ID.sub("_", text)
+
+
+def free_id(text: str, ids: Container[str], taken: Container[str]) -> str:
+    """`clean_id` of the text, with a number if that is the id of another state, or one that was given already."""
+    wanted = clean_id(text)
+    return text if text == wanted else unused_name(wanted, lambda id: id in ids or id in taken, MAX_RENAMED)
 
 
 def free_key(parent: ForeignState, wanted: str, id: str, ids: Container[str]) -> str:

@@ -1,5 +1,6 @@
 """XML as a tree of elements that know their line; nothing of a hostile file is expanded, fetched or believed."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
@@ -14,6 +15,8 @@ MAX_XML_ELEMENTS = 50_000
 """Elements in a file, where a format sets no other bound."""
 
 _XML = "http://www.w3.org/XML/1998/namespace"
+_TAG = re.compile(rb"<[^\s/>]+")
+_ATTRIBUTE = re.compile(rb"""\s+([^\s=>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 
 @dataclass(slots=True)
@@ -28,6 +31,9 @@ class XmlElement:
     place: Place
     children: list["XmlElement"] = field(default_factory=list)
     parts: list[str] = field(default_factory=list)
+    source: bytes = field(default=b"", repr=False)
+    """The file, in UTF-8, from which `start` is the place of the tag; empty if it is not known."""
+    start: int = 0
 
     @property
     def text(self) -> str:
@@ -36,6 +42,21 @@ class XmlElement:
     def get(self, name: str, otherwise: str = "") -> str:
         """The attribute without blanks around it."""
         return self.attributes.get(name, otherwise).strip()
+
+    def attribute_place(self, name: str) -> Place:
+        """The place of an attribute's name; that of the element if the file is in another encoding."""
+        tag = _TAG.match(self.source, self.start)
+        local = name.rpartition("}")[2].encode()
+        at = tag.end() if tag else len(self.source)
+        while match := _ATTRIBUTE.match(self.source, at):
+            if match[1].rpartition(b":")[2] == local and (b":" in match[1]) == name.startswith("{"):
+                before = self.source[self.start : match.start(1)].decode("utf-8", "replace")
+                line, end = self.place.line + before.count("\n"), len(match[1].decode("utf-8", "replace"))
+                first = 0 if "\n" in before else self.place.column - 1
+                column = first + len(before.rpartition("\n")[2]) + 1
+                return Place(self.place.file, line, column, line, column + end)
+            at = match.end()
+        return self.place
 
     def of(self, *tags: str) -> Iterator["XmlElement"]:
         """The children with one of these tags."""
@@ -66,9 +87,11 @@ class _XmlReader:
         self.open: list[XmlElement] = []
         self.root: XmlElement | None = None
         self.count = 0
+        self.source = b""
 
     def read(self, content: bytes) -> XmlElement:
         parser = self.parser
+        self.source = content
         parser.buffer_text = True
         parser.StartElementHandler = self.start
         parser.EndElementHandler = self.end
@@ -107,7 +130,8 @@ class _XmlReader:
             )
             raise broken(self.here, "too-large", f"the file is too large to be read: it has {what}")
         known = {self.local(key): value for key, value in attributes.items() if not key.startswith(_XML)}
-        element = XmlElement(self.local(name), known, self.here)
+        here, start = self.here, self.parser.CurrentByteIndex
+        element = XmlElement(self.local(name), known, here, source=self.source, start=start)
         if self.open:
             self.open[-1].children.append(element)
         else:

@@ -38,12 +38,14 @@ class ScriptNames:
     """What the names in a document stand for.
 
     `context` maps the data model's names to context keys, `kinds` those keys to the kinds they keep (absent: any);
-    `states` are the ids for `In()`, and `title` is what `_name` is.
+    `states` maps the ids for `In()` to ours, `events` the names of events that are others here, and `title` is what
+    `_name` is.
     """
 
     context: Mapping[str, str] = field(default_factory=dict)
     kinds: Mapping[str, str] = field(default_factory=dict)
-    states: frozenset[str] = frozenset()
+    states: Mapping[str, str] = field(default_factory=dict)
+    events: Mapping[str, str] = field(default_factory=dict)
     title: str = ""
 
 
@@ -191,7 +193,7 @@ class ScriptTranslator:
     def _binary(self, node: Binary) -> ExpressionNode:
         sign = node.sign
         if sign in ("==", "===", "!=", "!=="):
-            return equality(self, node)
+            return equality(self, self._renamed(node))
         left, right = self.value(node.left), self.value(node.right)
         if sign in ("<", "<=", ">", ">="):
             self._same_kind(sign, left, right, (NUMBER, TEXT))
@@ -205,6 +207,16 @@ class ScriptTranslator:
             left, right = _floats(left, right)
         return Binary(sign, left, right)
 
+    def _renamed(self, node: Binary) -> Binary:
+        """A comparison with the name of an event, by our name for it."""
+        name = FieldAccess(EVENT, "name")
+        match node.left, node.right:
+            case left, Literal(value=str() as event) if left == name:
+                return Binary(node.sign, left, Literal(self.names.events.get(event, event)))
+            case Literal(value=str() as event), right if right == name:
+                return Binary(node.sign, Literal(self.names.events.get(event, event)), right)
+        return node
+
     def _same_kind(self, sign: str, left: ExpressionNode, right: ExpressionNode, allowed: tuple[str, ...]) -> None:
         kinds = {self.kind(left), self.kind(right)} - {UNKNOWN_KIND}
         if not kinds <= set(allowed) or len(kinds) > 1:
@@ -212,12 +224,7 @@ class ScriptTranslator:
 
     def _call(self, node: FunctionCall) -> ExpressionNode:
         if node.function == "In":
-            (state,) = node.arguments if len(node.arguments) == 1 else (None,)
-            if isinstance(state, Literal) and state.value not in self.names.states:
-                return Literal(False)
-            if state is None:
-                raise ScriptError("`In` takes the id of a state")
-            return FunctionCall("In", (self.value(state),))
+            return self._in(node)
         if node.function.startswith("."):
             return method(self, node)
         if node.function not in LUMEN_FUNCTIONS:
@@ -226,6 +233,20 @@ class ScriptTranslator:
         if node.function in SIGN_FUNCTIONS and len(arguments) == 2:
             return Binary(SIGN_FUNCTIONS[node.function], *arguments)
         return FunctionCall(node.function, arguments)
+
+    def _in(self, node: FunctionCall) -> ExpressionNode:
+        """`In('id')`; and `In(id)`, as the data model `null` writes it (SCXML B.1.2)."""
+        states = self.names.states
+        match node.arguments:
+            case (Literal(value=str() as state),):
+                return FunctionCall("In", (Literal(states[state]),)) if state in states else Literal(False)
+            case (Literal(),):
+                return Literal(False)
+            case (Identifier(name=state),) if state in states and state not in self.names.context:
+                return FunctionCall("In", (Literal(states[state]),))
+            case (state,):
+                return FunctionCall("In", (self.value(state),))
+        raise ScriptError("`In` takes the id of a state")
 
 
 def _floats(left: ExpressionNode, right: ExpressionNode) -> tuple[ExpressionNode, ExpressionNode]:

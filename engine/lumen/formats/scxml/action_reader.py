@@ -68,12 +68,10 @@ class ScxmlActionReader:
                 yield from self._if(element)
             case "script":
                 yield from self._script(element)
-            case "foreach":
-                raise LeftOutError("`<foreach>`: there are no loops here", "say it once for each element")
             case tag if tag == f"{{{LUMEN_NAMESPACE}}}action":
                 yield own(element)
             case tag:
-                raise LeftOutError(f"`<{tag.rpartition('}')[2]}>` has no counterpart")
+                raise AssertionError(f"{tag} is in no table and was removed before")
 
     def _text(self, element: XmlElement) -> str:
         try:
@@ -86,7 +84,7 @@ class ScxmlActionReader:
     def _named(self, element: XmlElement) -> str:
         if not (name := element.get("event")):
             raise LeftOutError(f"`<{element.tag}>` names no event", 'write event="…"')
-        return name
+        return self.context.names.events.get(name, name)
 
     def _assign(self, element: XmlElement) -> ActionData:
         location = element.get("location").strip()
@@ -131,6 +129,7 @@ class ScxmlActionReader:
 
     def _send(self, element: XmlElement) -> ActionData:
         event = self._constant(element, "event", "eventexpr")
+        event = self.context.names.events.get(event, event)
         target = self._constant(element, "target", "targetexpr", optional=True)
         processor = self._constant(element, "type", "typeexpr", optional=True)
         delay = self._delay(element)

@@ -36,23 +36,26 @@ class ScxmlDataModel:
         self.wide: dict[str, dict[str, Any]] = {}
         self.keys: dict[str, str] = {}
         self.taken: set[str] = set()
-        elements = list(_data(outline.top, outline.scxml))
-        for element in elements:
-            self._declare(element)
-        states = frozenset((*outline.by_id, outline.title))
+        elements = [element for element in _data(outline.top, outline.scxml) if self._declare(element)]
+        states = {outline.title: outline.title} | {id: node.name or outline.title for id, node in outline.by_id.items()}
         self.kinds: dict[str, str] = {}
-        self.names = ScriptNames(self.keys, self.kinds, states, outline.title)
+        self.names = ScriptNames(self.keys, self.kinds, states, outline.events, outline.title)
         for element in elements:
             self._value(element)
         self._late_binding(outline, elements)
         self._widen(outline)
 
-    def _declare(self, element: XmlElement) -> None:
+    def _declare(self, element: XmlElement) -> bool:
+        """Give its id a key; False, and reported, if an earlier one has that id."""
         id = element.get("id")
-        if id not in self.keys:
-            wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
-            self.keys[id] = unused_name(wanted, self.taken.__contains__, len(self.taken))
-            self.taken.add(self.keys[id])
+        if id in self.keys:
+            hint = "give each an id of its own: all of a chart see all data"
+            self.findings.lost(element.attribute_place("id"), f"a second `<data>` has the id `{id}`", hint)
+            return False
+        wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
+        self.keys[id] = unused_name(wanted, self.taken.__contains__, len(self.taken))
+        self.taken.add(self.keys[id])
+        return True
 
     def _value(self, element: XmlElement) -> None:
         key = self.keys[element.get("id")]
@@ -64,7 +67,8 @@ class ScxmlDataModel:
     def _first(self, element: XmlElement) -> Any:
         id = element.get("id")
         if "src" in element.attributes:
-            self.findings.lost(element.place, f"the first value of `{id}` lies in another file", "write it here")
+            hint = f"write it here in place of `{element.get('src')}`"
+            self.findings.lost(element.place, f"the first value of `{id}` lies in another file", hint)
             return None
         if "expr" in element.attributes:
             return self._expression(element, element.get("expr"))
@@ -87,7 +91,8 @@ class ScxmlDataModel:
     def _late_binding(self, outline: ScxmlStateTree, elements: list[XmlElement]) -> None:
         if outline.scxml.get("binding") != "late":
             return
-        for element in elements[len(list(_top_data(outline.scxml))) :]:
+        first = {id(element) for element in _top_data(outline.scxml)}
+        for element in (each for each in elements if id(each) not in first):
             hint = "all values are there from the beginning here"
             self.findings.lost(element.place, f'`binding="late"` of `{element.get("id")}`', hint)
 

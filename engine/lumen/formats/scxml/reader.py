@@ -4,19 +4,19 @@ from typing import Any
 
 from lumen.formats.behavior_data import ActionData, single
 from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.durations import milliseconds
 from lumen.formats.ecmascript import ScriptError
 from lumen.formats.foreign_states import ForeignState, passing_key
 from lumen.formats.scxml.action_reader import LeftOutError, ScxmlActionReader, own
 from lumen.formats.scxml.data_model import ScxmlDataModel
 from lumen.formats.scxml.invoke_reader import invocation
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_NAMESPACE
-from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree, regular
+from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
 from lumen.formats.scxml.transition_reader import ScxmlTransitionReader
+from lumen.formats.scxml.unread import UnreadParts
 from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import RESUME_WORDS
-
-_KNOWN = {*STATES, "transition", "onentry", "onexit", "initial", "datamodel", "donedata", "invoke", "script"}
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -40,6 +40,7 @@ class _ScxmlReader:
     def __init__(self, scxml: XmlElement, title: str) -> None:
         self.scxml = scxml
         self.findings = ConversionFindings()
+        UnreadParts(scxml, self.findings)
         self.outline = ScxmlStateTree(scxml, title, self.findings)
         self.context = ScxmlDataModel(self.outline, self.findings)
         self.contents = ScxmlActionReader(self.context, self.findings)
@@ -73,7 +74,6 @@ class _ScxmlReader:
 
     def _state(self, node: ForeignState) -> dict[str, Any]:
         data: dict[str, Any] = {}
-        self._foreign(node)
         if node.parent and node.id and (node.id != node.path or node.id == self.outline.title):
             data["id"] = node.id
         if node.source.tag == "history":
@@ -87,22 +87,19 @@ class _ScxmlReader:
         data.update(self._behaviour(node))
         if regular(node):
             data["states"] = {child.key: self._state(child) for child in node.children} | self._passed(node)
-        elif node.children:
+        elif node.source.get("initial"):
+            message = f"`initial` of `{node.name}`, which has no states within"
+            self.findings.lost(node.source.attribute_place("initial"), message, "delete it")
+        if node.children and not regular(node):
             self.findings.lost(node.source.place, f"`{node.name}` has a history and no other states", "delete it")
         return data
-
-    def _foreign(self, node: ForeignState) -> None:
-        for element in node.source.children:
-            if element.tag == "script":
-                self.findings.lost(element.place, "`<script>`: ECMAScript is not run here")
-            elif element.tag not in _KNOWN and not element.tag.startswith(f"{{{LUMEN_NAMESPACE}}}"):
-                self.findings.lost(element.place, f"`<{element.tag.rpartition('}')[2]}>` has no counterpart")
 
     def _history(self, node: ForeignState) -> dict[str, Any]:
         data: dict[str, Any] = {"type": "history"}
         if node.source.get("type") == "deep":
             data["history"] = "deep"
-        for transition in node.source.of("transition"):
+        if transition := next(node.source.of("transition"), None):
+            self._plain_way(transition)
             data.update(self._default(node, transition, "target"))
         return data if "target" in data else data | self._remembered(node)
 
@@ -111,6 +108,13 @@ class _ScxmlReader:
         home = node.parent
         found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
         return {"target": self.transitions.named(node, found)} if found else {}
+
+    def _plain_way(self, transition: XmlElement) -> None:
+        """Report what a way into a state can't have."""
+        for name in ("event", "cond", "type"):
+            if name in transition.attributes:
+                message = f"`{name}`: the way into a state is taken without event or condition"
+                self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
         """`initial` or a history's `target`, with the actions on the way."""
@@ -147,6 +151,7 @@ class _ScxmlReader:
     def _initial(self, node: ForeignState) -> Any:
         for element in node.source.of("initial"):
             for transition in element.of("transition"):
+                self._plain_way(transition)
                 found = self._default(node, transition, "initial")
                 if found:
                     return found["initial"]
@@ -165,19 +170,28 @@ class _ScxmlReader:
             if actions := [action for block in blocks for action in self.contents.block(block.children)]:
                 data[key] = actions
             self._several(blocks)
-        if do := self._own(node.source, "do", []):
-            data["do"] = do
+        for key in ("do", "buttons"):
+            if own_data := self._own(node.source, key, []):
+                data[key] = own_data
         if invokes := self._invokes(node):
             data["invoke"] = single(invokes)
         data.update(self.transitions.of(node, afters["events"]))
         if node.source.tag == "final" and (output := self._output(node)) is not None:
             data["output"] = output
+        return data | self._ours(node)
+
+    def _ours(self, node: ForeignState) -> dict[str, Any]:
+        """What `<lumen:state>` holds: only Lumen writes it."""
+        data: dict[str, Any] = {}
         ours = self._own(node.source, "state", {})
-        reload = ours.get("onReload")
-        if isinstance(reload, str) and (home := self.outline.by_id.get(reload)):
-            data["onReload"] = node.calls(home, self.outline.title)
-        if ours.get("resume") in RESUME_WORDS:
-            data["resume"] = ours["resume"]
+        for key, value in ours.items() if isinstance(ours, dict) else (("", ours),):
+            if key == "onReload" and isinstance(value, str) and (home := self.outline.by_id.get(value)):
+                data[key] = node.calls(home, self.outline.title)
+            elif key == "resume" and value in RESUME_WORDS:
+                data[key] = value
+            else:
+                place = next(node.source.of(f"{{{LUMEN_NAMESPACE}}}state")).place
+                self.findings.lost(place, f"`{key}: {value}` of `<lumen:state>` has no counterpart")
         return data
 
     def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:
@@ -192,7 +206,10 @@ class _ScxmlReader:
                 self.findings.lost(element.place, f"`<invoke>`: {error}", hint)
                 continue
             message = f"`<invoke>` of `{element.get('src')}` becomes the behaviour `{rows[-1]['behavior']}`"
-            self.findings.changed(element.place, message, "import that file too")
+            hint = "import that file too"
+            if element.get("autoforward") != "true":
+                hint += '; it hears all events from outside, as with `autoforward="true"`'
+            self.findings.changed(element.place, message, hint)
         return rows
 
     def _several(self, blocks: list[XmlElement]) -> None:
@@ -211,7 +228,9 @@ class _ScxmlReader:
                 continue
             text = send.get("id").removeprefix("after.").removesuffix(f".{name}")
             cancels = [b for b in node.source.of("onexit") if [c.get("sendid") for c in b.children] == [send.get("id")]]
-            if f"after.{text}.{name}" == send.get("event") == send.get("id") and cancels:
+            whole = set(send.attributes) == {"event", "id", "delay"} and not send.children
+            whole = whole and milliseconds(send.get("delay")) == milliseconds(text)
+            if f"after.{text}.{name}" == send.get("event") == send.get("id") and cancels and whole:
                 found["onentry"].append(block)
                 found["onexit"] += cancels
                 found["events"][send.get("event")] = text

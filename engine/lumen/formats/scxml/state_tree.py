@@ -1,7 +1,7 @@
 """The states of an SCXML document before anything in them is read: their keys and paths in our tree."""
 
 from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_key
+from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
 from lumen.formats.xml_elements import XmlElement
 
@@ -27,10 +27,15 @@ class ScxmlStateTree:
         name = scxml.get("name") if self.top is scxml else self.top.get("id")
         self.title = clean_id(name) or title
         self.by_id: dict[str, ForeignState] = {}
+        self.given: set[str] = set()
         self.root = ForeignState(self.top, None, "", "", "")
         if self.top is not scxml and self.title:
             self.by_id[self.title] = self.root
         self._fill(self.root, 1)
+        self.events = {
+            f"done.state.{id}": f"done.state.{node.name}" for id, node in self.by_id.items() if id != node.name != ""
+        }
+        """The ends of states whose ids are others here."""
 
     def _top(self) -> XmlElement:
         """The document itself, or the one state that Lumen wrapped its root in."""
@@ -42,7 +47,7 @@ class ScxmlStateTree:
 
     def _fill(self, parent: ForeignState, level: int) -> None:
         for element in parent.source.children:
-            if element.tag not in STATES or not self._fits(element, parent, level):
+            if element.tag not in STATES or not self._fits(element, level):
                 continue
             node = self._node(element, parent)
             parent.add(node)
@@ -50,21 +55,24 @@ class ScxmlStateTree:
                 self.by_id[element.get("id")] = node
             self._fill(node, level + 1)
 
-    def _fits(self, element: XmlElement, parent: ForeignState, level: int) -> bool:
-        id, place, outer = element.get("id"), element.place, parent.source.tag
+    def _fits(self, element: XmlElement, level: int) -> bool:
+        id, place = element.get("id"), element.place
         message = hint = ""
         if level > MAX_STATE_LEVELS:
             message, hint = f"`{id or element.tag}` lies more than {MAX_STATE_LEVELS} levels deep", "use fewer levels"
         elif id in self.by_id:
             message, hint = f"a second state has the id `{id}`", "give each state an id of its own"
-        elif outer in ("final", "history"):
-            message = f"a state can't lie in a `<{outer}>`"
         if message:
             self.findings.lost(place, message, hint)
         return not message
 
     def _node(self, element: XmlElement, parent: ForeignState) -> ForeignState:
-        id = clean_id(element.get("id"))
+        written = element.get("id")
+        id = free_id(written, self.ids, self.given)
+        self.given.add(id)
+        if id != written:
+            message = f"the state `{written}` is called `{id}` here, wherever the chart names it"
+            self.findings.changed(element.place, message, "an id has no blanks, `#` and `*`")
         stem = element.get(f"{{{LUMEN_NAMESPACE}}}key") or (id.removeprefix(f"{parent.path}.") if parent.path else id)
         key = free_key(parent, stem or element.tag, id, self.ids)
         return ForeignState(element, parent, key, id, parent.below(key))

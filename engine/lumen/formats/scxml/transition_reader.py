@@ -74,6 +74,7 @@ class ScxmlTransitionReader:
 
     def _descriptors(self, element: XmlElement) -> list[str]:
         found = [normal(word) for word in element.get("event").split()]
+        found = [self.outline.events.get(word, word) for word in found]
         for word in found:
             if not _DESCRIPTOR.fullmatch(word):
                 self.findings.lost(element.place, f"`{word}` is no event", "write names with dots between")

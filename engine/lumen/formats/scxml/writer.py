@@ -48,7 +48,7 @@ class _ScxmlWriter:
         self.orders = ScxmlActionWriter(self.vocabulary, report)
         root = machine.root
         self.wrapped = root.kind is StateKind.PARALLEL or any(
-            (root.transitions, root.entry, root.exit, root.do, root.invoke)
+            (root.transitions, root.entry, root.exit, root.do, root.invoke, root.buttons, root.on_reload, root.resume)
         )
 
     def tag(self) -> XmlTag:

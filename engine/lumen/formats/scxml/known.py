@@ -1,0 +1,175 @@
+"""What the importer knows of SCXML (W3C's recommendation of 2015, and the older forms that files still have)."""
+
+from collections.abc import Mapping
+
+from lumen.formats.known import FormatTable, Known
+from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
+
+_FINAL = "nothing follows a final state here"
+_ENTERED = "a parallel state enters all of its states"
+_PROCESSOR = "write `type`"
+_DEFAULT = "the way into a state is taken without event or condition"
+
+ATTRIBUTES: FormatTable = {
+    "scxml": Known(
+        frozenset(("initial", "name", "datamodel", "binding")),
+        {"initialstate": "write `initial`", "profile": "write `datamodel`"},
+        {"version": "there is one version", "exmode": "says how strictly another interpreter reads the file"},
+    ),
+    "state": Known(
+        frozenset(("id", "initial", "lumen:root", "lumen:key")),
+        {"final": "write `<final>`", "src": "states of other files are not read", "task": "all states are alike"},
+    ),
+    "parallel": Known(frozenset(("id", "lumen:root", "lumen:key")), {"initial": _ENTERED, "src": "it is not read"}),
+    "final": Known(frozenset(("id", "lumen:key", "lumen:end"))),
+    "history": Known(frozenset(("id", "type", "lumen:key"))),
+    "initial": Known(meaningless={"id": "nothing can name it"}),
+    "transition": Known(
+        frozenset(("event", "cond", "target", "type", "lumen:hears", "lumen:end")),
+        {"guard": "write `cond`", "condition": "write `cond`", "next": "write `target`", "anchor": "write a history"},
+        {"id": "nothing can name it"},
+    ),
+    "onentry": Known(),
+    "onexit": Known(),
+    "datamodel": Known(lost={"src": "write the data here", "schema": "no schema is checked"}),
+    "data": Known(frozenset(("id", "src", "expr")), {"name": "write `id`"}),
+    "donedata": Known(),
+    "param": Known(frozenset(("name", "expr", "location"))),
+    "content": Known(frozenset(("expr",))),
+    "invoke": Known(
+        frozenset(("type", "typeexpr", "src", "srcexpr", "id", "idlocation", "namelist", "autoforward")),
+        {"targettype": _PROCESSOR},
+    ),
+    "finalize": Known(),
+    "script": Known(frozenset(("src",))),
+    "raise": Known(frozenset(("event",))),
+    "if": Known(frozenset(("cond",))),
+    "elseif": Known(frozenset(("cond",))),
+    "else": Known(),
+    "log": Known(frozenset(("label", "expr")), meaningless={"level": "the log has one level"}),
+    "assign": Known(
+        frozenset(("location", "expr")),
+        {"name": "write `location`", "type": "XML is not assigned", "attr": "XML is not assigned"},
+    ),
+    "send": Known(
+        frozenset(
+            ("event", "eventexpr", "target", "targetexpr", "type", "typeexpr", "id", "idlocation", "delay", "delayexpr",
+             "namelist")
+        ),
+        {"sendid": "write `id`", "targettype": _PROCESSOR, "hints": "no processor gets hints"},
+    ),
+    "cancel": Known(frozenset(("sendid", "sendidexpr"))),
+    "lumen:machine": Known(),
+    "lumen:do": Known(),
+    "lumen:buttons": Known(),
+    "lumen:state": Known(),
+    "lumen:action": Known(),
+}  # fmt: skip
+"""The attributes that each element may have."""
+
+_ACTION_NAMES = frozenset(("raise", "send", "cancel", "log", "assign", "if", "script", "lumen:action"))
+_OTHER_ACTIONS = {
+    "foreach": "there are no loops here",
+    "var": "declare it with `<data>`, and set it with `<assign>`",
+    "event": "write `<raise>`",
+    "validate": "no schema is checked",
+}
+_ACTIONS = Known(_ACTION_NAMES, _OTHER_ACTIONS)
+_SCRIPT = {"script": "ECMAScript is not run here"}
+_WITHIN_STATE = frozenset(
+    ("state", "parallel", "history", "transition", "onentry", "onexit", "datamodel", "invoke", "lumen:do",
+     "lumen:buttons", "lumen:state")
+)  # fmt: skip
+_PARAMETERS = frozenset(("param", "content"))
+
+ELEMENTS: FormatTable = {
+    "scxml": Known(
+        frozenset(("state", "parallel", "final", "history", "initial", "transition", "onentry", "onexit", "datamodel",
+                   "invoke", "lumen:machine", "lumen:do", "lumen:buttons", "lumen:state")),
+        _SCRIPT,
+    ),
+    "state": Known(_WITHIN_STATE | {"final", "initial"}, _SCRIPT | {"anchor": "write a history"}),
+    "parallel": Known(_WITHIN_STATE | {"final"}, _SCRIPT | {"initial": _ENTERED, "donedata": _FINAL}),
+    "final": Known(
+        frozenset(("onentry", "onexit", "donedata", "lumen:state")),
+        dict.fromkeys(("state", "parallel", "final", "history"), "a state can't lie in a `<final>`")
+        | {"transition": _FINAL, "invoke": _FINAL, "datamodel": "write it in `<scxml>`"},
+    ),
+    "history": Known(
+        frozenset(("transition",)),
+        dict.fromkeys(("state", "parallel", "final", "history"), "a state can't lie in a `<history>`"),
+    ),
+    "initial": Known(frozenset(("transition",))),
+    "transition": Known(_ACTION_NAMES, _OTHER_ACTIONS | {"target": "write `target=` in the `<transition>`"}),
+    "onentry": _ACTIONS,
+    "onexit": _ACTIONS,
+    "datamodel": Known(frozenset(("data",))),
+    "donedata": Known(_PARAMETERS),
+    "invoke": Known(_PARAMETERS | {"finalize"}),
+    "finalize": Known(_ACTION_NAMES),
+    "if": Known(_ACTION_NAMES | {"elseif", "else"}, _OTHER_ACTIONS),
+    "send": Known(_PARAMETERS),
+}  # fmt: skip
+"""The elements that each element may hold; those that are not listed hold none, or any XML."""
+
+OPEN = frozenset(("data", "assign", "content"))
+"""Elements that may hold any XML, which is no part of the chart."""
+
+ACTION_HOLDERS = frozenset(tag for tag, known in ELEMENTS.items() if "raise" in known.read)
+"""Elements whose children are executable content."""
+
+MEANINGLESS_ELEMENTS = {
+    "editorinfo": "how Qt Creator draws the chart",
+    "layout": "how an editor draws the chart", "geometry": "how an editor draws the chart",
+    "graphics": "how an editor draws the chart", "position": "how an editor draws the chart",
+    "metadata": "notes of an editor", "documentation": "notes of an editor", "description": "notes of an editor",
+}  # fmt: skip
+"""Elements of other namespaces that are no actions, wherever they are."""
+
+VALUES: Mapping[tuple[str, str], tuple[str, ...]] = {
+    ("scxml", "binding"): ("early", "late"),
+    ("history", "type"): ("shallow", "deep"),
+    ("transition", "type"): ("external", "internal"),
+    ("invoke", "autoforward"): ("false", "true"),
+    ("state", "lumen:root"): ("true",),
+    ("parallel", "lumen:root"): ("true",),
+    ("final", "lumen:end"): ("true",),
+    ("transition", "lumen:end"): ("true",),
+}
+"""The values of attributes that have only these."""
+
+SINGLE = frozenset(
+    (("state", "initial"), ("initial", "transition"), ("history", "transition"), ("final", "donedata"),
+     ("donedata", "content"), ("send", "content"), ("invoke", "content"))
+)  # fmt: skip
+"""Elements of which another holds at most one, as it does of each `lumen:` element."""
+
+TEXT = "text"
+ALTERNATIVES: Mapping[str, tuple[tuple[str, ...], ...]] = {
+    "state": (("initial", "<initial>"),),
+    "data": (("src", "expr", TEXT),),
+    "assign": (("expr", TEXT),),
+    "script": (("src", TEXT),),
+    "content": (("expr", TEXT),),
+    "param": (("expr", "location"),),
+    "donedata": (("<param>", "<content>"),),
+    "send": (
+        ("event", "eventexpr"), ("target", "targetexpr"), ("type", "typeexpr"), ("id", "idlocation"),
+        ("delay", "delayexpr"), ("namelist", "<content>"), ("<param>", "<content>"),
+    ),
+    "cancel": (("sendid", "sendidexpr"),),
+    "invoke": (("type", "typeexpr"), ("src", "srcexpr", "<content>"), ("id", "idlocation")),
+}  # fmt: skip
+"""Of these an element has one, as the recommendation says."""
+
+REQUIRED: Mapping[str, str] = {"data": "id", "param": "name"}
+
+TABLE: FormatTable = {
+    **{f"attributes of `<{tag}>`": known for tag, known in ATTRIBUTES.items()},
+    **{f"elements in `<{tag}>`": known for tag, known in ELEMENTS.items()},
+}
+
+
+def plain(name: str) -> str:
+    """`lumen:do` for our own names; those of other namespaces keep theirs, in braces."""
+    return name.replace(f"{{{LUMEN_NAMESPACE}}}", "lumen:", 1)
