@@ -5,11 +5,13 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.formats.behavior_data import ActionData, TransitionData
+from lumen.formats.behavior_data import ActionData, TransitionData, quoted
 from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.durations import duration
-from lumen.formats.xstate.descriptors import invoke_id
+from lumen.formats.durations import MAX_DELAY, duration
 from lumen.formats.xstate.json_source import JsonSource
+from lumen.formats.xstate.known import losses
+from lumen.formats.xstate.names import XStateNames
+from lumen.interpreters.expressions.kinds import kind_of
 from lumen.language.actions import PARENT
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.loading.behaviors import build_machine
@@ -21,14 +23,19 @@ EXPRESSION_GUARD = "lumen.expression"
 HEARS_GUARD = "lumen.hears"
 DO_ACTOR = "lumen.do"
 ACTION_PREFIX = "lumen."
+_BUILT_IN = ("xstate.raise", "xstate.send", "xstate.sendTo", "xstate.cancel", "xstate.log", "xstate.assign")
 _UNFIT = re.compile(r"\W+", re.ASCII)
 
 
 class XStateActionReader:
     """Reads what stands in the states of one file; `context` gets a key for every guard whose code is not there."""
 
-    def __init__(self, source: JsonSource, context: dict[str, Any], findings: ConversionFindings) -> None:
-        self.source, self.context, self.findings = source, context, findings
+    def __init__(
+        self, source: JsonSource, context: dict[str, Any], names: XStateNames, findings: ConversionFindings
+    ) -> None:
+        self.source, self.context, self.names, self.findings = source, context, names, findings
+        self.wide: dict[str, dict[str, Any]] = {}
+        """The context keys that are given values of several kinds, as `types` has them."""
         self.surroundings: dict[str, Any] = {}
         self.row = ""
         """The key of the row of `hears` whose actions are read, empty for other transitions."""
@@ -57,14 +64,22 @@ class XStateActionReader:
             return None
         params = data.get("params") if isinstance(data, dict) else None
         if kind.startswith(ACTION_PREFIX) and (own := self._own(kind.removeprefix(ACTION_PREFIX), params)):
+            self._unread("action", data, where)
             return own
-        if kind == "xstate.raise" and isinstance(data, dict) and (own := self._raise(data)):
-            return own
-        if kind in ("xstate.sendTo", "xstate.send") and isinstance(data, dict) and (own := self._send_to(data)):
-            return own
-        shown = kind if params is None else f"{kind} {json.dumps(params, ensure_ascii=False)}"
-        self.lost(where, f"the code of the action `{kind}` is not in the file", "a line in the log stands for it")
-        return {"log": re.sub(r"\{(?=\{)", "{{ '{' }}", shown)}
+        if kind in _BUILT_IN and isinstance(data, dict):
+            body = {**(params if isinstance(params, dict) else {}), **data}  # tools write either form
+            self._unread("xstate.send" if kind == "xstate.sendTo" else kind, data, where)
+            try:
+                return self._built_in(kind, body, where)
+            except _AbsentError as error:
+                self.lost(where, f"`{kind}`: {error}", "a line in the log stands for it")
+        else:
+            self.lost(where, f"the code of the action `{kind}` is not in the file", "a line in the log stands for it")
+        return _logged(_shown(kind, data))
+
+    def _unread(self, place: str, data: Any, where: NodePath) -> None:
+        for key, message, hint in losses(place, data if isinstance(data, dict) else ()):
+            self.lost((*where, key), message, hint)
 
     def _own(self, verb: str, params: Any) -> ActionData | None:
         """An action that Lumen wrote; None where somebody changed it into something else."""
@@ -75,18 +90,68 @@ class XStateActionReader:
         around = {"hears": {self.row: {"actions": [action]}}} if self.row else {"entry": [action]}
         return action if self.fits(around) else None
 
-    def _raise(self, data: Mapping[str, Any]) -> ActionData | None:
-        body = _sent(data)
-        if body is None:
-            return None
-        return {"send": body} if "delay" in body else {"raise": body["event"]}
+    def _built_in(self, kind: str, data: Mapping[str, Any], where: NodePath) -> ActionData:
+        """An action of XState's own; raises _AbsentError if JSON does not hold all of it."""
+        match kind:
+            case "xstate.raise":
+                body = self._sent(data)
+                if "delay" in body:
+                    return {"send": body}
+                body.pop("id", None)
+                return {"raise": body if len(body) > 1 else body["event"]}
+            case "xstate.send" | "xstate.sendTo":
+                body = self._sent(data)
+                if to := self._recipient(kind, data):
+                    body["to"] = to
+                return {"send": body if len(body) > 1 else body["event"]}
+            case "xstate.cancel":
+                return {"cancel": _text(data, "sendId")}
+            case "xstate.log":
+                parts = [data[key] for key in ("label", "expr") if data.get(key) not in (None, "")]
+                if not parts or not all(isinstance(part, str | int | float | bool) for part in parts):
+                    raise _AbsentError("its code is not in the file")
+                return _logged(": ".join(part if isinstance(part, str) else json.dumps(part) for part in parts))
+        return self._assign(data, where)
 
-    def _send_to(self, data: Mapping[str, Any]) -> ActionData | None:
-        """What goes to another actor, where JSON can name it: `sendTo` of version 5, `send` with `to` of version 4."""
-        to, body = data.get("to"), _sent(data)
-        if body is None or not isinstance(to, str) or not to.removeprefix("#_") or to == "#_internal":
-            return None
-        return {"send": body | {"to": PARENT if to == f"#_{PARENT}" else invoke_id(to.removeprefix("#_"))}}
+    def _assign(self, data: Mapping[str, Any], where: NodePath) -> ActionData:
+        values = data.get("assignment")
+        if not isinstance(values, dict) or not values:
+            raise _AbsentError("its code is not in the file")
+        sound = {key: quoted(value) for key, value in values.items() if key in self.context}
+        for key in values.keys() - sound.keys():
+            self.lost((*where, "assignment", key), f"`{key}` is no key of the context", f"declare `{key}` there")
+        if not sound:
+            raise _AbsentError("it assigns nothing")
+        kept = (key for key in sound if self.context[key] is not None)
+        self.wide.update({key: {} for key in kept if kind_of(values[key]) != kind_of(self.context[key])})
+        return {"assign": sound}
+
+    def _sent(self, data: Mapping[str, Any]) -> dict[str, Any]:
+        """The event of `raise`, `send` and `sendTo` with its data, its delay and its id."""
+        event, delay, id = data.get("event"), data.get("delay"), data.get("id")
+        fields = event if isinstance(event, dict) else {"type": event}
+        name = fields.get("type")
+        if not isinstance(name, str) or not name.strip():
+            raise _AbsentError("its event is not in the file")
+        body: dict[str, Any] = {"event": self.names.event(name)}
+        if more := {key: quoted(value) for key, value in fields.items() if key != "type"}:
+            body["data"] = more
+        if delay is not None:
+            if isinstance(delay, bool) or not isinstance(delay, int | float) or not 0 <= delay < MAX_DELAY:
+                raise _AbsentError(f"the delay `{delay}` is not in the file: write milliseconds")
+            body["delay"] = duration(delay)
+        if id is not None:
+            body["id"] = _text(data, "id")
+        return body
+
+    def _recipient(self, kind: str, data: Mapping[str, Any]) -> str:
+        """The actor it goes to, as JSON can name it; empty for the machine itself, as `send` of version 4 has it."""
+        to = data.get("to")
+        if to is None and kind == "xstate.send":
+            return ""
+        if not isinstance(to, str) or not to.removeprefix("#_") or to == "#_internal":
+            raise _AbsentError("whom it goes to is not in the file")
+        return PARENT if to == f"#_{PARENT}" else self.names.actor(to.removeprefix("#_"))
 
     def do(self, steps: Any) -> list[ActionData] | None:
         """The `do` that Lumen wrote as an invocation."""
@@ -114,7 +179,7 @@ class XStateActionReader:
                 return str(params["source"])
             self.lost(where, f"the condition `{params['source']}` can't be read")
             return None
-        return f"context.{self._placeholder(kind, params, where)}"
+        return f"context.{self._placeholder(kind, data, where)}"
 
     def heard(self, data: Any, where: NodePath) -> TransitionData | None:
         """The key of a row of `hears`, and its own guard, from the guard that Lumen wrote; None if that is broken."""
@@ -127,8 +192,8 @@ class XStateActionReader:
         self.lost(where, f"the row `{key}` of `hears` can't be read", 'write {"row": KEY}, and its guard as "source"')
         return None
 
-    def _placeholder(self, kind: str, params: Any, where: NodePath) -> str:
-        named = kind if params is None else f"{kind} {json.dumps(params, ensure_ascii=False)}"
+    def _placeholder(self, kind: str, data: Any, where: NodePath) -> str:
+        named = _shown(kind, data)
         key = self._guards.get(named)
         if key is None:
             stem = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", kind)) or "_"
@@ -138,7 +203,8 @@ class XStateActionReader:
                 key = f"{stem}_{number}"
             self._guards[named] = key
             self.context[key] = False
-        hint = f"write the condition in place of `context.{key}`, which is false"
+        condition = "the condition" if named == kind else f"`{named}`"
+        hint = f"write {condition} in place of `context.{key}`, which is false"
         self.lost(where, f"the code of the guard `{kind}` is not in the file", hint)
         return key
 
@@ -154,14 +220,26 @@ class XStateActionReader:
         return duration(length)
 
 
-def _sent(data: Mapping[str, Any]) -> dict[str, Any] | None:
-    """The event of `raise` and `sendTo` with its delay and its id; None where they hold more than JSON can say."""
-    event, delay, id = data.get("event"), data.get("delay"), data.get("id")
-    name = event.get("type") if isinstance(event, dict) else None
-    if not isinstance(name, str) or len(event or {}) > 1:
-        return None
-    if delay is None:
-        return {"event": name}
-    if isinstance(delay, bool) or not isinstance(delay, int | float) or delay < 0:
-        return None
-    return {"event": name, "delay": duration(delay)} | ({"id": id} if isinstance(id, str) and id else {})
+class _AbsentError(Exception):
+    """An action of XState's own that is not complete in JSON; the message says what is absent."""
+
+
+def _text(data: Mapping[str, Any], key: str) -> str:
+    """A text; raises _AbsentError."""
+    value = data.get(key)
+    if isinstance(value, bool) or not isinstance(value, str | int | float) or value == "":
+        raise _AbsentError(f"`{key}` is not in the file")
+    return str(value)
+
+
+def _logged(text: str) -> ActionData:
+    return {"log": re.sub(r"\{(?=\{)", "{{ '{' }}", text)}
+
+
+def _shown(kind: str, data: Any) -> str:
+    """The name of an action or a guard with its parameters, which version 4 has beside it."""
+    params = data.get("params") if isinstance(data, dict) else None
+    rest = data.items() if isinstance(data, dict) else ()
+    beside = {key: value for key, value in rest if key not in ("type", "params")}
+    parts = [kind, *(json.dumps(part, ensure_ascii=False) for part in (params, beside or None) if part is not None)]
+    return " ".join(parts)

@@ -1,7 +1,7 @@
 """Descriptors of events, ours and XState's: there a name is matched exactly, and the longest is tried first."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from lumen.formats.heard_rows import in_asked_order
@@ -18,19 +18,17 @@ _OWN_EVENTS = {
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")
 
 
-def descriptor_of(event: str) -> str | None:
-    """A key of XState's `on` as a key of ours, None where none is meant."""
-    text = re.sub(r"\s+", "_", event.strip())
-    return text if _DESCRIPTOR.fullmatch(text) else None
+def is_descriptor(text: str) -> bool:
+    """Whether it can be a key of `on`."""
+    return bool(_DESCRIPTOR.fullmatch(text))
 
 
-def translated(event: str, names: Callable[[str], str]) -> str:
-    """An event of XState's own by our name for it, any other as it is; `names` tells what we call a state of its id."""
+def own_event(event: str) -> tuple[str, str] | None:
+    """Our family and the id of an event of XState's own, None for any other."""
     for begin, ours in _OWN_EVENTS.items():
         if event.startswith(begin) and (id := event.removeprefix(begin)):
-            named = id if "*" in id else names(id) if ours == "done.state." else invoke_id(id)
-            return f"{ours}{named}"
-    return event
+            return ours, id
+    return None
 
 
 def invoke_id(id: str) -> str:

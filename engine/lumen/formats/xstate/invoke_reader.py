@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from lumen.formats.behavior_data import TransitionData, single
 from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader
-from lumen.formats.xstate.descriptors import invoke_id
+from lumen.formats.xstate.known import losses
 from lumen.formats.xstate.state_tree import XStateNode
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
 from lumen.language.diagnostics import NodePath
@@ -32,6 +32,8 @@ class XStateInvokeReader:
         invokes: list[dict[str, Any]] = []
         waits: dict[str, list[TransitionData]] = {}
         for number, where, row in self._rows(state):
+            for key, message, hint in losses("invoke", row):
+                self.parts.lost((*where, key), message, hint)
             if invoked := self._invoked(own, row):
                 invokes.append({**invoked, **self._ends(state, where, row)})
             elif (steps := self._steps(row)) is not None and "do" not in data:
@@ -51,16 +53,19 @@ class XStateInvokeReader:
     ) -> None:
         """Keep what follows the end of an actor whose code is not there, as waits for its events."""
         given = row.get("id")
-        id = invoke_id(given if isinstance(given, str) and given else f"{number}.{state.foreign_id}")
+        id = self.parts.names.actor(given if isinstance(given, str) and given else f"{number}.{state.foreign_id}")
         for key, family in _ENDS.items():
             if key in row:
                 waits.setdefault(f"{family}.{id}", []).extend(self.transitions.under(state, (*where, key), row[key]))
         source = row.get("src")
-        shown = f" of `{source}`" if isinstance(source, str) else ""
+        named = source.get("type") if isinstance(source, dict) else source
+        shown = f" of `{named}`" if isinstance(named, str) else ""
         hint = f"invoke a behaviour as `{id}`" + (", whose end is waited for" if waits else "")
         self.parts.lost(where, f"`invoke`{shown}: its code is not in the file", hint)
         if "onSnapshot" in row:
             self.parts.lost((*where, "onSnapshot"), "`onSnapshot`: nothing is heard of a behaviour before its end")
+        if "input" in row:
+            self.parts.lost((*where, "input"), "`input` of an invoke", "give it to the behaviour that you invoke")
 
     def _ends(self, state: XStateNode, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
         """What follows the end of something that Lumen wrote."""

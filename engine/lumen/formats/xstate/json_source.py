@@ -8,7 +8,7 @@ from lumen.formats.conversion_findings import broken, check_size
 from lumen.formats.foreign_json import foreign_json
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document import Document
-from lumen.loading.yaml_reader import parse
+from lumen.loading.yaml_reader import DUPLICATE_KEY, parse
 
 MAX_JSON_LEVELS = 95
 """Objects and lists inside each other."""
@@ -20,6 +20,8 @@ class JsonSource:
 
     data: Any
     document: Document
+    repeated: tuple[tuple[Place, str], ...] = ()
+    """The keys that an object has twice, of which the last one counts."""
 
     def place(self, path: NodePath) -> Place:
         """The place of a key (or item), or of the nearest thing around it."""
@@ -42,7 +44,11 @@ def parse_json(file: str, content: bytes) -> JsonSource:
         raise broken(Place(file), "too-large", "the file is nested too deeply to be read") from None
     if _depth(data) > MAX_JSON_LEVELS:
         raise broken(Place(file), "too-large", f"the file is nested deeper than {MAX_JSON_LEVELS} levels")
-    return JsonSource(data, _placed(file, content, data))
+    document, found = parse(file, content.replace(b"\t", b" "))  # JSON is YAML, but for tabs and surrogates
+    repeated = tuple((d.place, d.message) for d in found if d.code == DUPLICATE_KEY)
+    if document is None or (document.data != data and not repeated):
+        document = Document(file, data)  # places are unknown
+    return JsonSource(data, document, repeated)
 
 
 def _depth(data: Any) -> int:
@@ -55,9 +61,3 @@ def _depth(data: Any) -> int:
             for child in (value.values() if isinstance(value, dict) else value if isinstance(value, list) else ())
         ]
     return level
-
-
-def _placed(file: str, content: bytes, data: Any) -> Document:
-    """JSON is YAML, but for tabs and surrogates: where those stand, places are unknown."""
-    document, _ = parse(file, content.replace(b"\t", b" "))
-    return document if document is not None and document.data == data else Document(file, data)

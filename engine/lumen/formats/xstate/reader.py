@@ -7,21 +7,17 @@ from lumen.formats.behavior_data import ActionData, TransitionData, quoted, sing
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.foreign_states import passing_key
 from lumen.formats.xstate.action_reader import XStateActionReader
-from lumen.formats.xstate.descriptors import bare, descriptor_of, invoke_id, longest_first, translated
+from lumen.formats.xstate.descriptors import bare, is_descriptor, longest_first
 from lumen.formats.xstate.invoke_reader import XStateInvokeReader
 from lumen.formats.xstate.json_source import parse_json
+from lumen.formats.xstate.known import STATE_KINDS, is_version_4, losses
+from lumen.formats.xstate.names import XStateNames
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
 from lumen.interpreters.talk.hearing import HEARD
-from lumen.language.diagnostics import Diagnostic
+from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import RESUME_WORDS
 
-_KINDS = ("atomic", "compound", "parallel", "final", "history")
-_FOLLOWING = ("on", "always", "after", "invoke", "onDone")
-_MEANT = {
-    "id", "key", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "history",
-    "parallel", "target", "output", "context", "meta", "description", "$schema", "version",
-}  # fmt: skip
 _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "renamed")
 
 
@@ -42,11 +38,14 @@ def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], 
         hint = "write JSON.stringify(machine.config)"
         raise broken(source.place(()), "not-xstate", "this is a machine taken apart: JSON.stringify(machine)", hint)
     findings = ConversionFindings()
+    for place, message in source.repeated:
+        findings.lost(place, message, "only the last one counts")
     outline = XStateStateTree(source, title, findings)
     if not outline.root.regular:
         raise broken(source.place(("states",)), "not-xstate", "the machine has no states")
     context = _context(source.data, findings, outline)
-    return _XStateReader(outline, XStateActionReader(source, context, findings), findings).data()
+    parts = XStateActionReader(source, context, XStateNames(outline), findings)
+    return _XStateReader(outline, parts, findings).data()
 
 
 def _context(data: Mapping[str, Any], findings: ConversionFindings, outline: XStateStateTree) -> dict[str, Any]:
@@ -65,7 +64,7 @@ class _XStateReader:
 
     def __init__(self, outline: XStateStateTree, parts: XStateActionReader, findings: ConversionFindings) -> None:
         self.outline, self.parts, self.findings = outline, parts, findings
-        self.transitions = XStateTransitionReader(outline, parts)
+        self.transitions = XStateTransitionReader(outline, parts, is_version_4(outline.source.data))
         self.invocations = XStateInvokeReader(parts, self.transitions)
         self.first: dict[XStateNode, str] = {}
         self.passed: dict[XStateNode, dict[str, Any]] = {}
@@ -79,6 +78,8 @@ class _XStateReader:
         data: dict[str, Any] = {"id": self.outline.title} if self.outline.title else {}
         if self.parts.context:
             data["context"] = self.parts.context
+        if types := self.parts.wide | surroundings.get("types", {}):
+            surroundings["types"] = types
         return {**data, **surroundings, **state, "states": states}, self.findings.diagnostics
 
     def _state(self, state: XStateNode) -> dict[str, Any]:
@@ -107,20 +108,52 @@ class _XStateReader:
         return data
 
     def _unmeant(self, state: XStateNode) -> None:
-        for key, value in state.source.items():
+        """Report the keys of a state, and their values, that are not carried over."""
+        source, kind = state.source, state.kind
+        place = f"{kind} state" if kind in ("parallel", "final", "history") else "state"
+        place = place if state.parent else "machine"
+        for key, message, hint in losses(place, source):
+            if source[key] not in (None, {}, []):
+                self.parts.lost((*state.where, key), message, hint)
+        for key, value in source.items():
             where = (*state.where, key)
             if key == "tags":
                 self.parts.changed(where, "`tags` mean nothing here", "ask for the state itself with `In('state')`")
             elif key == "meta" and set(value if isinstance(value, dict) else {"": 0}) != {"lumen"}:
                 self.parts.changed(where, "`meta` is not carried over")
-            elif key == "output" and state.kind != "final":
-                self.parts.lost(where, "`output` of a machine", "give each of its final states an `output`")
-            elif key == "type" and value and value not in _KINDS:
-                self.parts.lost(where, f"there is no kind of state `{value}`", f"one of {', '.join(_KINDS)}")
-            elif key in _FOLLOWING and state.kind == "final" and value:
-                self.parts.lost(where, f"`{key}` of a final state: nothing follows it here", "let it be no final state")
-            elif key not in _MEANT:
-                self.parts.lost(where, f"`{key}` has no counterpart")
+            elif key in ("output", "data") and kind != "final":
+                what = "a machine" if not state.parent else "a state that is not final"
+                self.parts.lost(where, f"`{key}` of {what}", "give each of its final states an `output`")
+            elif key == "type" and value and value not in STATE_KINDS:
+                self.parts.lost(where, f"there is no kind of state `{value}`", f"one of {', '.join(STATE_KINDS)}")
+            elif (key, value) in (("type", "atomic"), ("type", "final")) and kind not in ("atomic", "final"):
+                self.parts.lost(where, f"`type: {value}` of a state that has states within", "delete it")
+            elif key == "initial" and kind == "atomic":
+                self.parts.lost(where, "`initial` of a state that has no states within", "delete it")
+            elif key == "parallel" and not isinstance(value, bool):
+                self.parts.lost(where, f"`parallel` can't be `{value}`", "write true or false")
+            elif key == "history" and value not in (True, "shallow", "deep"):
+                self.parts.lost(where, f"`history` can't be `{value}`", 'write "shallow" or "deep"')
+            elif key in ("id", "description") and not isinstance(value, str):
+                self.parts.lost(where, f"`{key}` is no text", "put it in quotes")
+        for key, value in _lumen(state).items():
+            if not self._is_own(state, key, value):
+                self.parts.lost((*state.where, "meta", "lumen", key), f"`{key}` of `meta.lumen` has no counterpart")
+
+    def _is_own(self, state: XStateNode, key: str, value: Any) -> bool:
+        """Whether a part of `meta.lumen` is one that Lumen writes there."""
+        match key:
+            case "onReload":
+                return isinstance(value, str) and self.outline.resolve(state, value) is not None
+            case "resume":
+                return value in RESUME_WORDS
+            case "buttons":
+                return isinstance(value, list)
+            case "output":
+                return state.kind == "final" and self.parts.fits({"type": "final", "output": value})
+            case "invoke":
+                return isinstance(value, dict)
+        return not state.parent and key in _MACHINE and isinstance(value, dict)
 
     def _history(self, state: XStateNode) -> dict[str, Any]:
         data: dict[str, Any] = {"history": "deep"} if state.source.get("history") == "deep" else {}
@@ -146,6 +179,8 @@ class _XStateReader:
         where = (*state.where, "initial")
         first = state.regular[0]
         data = state.source.get("initial", first.original)
+        for key, message, hint in losses("initial", data if isinstance(data, dict) else ()):
+            self.parts.lost((*where, key), message, hint)
         target = data.get("target") if isinstance(data, dict) else data
         found = state.child(target) if isinstance(target, str) else None
         if found is None:
@@ -166,12 +201,13 @@ class _XStateReader:
         return key
 
     def _output(self, state: XStateNode) -> dict[str, Any]:
-        if "output" not in state.source:
+        key = next((key for key in ("output", "data") if key in state.source), "")
+        if not key:
             return {}
         own = _lumen(state)
         if "output" in own and self.parts.fits({"type": "final", "output": own["output"]}):
             return {"output": own["output"]}
-        return {"output": quoted(state.source["output"])}
+        return {"output": quoted(state.source[key])}
 
     def _behaviour(self, state: XStateNode) -> dict[str, Any]:
         data: dict[str, Any] = {}
@@ -199,12 +235,11 @@ class _XStateReader:
         """The candidates of each event, and those of the ends that are waited for, as `on`; and the rows of `hears`."""
         rows: dict[str, list[TransitionData]] = {}
         hears: dict[str, list[TransitionData]] = {}
-        for event, data in self._table(state, "on").items():
-            where = (*state.where, "on", event)
-            descriptor = descriptor_of(translated(event, self._named))
+        for event, where, data in self._table(state, "on", "event"):
+            descriptor = self.parts.names.event(event)
             if event == "":
                 continue  # version 4's `always`
-            if descriptor is None:
+            if not is_descriptor(descriptor):
                 self.parts.lost(where, f"`{event}` is no event", "write names with dots between")
                 continue
             if descriptor.startswith("xstate."):
@@ -221,32 +256,36 @@ class _XStateReader:
         heard = {key: single(found) for key, found in hears.items()}
         return ({"on": on} if on else {}) | ({"hears": heard} if heard else {})
 
-    def _named(self, id: str) -> str:
-        """What the state of that id is called here; the id itself where there is none."""
-        found = self.outline.resolve(self.outline.root, f"#{id}")
-        return (found.name or self.outline.title) if found else invoke_id(id)
-
     def _always(self, state: XStateNode) -> list[TransitionData]:
         rows = self.transitions.rows(state, "always") if "always" in state.source else []
-        table = state.source.get("on")
-        if isinstance(table, dict) and "" in table:
-            rows += self.transitions.under(state, (*state.where, "on", ""), table[""], eventless=True)
+        for event, where, data in self._table(state, "on", "event") if "on" in state.source else ():
+            if event == "":
+                rows += self.transitions.under(state, where, data, eventless=True)
         return rows
 
-    def _table(self, state: XStateNode, key: str) -> Mapping[str, Any]:
-        table = state.source.get(key)
-        if table is not None and not isinstance(table, dict):
-            self.parts.lost((*state.where, key), f"`{key}` is no object", "write each event, or delay, as a key")
-        return table if isinstance(table, dict) else {}
+    def _table(self, state: XStateNode, key: str, named: str) -> list[tuple[str, NodePath, Any]]:
+        """The keys of `on` or `after`, their places and transitions; version 4 also has a list of these."""
+        table, where = state.source.get(key), (*state.where, key)
+        if isinstance(table, dict):
+            return [(name, (*where, name), rows) for name, rows in table.items()]
+        found: list[tuple[str, NodePath, Any]] = []
+        for number, row in enumerate(table) if isinstance(table, list) else ():
+            name = row.get(named) if isinstance(row, dict) else None
+            if isinstance(name, str | int | float) and not isinstance(name, bool):
+                rest = {key: value for key, value in row.items() if key != named}
+                found.append((str(name), (*where, number), rest))
+            else:
+                self.parts.lost((*where, number), f"this is no transition: it has no `{named}`")
+        if table is not None and not isinstance(table, list):
+            self.parts.lost(where, f"`{key}` is no object", "write each event, or delay, as a key")
+        return found
 
     def _after(self, state: XStateNode) -> dict[str, Any]:
-        data: dict[str, Any] = {}
-        for text, rows_data in self._table(state, "after").items():
-            where = (*state.where, "after", text)
-            delay = self.parts.delay(text, where)
-            if delay is not None and (rows := self.transitions.under(state, where, rows_data)):
-                data[delay] = single(rows)
-        return data
+        found: dict[str, list[TransitionData]] = {}
+        for text, where, rows in self._table(state, "after", "delay"):
+            if (delay := self.parts.delay(text, where)) is not None:
+                found.setdefault(delay, []).extend(self.transitions.under(state, where, rows))
+        return {delay: single(rows) for delay, rows in found.items() if rows}
 
 
 def _lumen(state: XStateNode) -> Mapping[str, Any]:

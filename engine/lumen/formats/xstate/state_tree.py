@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_key
+from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
 from lumen.formats.xstate.json_source import JsonSource
 from lumen.language.diagnostics import NodePath
 
@@ -53,11 +53,12 @@ class XStateStateTree:
 
     def __init__(self, source: JsonSource, title: str, findings: ConversionFindings) -> None:
         self.source, self.findings = source, findings
-        own = source.data.get("id")
+        own = source.data.get("id") or source.data.get("key")  # version 4's word for a machine without an id
         self.machine_id = own if isinstance(own, str) and own else "(machine)"
         self.title = clean_id(own) if isinstance(own, str) and own else title
         self.ids = set(_ids(source.data))
         self.by_id: dict[str, XStateNode] = {}
+        self.given: set[str] = set()
         self.root = self._state(source.data, None, "", "", ())
         self._fill(self.root, 1)
 
@@ -65,7 +66,11 @@ class XStateStateTree:
         self, data: Mapping[str, Any], parent: ForeignState | None, key: str, original: str, where: NodePath
     ) -> XStateNode:
         id = data.get("id") if parent is not None else None
-        named = clean_id(id) if isinstance(id, str) else ""
+        named = free_id(id, self.ids, self.given) if isinstance(id, str) else ""
+        if isinstance(id, str) and id != named:
+            message = f"the state `{id}` is called `{named}` here, wherever the machine names it"
+            self.findings.changed(self.source.place((*where, "id")), message, "an id has no blanks, `#` and `*`")
+        self.given.add(named)
         path = parent.below(key) if parent else ""
         state = XStateNode(data, parent, key, "" if named == path else named, path)
         state.original, state.where, state.named, state.regular = original, where, {}, []
@@ -82,7 +87,7 @@ class XStateStateTree:
             elif isinstance(id, str) and id in self.by_id:
                 self.findings.lost(self.source.place(where), f"a second state has the id `{id}`", "give each its own")
             else:
-                key = free_key(parent, original, id if isinstance(id, str) else "", self.ids)
+                key = free_key(parent, original, clean_id(id) if isinstance(id, str) else "", self.ids)
                 state = self._state(data, parent, key, original, where)
                 parent.add(state)
                 parent.named[original] = state
@@ -110,7 +115,8 @@ class XStateStateTree:
                 self.findings.lost(self.source.place((*parent.where, "states")), what)
             return {}
         if declared_kind(parent.source) in ("final", "history") and states:
-            self.findings.lost(self.source.place((*parent.where, "states")), "a final state has no states within")
+            kind = declared_kind(parent.source)
+            self.findings.lost(self.source.place((*parent.where, "states")), f"a {kind} state has no states within")
             return {}
         return states
 

@@ -4,17 +4,16 @@ from typing import Any
 
 from lumen.formats.behavior_data import TransitionData
 from lumen.formats.xstate.action_reader import HEARS_GUARD, XStateActionReader
+from lumen.formats.xstate.known import BOOLEANS, losses
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
-
-_MEANT = {"target", "guard", "cond", "actions", "reenter", "internal", "description", "meta"}
 
 
 class XStateTransitionReader:
     """Reads the transitions of one file."""
 
-    def __init__(self, outline: XStateStateTree, parts: XStateActionReader) -> None:
-        self.outline, self.parts = outline, parts
+    def __init__(self, outline: XStateStateTree, parts: XStateActionReader, version_4: bool) -> None:
+        self.outline, self.parts, self.version_4 = outline, parts, version_4
 
     def rows(self, state: XStateNode, key: str) -> list[TransitionData]:
         """What stands under a key of the state."""
@@ -38,12 +37,17 @@ class XStateTransitionReader:
         if not isinstance(data, dict):
             self.parts.lost(where, "this is no transition")
             return None
-        for key in data.keys() - _MEANT:
-            self.parts.lost((*where, key), f"`{key}` of a transition has no counterpart")
+        for key, message, hint in losses("transition", data):
+            self.parts.lost((*where, key), message, hint)
+        for key in BOOLEANS & data.keys():
+            if not isinstance(data[key], bool):
+                self.parts.lost((*where, key), f"`{key}` can't be `{data[key]}`", "write true or false")
+        if data.get("guard") is not None and data.get("cond") is not None:
+            self.parts.lost((*where, "cond"), "`cond` beside `guard` is left out", "delete one of them")
         if "meta" in data:
             self.parts.changed((*where, "meta"), "`meta` is not carried over")
         row: TransitionData = {}
-        guard = data.get("guard", data.get("cond"))
+        guard = data["guard"] if data.get("guard") is not None else data.get("cond")
         if may_hear and isinstance(guard, dict) and guard.get("type") == HEARS_GUARD:
             heard = self.parts.heard(guard, (*where, "guard"))
             if heard is None:
@@ -54,17 +58,41 @@ class XStateTransitionReader:
             if source is None:
                 return None
             row["guard"] = source
+        if data.get("in") is not None:
+            if (state_in := self._state_in(data["in"], (*where, "in"))) is None:
+                return None
+            row["guard"] = f"{state_in} && ({row['guard']})" if "guard" in row else state_in
         if data.get("target") not in (None, []):
             targets = self.targets(state, data["target"], (*where, "target"))
             if targets is None:
                 return None
-            reenter = data.get("reenter") is True or data.get("internal") is False  # version 4's word for it
+            reenter = self._reenters(data)
             row.update(self._way(state, where, targets, reenter))
         self.parts.row = row.get("hears", "")
         if actions := self.parts.actions(data.get("actions"), (*where, "actions")):
             row["actions"] = actions
         self.parts.row = ""
         return row
+
+    def _reenters(self, data: dict[str, Any]) -> bool:
+        """Whether the state itself is left and entered again.
+
+        In version 4 it is unless `internal` or a target that begins with a dot says otherwise.
+        """
+        if isinstance(data.get("reenter"), bool):
+            return bool(data["reenter"])
+        if isinstance(data.get("internal"), bool):
+            return not data["internal"]
+        targets = data["target"] if isinstance(data["target"], list) else [data["target"]]
+        return self.version_4 and not any(isinstance(t, str) and t.startswith(".") for t in targets)
+
+    def _state_in(self, data: Any, where: NodePath) -> str | None:
+        """Version 4's `in` as a condition; None, and reported, if it names no state by its id."""
+        found = self.outline.resolve(self.outline.root, data) if isinstance(data, str) and data[:1] == "#" else None
+        if found is None:
+            self.parts.lost(where, f"`in`: there is no state `{data}`", 'write "#" and the id of the state')
+            return None
+        return f"In('{found.name or self.outline.title}')"
 
     def targets(self, state: XStateNode, data: Any, where: NodePath) -> list[XStateNode] | None:
         """The states meant, None (and reported) where one does not exist."""

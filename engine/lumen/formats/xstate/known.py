@@ -1,0 +1,128 @@
+"""What the importer knows of XState's machine configurations, of version 5 and of version 4."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from lumen.formats.known import FormatTable, Known
+
+_NOTE = {"description": "a note for readers"}
+_STATE_NOTES = {"key": "the key under `states` counts", "order": "the order is that of the file"}
+_TYPES = "types are not in JSON"
+_OF_STATE = frozenset(
+    ("id", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "parallel",
+     "description", "tags", "meta", "output", "data")
+)  # fmt: skip
+_OLD = {
+    "activities": "write `invoke`",
+    "onEntry": "write `entry`",
+    "onExit": "write `exit`",
+    "history": "only a state of `type: history` has it",
+    "target": "only a state of `type: history` has it",
+}
+
+TABLE: FormatTable = {
+    "machine": Known(
+        _OF_STATE | {"context", "key"},
+        _OLD
+        | {
+            "input": "a behaviour gets its input in its context",
+            "delimiter": "paths are divided by dots",
+            "strict": "an event that nothing waits for is no error here",
+        },
+        {
+            "$schema": "names a schema for editors", "version": "says nothing of what it does", "schema": _TYPES,
+            "schemas": _TYPES, "types": _TYPES, "tsTypes": _TYPES, "predictableActionArguments": "it is always so",
+            "preserveActionOrder": "it is always so", "order": "the order is that of the file",
+        },
+    ),
+    "state": Known(_OF_STATE, _OLD, _STATE_NOTES),
+    "parallel state": Known(_OF_STATE - {"initial"}, _OLD | {"initial": "all of its states are entered"}, _STATE_NOTES),
+    "final state": Known(
+        frozenset(("id", "type", "entry", "exit", "output", "data", "tags", "meta", "description", "states")),
+        dict.fromkeys(("on", "always", "after", "invoke", "onDone"), "nothing follows it here")
+        | dict.fromkeys(("initial", "parallel"), "a final state has no states within"),
+        _STATE_NOTES,
+    ),
+    "history state": Known(
+        frozenset(("id", "type", "history", "target", "tags", "meta", "description")),
+        {"states": "a history has no states within"},
+        _STATE_NOTES,
+    ),
+    "initial": Known(frozenset(("target", "actions")), meaningless=_NOTE),
+    "transition": Known(
+        frozenset(("target", "guard", "cond", "in", "actions", "reenter", "internal", "meta")), meaningless=_NOTE
+    ),
+    "transition in a list of `on`": Known(
+        frozenset(("event", "target", "guard", "cond", "in", "actions", "reenter", "internal", "meta")),
+        meaningless=_NOTE,
+    ),
+    "transition in a list of `after`": Known(
+        frozenset(("delay", "target", "guard", "cond", "in", "actions", "reenter", "internal", "meta")),
+        meaningless=_NOTE,
+    ),
+    "invoke": Known(
+        frozenset(("id", "src", "input", "onDone", "onError", "onSnapshot")),
+        {
+            "data": "give the behaviour its `input`",
+            "autoForward": "a behaviour hears all events from outside",
+            "systemId": "an actor is named by its `id`",
+        },
+        {**_NOTE, "type": "all actors are alike", "meta": "notes for other tools"},
+    ),
+    "action": Known(frozenset(("type", "params")), {"exec": "its code is not in the file"}),
+    "xstate.raise": Known(frozenset(("type", "event", "delay", "id", "params"))),
+    "xstate.send": Known(frozenset(("type", "event", "delay", "id", "to", "params"))),
+    "xstate.cancel": Known(frozenset(("type", "sendId", "params"))),
+    "xstate.log": Known(frozenset(("type", "label", "expr", "params"))),
+    "xstate.assign": Known(frozenset(("type", "assignment", "params"))),
+    "guard": Known(frozenset(("type", "params"))),
+    "meta.lumen": Known(
+        frozenset(("types", "events", "phrases", "answers", "lists", "properties", "renamed", "onReload", "resume",
+                   "buttons", "output", "invoke"))
+    ),
+}  # fmt: skip
+"""The keys of each object."""
+
+STATE_KINDS = ("atomic", "compound", "parallel", "final", "history")
+BOOLEANS = frozenset(("reenter", "internal", "parallel"))
+"""Keys whose values are true or false."""
+
+_VERSION_4 = frozenset(
+    ("cond", "in", "schema", "tsTypes", "predictableActionArguments", "preserveActionOrder", "strict", "delimiter",
+     "activities", "internal", "autoForward", "onEntry", "onExit")
+)  # fmt: skip
+_VERSION_5 = frozenset(("guard", "reenter", "input", "output", "onSnapshot", "systemId"))
+_EVENTS_OF_4 = ("done.invoke.", "error.platform.", "done.state.")
+_OBJECTS_OF_AUTHORS = frozenset(("context", "meta", "params", "input", "data", "output", "event", "assignment"))
+
+
+def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
+    """Of the keys of such an object each that is not carried over: the key, the message, and a hint."""
+    known, whose = TABLE[place], f"of {'an' if place[0] in 'aeix' else 'a'} {place}"
+    for name, hint in known.losses(names):
+        if name in known.lost:
+            yield name, f"`{name}` {whose}: {hint}", ""
+        else:
+            yield name, f"`{name}` {whose} has no counterpart", hint
+
+
+def is_version_4(machine: Mapping[str, Any]) -> bool:
+    """Whether a machine has words that only version 4 has, and none that only version 5 has, or that Lumen wrote."""
+    old = False
+    waiting: list[tuple[str, Any]] = [("", machine)]
+    while waiting:
+        within, item = waiting.pop()
+        named = within in ("states", "on", "after")  # there the keys are the author's
+        children = item.items() if isinstance(item, dict) else enumerate(item) if isinstance(item, list) else ()
+        for key, value in children:
+            word = key if isinstance(key, str) and not named else ""
+            if word in _VERSION_5 or (word == "type" and str(value).startswith(("xstate.sendTo", "lumen."))):
+                return False
+            if word == "meta" and isinstance(value, dict) and "lumen" in value:
+                return False
+            old |= word in _VERSION_4 or (word, value) in (("parallel", True), ("type", "xstate.send"))
+            old |= word in ("on", "after") and isinstance(value, list)
+            old |= within == "on" and isinstance(key, str) and (key == "" or key.startswith(_EVENTS_OF_4))
+            if word not in _OBJECTS_OF_AUTHORS and isinstance(value, dict | list):
+                waiting.append((word, value))
+    return old

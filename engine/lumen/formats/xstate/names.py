@@ -1,0 +1,96 @@
+"""What the events and the actors of one XState file are called here."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from lumen.formats.unused_names import unused_name
+from lumen.formats.xstate.descriptors import invoke_id, own_event
+from lumen.formats.xstate.state_tree import XStateStateTree
+from lumen.language.diagnostics import NodePath
+
+_BLANKS = re.compile(r"\s+")
+_SENDERS = ("xstate.raise", "xstate.send", "xstate.sendTo")
+
+
+class XStateNames:
+    """Two names of the file never become one, and each is the same wherever the file has it."""
+
+    def __init__(self, outline: XStateStateTree) -> None:
+        self.outline = outline
+        self.events = self._free("event", {n: w for n, w in _events((), outline.source.data) if not own_event(n)})
+        self.actors = self._free("actor", dict(_actors((), outline.source.data)))
+
+    def event(self, name: str) -> str:
+        """Our name for an event, or for a descriptor, of XState's own or of the author's."""
+        if own := own_event(name):
+            family, id = own
+            if "*" in id:
+                return f"{family}{id}"
+            return f"{family}{self._state(id) if family == 'done.state.' else self.actor(id)}"
+        return self.events.get(name) or _BLANKS.sub("_", name.strip())
+
+    def actor(self, id: str) -> str:
+        """Our id of something invoked."""
+        return self.actors.get(id) or invoke_id(id)
+
+    def _state(self, id: str) -> str:
+        """What the state of that id is called; the id itself if there is none."""
+        found = self.outline.resolve(self.outline.root, f"#{id}")
+        return (found.name or self.outline.title) if found else invoke_id(id)
+
+    def _free(self, kind: str, names: Mapping[str, NodePath]) -> dict[str, str]:
+        """A name for each that a behaviour can have; those that are others are reported."""
+        cleaned: Callable[[str], str] = invoke_id if kind == "actor" else lambda name: _BLANKS.sub("_", name.strip())
+        found = {name: name for name in names if cleaned(name) == name}
+        taken = set(found)
+        for name, where in names.items():
+            if name not in found:
+                found[name] = unused_name(cleaned(name), taken.__contains__, len(names))
+                taken.add(found[name])
+                message = f"the {kind} `{name}` is called `{found[name]}` here, wherever the machine names it"
+                self.outline.findings.changed(self.outline.source.place(where), message)
+        return found
+
+
+def _events(where: NodePath, data: Any) -> Iterator[tuple[str, NodePath]]:
+    """Each name of an event that is waited for or sent, and its place."""
+    if isinstance(data, list):
+        for number, item in enumerate(data):
+            yield from _events((*where, number), item)
+    if not isinstance(data, dict):
+        return
+    if data.get("type") in _SENDERS:
+        body = data if "event" in data else data.get("params")
+        event = body.get("event") if isinstance(body, dict) else None
+        name = event.get("type") if isinstance(event, dict) else event
+        if isinstance(name, str) and name:
+            yield name, where
+    for key, value in data.items():
+        if key == "states" and isinstance(value, dict):
+            for name, state in value.items():
+                yield from _events((*where, key, name), state)
+            continue
+        if key == "on":
+            rows = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+            for at, row in rows:
+                name = at if isinstance(at, str) else row.get("event") if isinstance(row, dict) else None
+                if isinstance(name, str) and name and "*" not in name:
+                    yield name, (*where, key, at)
+                yield from _events((*where, key, at), row)
+        elif key not in ("context", "meta"):
+            yield from _events((*where, key), value)
+
+
+def _actors(where: NodePath, state: Any) -> Iterator[tuple[str, NodePath]]:
+    """The id of everything that a state, and those within, invoke, and its place."""
+    if not isinstance(state, dict):
+        return
+    data = state.get("invoke")
+    for number, row in enumerate(data) if isinstance(data, list) else ((None, data),):
+        id = row.get("id") if isinstance(row, dict) else None
+        if isinstance(id, str) and id:
+            yield id, (*where, "invoke", *(() if number is None else (number,)), "id")
+    states = state.get("states")
+    for name, child in states.items() if isinstance(states, dict) else ():
+        yield from _actors((*where, "states", name), child)
