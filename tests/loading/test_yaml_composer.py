@@ -56,7 +56,7 @@ def test_anchors_tags_and_keys_are_what_libyaml_composes(text: str) -> None:
     assert shape(compose(text)) == shape(yaml.compose(text, Composer))
 
 
-@for_each("text", ["*x", "a: &x 1\nb: &x 2", "a\n---\nb", "a: b: c", "[1", "\0"])
+@for_each("text", ["*x", "a\n---\nb", "a: b: c", "[1", "\0"])
 def test_what_is_no_yaml_is_told_as_libyaml_tells_it(text: str) -> None:
     with pytest.raises(yaml.YAMLError) as ours:
         compose(text)

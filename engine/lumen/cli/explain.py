@@ -8,6 +8,7 @@ from typing import Any
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS
 from lumen.cli.terminal import coloured, paint
 from lumen.formats.conversion_findings import CODE_MEANINGS
+from lumen.language.text_lines import lines_of
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import Example, Page, page
 from lumen.rules.selection import selected
@@ -79,7 +80,7 @@ def _text(found: Page, on: bool) -> str:
 def _sheet(sheet: Example, on: bool) -> Iterator[str]:
     """The lines of an example, the wrong word underlined."""
     yield f"  {paint(sheet.file, 'bold', on=on)}" + (f" ({_NOTES[sheet.note]})" if sheet.note else "")
-    for number, line in enumerate(sheet.text.splitlines(), 1):
+    for number, line in enumerate(lines_of(sheet.text.rstrip("\n")), 1):
         yield f"  {paint(f'{number:2} |', 'dim', on=on)} {line}".replace("\t", "\u2192").rstrip()
         if sheet.mark and sheet.mark.line == number:
             width = max(1, sheet.mark.last - sheet.mark.first)

@@ -12,6 +12,7 @@ from lumen.app.lint.targets import LintTarget, Wanted, checked
 from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import paint
 from lumen.errors import UsageError
+from lumen.language.text_lines import lines_of
 from lumen.rules.repairs import Repair, repaired
 
 
@@ -26,7 +27,7 @@ def diff(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes], on
     """The lines of a unified diff of what a repair changes."""
     for file in (file for file in after if after[file] != before[file]):
         name = Findings((), {}, str(root)).name(file)
-        old, new = (files[file].decode("utf-8", "replace").splitlines() for files in (before, after))
+        old, new = (lines_of(files[file].decode("utf-8", "replace").rstrip("\r\n")) for files in (before, after))
         for line in difflib.unified_diff(old, new, name, name, lineterm=""):
             yield paint(clean(line), *_style(line), on=on)
 

@@ -28,6 +28,7 @@ from lumen.formats.yaml_document import document_yaml
 from lumen.interpreters.limits import Excess, overspeed
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
+from lumen.language.text_lines import lines_of
 from lumen.loading.behaviors import build_machine
 from lumen.loading.controllers import build_controller
 from lumen.loading.document_report import DocumentReport
@@ -149,7 +150,7 @@ def _chart(path: Path, content: bytes) -> Reader:
 
 def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -> str:
     """Why nothing is written: what our loader has against the result, and what of the file may have led to it."""
-    line = text.splitlines()[fault.place.line - 1].strip() if fault.place.line else ""
+    line = lines_of(text)[fault.place.line - 1].strip() if fault.place.line else ""
     near = f" at `{line[:80]}`" if line else ""
     lost = next((d for d in said if d.severity is Severity.ERROR), None)
     cause = f"; what is left out: {one_line(lost)}" if lost else ""

@@ -16,7 +16,7 @@ from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.infix_formulas import Trouble
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.line_index import LineIndex
+from lumen.language.text_lines import LineIndex, lines_of
 from lumen.loading.rule_parser import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
@@ -103,7 +103,7 @@ class _FclReader:
         return Place(self.file, row, column, row, column + max(length, 1))
 
     def at(self, statement: FclStatement) -> Place:
-        return self.place(statement.offset, len(statement.text.split("\n")[0]))
+        return self.place(statement.offset, len(lines_of(statement.text)[0]))
 
     def first(self, text: str) -> str:
         """The first function block; that there are more is reported."""

@@ -14,6 +14,7 @@ from lumen.formats.fll.controller_draft import ControllerDraft, operators, range
 from lumen.formats.fll.fuzzylite_names import written
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
+from lumen.language.text_lines import lines_of
 from lumen.loading.rule_parser import RuleWord
 
 _SECTION = re.compile(r"\[(System|Input|Output|Rules)\s*(\d*)\]", re.IGNORECASE)
@@ -89,7 +90,7 @@ def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 def _sections(file: str, text: str) -> Iterator[FisSection]:
     section: FisSection | None = None
-    for row, source in enumerate(text.splitlines(), 1):
+    for row, source in enumerate(lines_of(text), 1):
         said = source.strip()
         place = Place(file, row, len(source) - len(source.lstrip()) + 1, row, len(source.rstrip()) + 1)
         if match := _SECTION.fullmatch(said):

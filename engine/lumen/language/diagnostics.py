@@ -8,6 +8,8 @@ from difflib import get_close_matches
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol, Self
 
+from lumen.language.lookalikes import difference, typed
+
 MIN_FINDINGS_FOR_ROOT = 8
 """Findings from which on what they have in common is wrong, and not each of them."""
 
@@ -175,7 +177,11 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
     """The candidate that was probably meant, empty where none is near."""
-    lowered = {name.lower(): name for name in sorted(_alike(str(word), set(candidates)))}
+    names = set(candidates)
+    meant = typed(str(word))
+    if meant != word and (equal := next((name for name in sorted(names) if typed(name) == meant), "")):
+        return equal
+    lowered = {name.lower(): name for name in sorted(_alike(str(word), names))}
     near = get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)
     if near:
         return lowered[near[0]]
@@ -193,13 +199,19 @@ def _alike(word: str, names: set[str]) -> set[str]:
     return {n for n in names if abs(len(n) - len(word)) < 3 and not ends.isdisjoint((n[:1].lower(), n[-1:].lower()))}
 
 
+def mean(word: object, near: str) -> str:
+    """The hint with the word that was probably meant; if the two look equal, also how they differ."""
+    said = difference(str(word), near)
+    return f"did you mean `{near}`?" + (f" {said}" if said else "")
+
+
 def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str:
     """The hint for an unknown name: the nearest candidate, then the list of all (`what`: "motions/ has")."""
     names: Sequence[str] = sorted(set(candidates))
     near = nearest(word, names)
     shown = ", ".join(f"`{n}`" for n in names[:8]) + (", …" if len(names) > 8 else "")
     if near:
-        return f"did you mean `{near}`?" + (f" {what} {shown}" if what and len(names) > 1 else "")
+        return mean(word, near) + (f" {what} {shown}" if what and len(names) > 1 else "")
     if not names:
         return f"{what} nothing".strip() if what else ""
     return f"{what or 'known are'} {shown}"

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Mapping
 
+from lumen.language.lookalikes import other_sign, typed
+
 MAX_DURATION = 1e9
 """A third of a century [s]: what is longer is a slip."""
 
@@ -33,6 +35,8 @@ def meant_duration(text: object) -> str:
 
 def duration_hint(text: object) -> str:
     """What to write in place of what is no duration."""
+    if (sign := other_sign(str(text))) and seconds(plain := typed(str(text)).replace(",", ".")) is not None:
+        return f"write `{plain}`: {sign}"
     if meant := meant_duration(text):
         short = f", or `{meant[:-1]}ms`" if str(text).strip().isdecimal() else ""
         return (

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.interpreters.json_schema import occurs
-from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, nearest
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, mean, nearest
+from lumen.language.lookalikes import other_sign, typed
 from lumen.loading.schema_messages import Error, describe, node, wording
 
 MISSING_KEY = Code("missing-key", "shape", ERROR, "a key that is needed is not there")
@@ -105,7 +106,7 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
         first, _, rest = key.partition(" ")
         if rest and first in known and key not in known:
             meant = first
-        hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
+        hint = mean(key, meant) if meant else did_you_mean(key, free, "allowed here:")
         if rest and meant == first:
             value = rest if error.instance[key] is None else f"{rest}: …"
             hint = f"`{first}` has no colon behind it: write `{first}: {value}`"
@@ -115,6 +116,8 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
         elif key.isdecimal() and not meant:
             hint = "put a list into brackets, and write a number with a point, as in `0.5`"
+        elif not meant and (odd := other_sign(key)):
+            hint = f"write `{typed(key).strip()}`: {odd}"
         elif not meant and (owner := _owner(key, root)):
             hint = f"it belongs into {owner}"
         message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"
@@ -163,6 +166,8 @@ def _bad_key(error: Error, path: NodePath) -> Complaint:
         hint = did_you_mean(error.instance, map(str, error.validator_value), "allowed here:")
         return Complaint(UNKNOWN_KEY, here, f"`{error.instance}` can't stand in {node(path)}", hint, path, here, True)
     hint = describe(error.schema) or "use letters, digits and `_`"
+    if odd := other_sign(error.instance):
+        hint = f"write `{typed(error.instance).strip()}`: {odd}"
     if path[-1:] in (("say",), ("value",)) and re.search(r"\w \w", error.instance):
         hint = "put quotes around the whole text, if this belongs to one: a comma ends a text within braces"
     if code := _LANGUAGES.get(error.instance.lower(), ""):

@@ -22,6 +22,7 @@ from lumen.interpreters.expressions.functions import CAUGHT, DRAWING
 from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.known_words import KnownWords
@@ -154,7 +155,7 @@ def place_within(document: Document, path: NodePath, source: str, offset: int, l
     A text that computes how long an `after` waits is the last of its path: it is a key.
     """
     place = document.place(path, key=path[-2:] == ("after", source))
-    lines = document.text.splitlines()
+    lines = lines_of(document.text)
     if place.line > len(lines):
         return place
     line = lines[place.line - 1]

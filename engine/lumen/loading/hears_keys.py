@@ -7,6 +7,7 @@ from typing import Literal
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_PHRASE
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, did_you_mean
+from lumen.language.text_lines import lines_of
 from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
@@ -77,7 +78,7 @@ class HearsKeys:
     def place(self, name: str, where: NodePath) -> Place:
         """Where a name stands in a key."""
         place = self.report.document.place(where, key=True)
-        line = self.report.document.text.split("\n")[place.line - 1] if place.line == place.end_line else ""
+        line = lines_of(self.report.document.text)[place.line - 1] if place.line == place.end_line else ""
         found = re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line[place.column - 1 : place.end_column - 1])
         if found is None:
             return place

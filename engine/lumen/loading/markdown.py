@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document, NodeSpan
 from lumen.loading.yaml_reader import parse
 
@@ -21,8 +22,8 @@ _HEADING = re.compile(r"#+\s+(\S+)\s*")
 
 def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
     """The document of a Markdown file, or None, and what is wrong with it; never raises for what the file holds."""
-    text = content.decode("utf-8-sig", "replace").replace("\r\n", "\n")
-    lines = text.split("\n")
+    lines = lines_of(content.decode("utf-8-sig", "replace"))
+    text = "\n".join(lines)
     end = next((i for i, line in enumerate(lines) if i and line.rstrip() == FENCE), 0)
     if lines[0].rstrip() != FENCE or not end:
         hint = f"begin with a line `{FENCE}`, then `questions:` as in YAML, then a line `{FENCE}`"

@@ -10,11 +10,13 @@ from itertools import chain, islice
 
 import yaml
 
+from lumen.language.text_lines import lines_of
 from lumen.loading.bracketed_texts import bracketed
 from lumen.loading.document import MAX_NODE_DEPTH
 from lumen.loading.indentation import depths, items, too_deep
 from lumen.loading.line_marks import closers, marks_of
 from lumen.loading.slips import Slip, brackets, colons, flows, not_closed, quotes, signs
+from lumen.loading.yaml_composer import shielded
 
 MAX_MENDS = 60
 """Changes that are tried."""
@@ -41,7 +43,7 @@ def mistake(text: str, row: int, failed: int) -> tuple[Slip, str] | None:
     """
     if len(text) > MAX_CHARACTERS:
         return None
-    lines, best, reached = text.split("\n"), None, failed
+    lines, best, reached = lines_of(text), None, failed
     at, left = min(row, len(lines) - 1), MAX_READ
     tried: set[tuple[tuple[int, str], ...]] = set()
     for slip in islice(chain(_candidates(lines, at), depths(lines, at)), MAX_MENDS):
@@ -63,7 +65,7 @@ def mistake(text: str, row: int, failed: int) -> tuple[Slip, str] | None:
 
 def failure(text: str) -> int | None:
     """The index of the line at which a reader of that text stops; None where it is YAML."""
-    loader, depth = yaml.CSafeLoader(text), 0
+    loader, depth = yaml.CSafeLoader(shielded(text)[0]), 0
     try:
         while loader.check_event():
             event = loader.get_event()

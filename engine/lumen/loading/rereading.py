@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import MAX_NODES, Document, NodeSpan
 from lumen.loading.yaml_composer import TooLargeError, compose
 
@@ -20,13 +21,13 @@ Read = Callable[[str, yaml.Node, NodePath, yaml.Node], tuple[Any, Spans] | None]
 """Makes data and places of the node at a path, by the text in which it stands; None where something is wrong in it."""
 
 _OUTER, _NEXT = "outer", "next"
-_FAR_REACHING = re.compile(r"[\r\x85\u2028\u2029\ufeff]|(?m:^%|^<<<<<<< )|(?<![^\s\[{,:-])&[\w-]")
+_FAR_REACHING = re.compile(r"[\r\ufeff]|(?m:^%|^<<<<<<< )|(?<![^\s\[{,:-])&[\w-]")
 """What changes how other lines are read, or where they begin: ends of lines, directives, conflicts, anchors."""
 
 
 def reread(before: Document, text: str, read: Read) -> Document | None:
     """The document that a text makes some of whose lines are not as before; None where it has to be read as a whole."""
-    old, new = before.text.split("\n"), text.split("\n")
+    old, new = lines_of(before.text), lines_of(text)
     if len(old) != len(new) or new[-1] or before.dropped or _FAR_REACHING.search(text):
         return None
     changed = [i for i, (one, other) in enumerate(zip(old, new, strict=True)) if one != other]

@@ -7,9 +7,9 @@ order: the characters of a value that are no blanks are found again one after th
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
-from itertools import accumulate
 
 from lumen.language.diagnostics import Place
+from lumen.language.text_lines import LineIndex
 
 _PROPERTIES = re.compile(r"(?:[&!]\S*\s+)*")
 _HEADER = re.compile(r"[|>][^\r\n]*(?:\r\n?|\n)")
@@ -31,10 +31,8 @@ def within(text: str, place: Place, value: str, offset: int, length: int) -> Pla
 
     None where the two can't be brought together.
     """
-    starts = [0, *accumulate(map(len, text.splitlines(keepends=True)))]
-    if place.end_line >= len(starts):
-        starts.append(len(text))
-    begin, end = (starts[line - 1] + column - 1 for line, column in _corners(place))
+    lines = LineIndex(text)
+    begin, end = (lines.offset(line, column) for line, column in _corners(place))
     written = [unit for unit in _units(text, begin, end) if not unit[2].isspace()]
     wanted = [i for i, sign in enumerate(value) if not sign.isspace()]
     if not wanted or [unit[2] for unit in written[: len(wanted)]] != [value[i] for i in wanted]:
@@ -43,7 +41,9 @@ def within(text: str, place: Place, value: str, offset: int, length: int) -> Pla
     last = max(bisect_right(wanted, offset + length - 1) - 1, 0)
     if first > last:  # nothing but blanks, or the end: the sign before it
         first = last
-    (line, column), (end_line, end_column) = (_position(starts, at) for at in (written[first][0], written[last][1]))
+    (line, column), (end_line, end_column) = (
+        (lines.line(at), lines.column(at)) for at in (written[first][0], written[last][1])
+    )
     return place._replace(line=line, column=column, end_line=end_line, end_column=end_column)
 
 
@@ -71,8 +71,3 @@ def _meant(written: str) -> str:
         return written[0]
     letter, digits = written[1], written[2:]
     return chr(int(digits, 16)) if digits and letter in "xuU" else _LETTERS.get(letter, letter)
-
-
-def _position(starts: list[int], at: int) -> tuple[int, int]:
-    line = bisect_right(starts, at)
-    return line, at - starts[line - 1] + 1

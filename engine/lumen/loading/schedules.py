@@ -6,6 +6,7 @@ from datetime import date
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.language.hours import WEEKDAYS, Schedule
+from lumen.language.text_lines import lines_of
 from lumen.loading.document_report import DocumentReport
 
 BAD_TIME = Code("bad-time", "statecharts", ERROR, "a time of day can't be read")
@@ -130,6 +131,6 @@ def _weekday(word: str) -> int:
 def _quoted(report: DocumentReport, where: NodePath, key: bool) -> bool:
     """Whether that node is written with quotes."""
     place = report.document.place(where, key=key)
-    lines = report.document.text.splitlines()
+    lines = lines_of(report.document.text)
     line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
     return line[place.column - 1 : place.column] in ("'", '"', "|", ">")

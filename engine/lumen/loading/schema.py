@@ -9,6 +9,7 @@ from typing import Any
 from lumen.errors import LumenError
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.diagnostics import NodePath
+from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.loading.document import TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
@@ -177,13 +178,13 @@ def _begins(report: DocumentReport, path: NodePath, sign: str) -> bool:
     if path not in report.document.spans:
         return False
     place = report.document.place(path)
-    return report.document.text.split("\n")[place.line - 1][place.column - 1 :].startswith(sign)
+    return lines_of(report.document.text)[place.line - 1][place.column - 1 :].startswith(sign)
 
 
 def _comment(report: DocumentReport, path: NodePath) -> str:
     """The comment that stands in place of a value, where it may have been meant for one: `onDone: #offer`."""
     place = report.document.place(path, key=True)
-    line = report.document.text.split("\n")[place.line - 1] if path in report.document.spans else ""
+    line = lines_of(report.document.text)[place.line - 1] if path in report.document.spans else ""
     found = re.match(r": +(#[\w.-]+)\s*$", line[place.end_column - 1 :])
     return found[1] if found and _at(report, path) is None else ""
 

@@ -7,6 +7,7 @@ from typing import Any
 from lumen.interpreters.json_schema import occurs
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint
+from lumen.language.lookalikes import other_sign, typed
 from lumen.loading.bracketed_texts import slot_signs
 from lumen.loading.units import seconds
 from lumen.loading.yaml_scalars import resolve
@@ -74,6 +75,8 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
             return f"{name} can't be `{_short(value)}`", hint
         case "pattern":
             small = f"write it in small letters: `{value.lower()}`" if occurs(bound, value.lower()) else hint
+            if occurs(bound, plain := typed(value)) and plain != value:
+                return f"{name} can't be `{_short(value)}`", f"write `{plain}`: {other_sign(value)}"
             return f"{name} can't be `{_short(value)}`", small
         case "minimum":
             return f"{name} is {value:g}, it should be at least {bound:g}", hint
@@ -126,6 +129,8 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
     if {"number", "integer"} & set(wanted) and isinstance(value, str):
         if type(resolve(value)) in (int, float):
             return f"leave out the quotes: {value}"
+        if value != typed(value) and type(resolve(typed(value).replace(",", "."))) in (int, float):
+            return f"write `{typed(value).replace(',', '.')}`: {other_sign(value)}"
         if number := _NUMBER.fullmatch(value):
             return f"write {number[1].replace(',', '.').replace('_', '')}" + _unit(number[2])
     if "object" in wanted and isinstance(value, str):

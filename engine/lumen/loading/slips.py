@@ -36,7 +36,13 @@ QUOTE_BRACES = 'put quotes around the text: "{{ … }}"'
 
 _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
     (
-        re.compile("^[ ]*(?P<slip>[\u00a0\u2007\u202f\u3000\u200b\ufeff]+)"),
+        re.compile("^ *(?P<slip>[\u00ad\u200b-\u200f\u2060\ufeff]+)"),
+        "",
+        "an invisible character stands here",
+        "delete it: it may come from a copied text, or from another file that was pasted whole",
+    ),
+    (
+        re.compile("^[ ]*(?P<slip>[\u00a0\u2007\u202f\u3000]+)"),
         " ",
         "this looks like a blank in the indentation, and is another character",
         "delete it, and type spaces",

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from lumen.language.diagnostics import Code, NodePath, Place
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 
@@ -41,7 +42,7 @@ def place_of(document: Document, path: NodePath, text: str, offset: int, length:
 
 def _columns(document: Document, whole: Place, text: str) -> dict[int, tuple[int, int]]:
     """Line and column of each visible character of the text; empty where one can't be found."""
-    lines = document.text.split("\n")
+    lines = lines_of(document.text)
     first = lines[whole.line - 1] if document.text and whole.line <= len(lines) else ""
     line, column = whole.line, whole.column
     if first[column - 1 : column] in ("|", ">"):

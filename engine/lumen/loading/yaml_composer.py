@@ -5,7 +5,7 @@ event by event, an alias as all that it stands for, and what is too much ends th
 further.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import yaml
@@ -29,6 +29,31 @@ class TooLargeError(Exception):
         self.mark = mark
 
 
+class UnknownAliasError(ComposerError):
+    """An alias names an anchor that is not above it."""
+
+    def __init__(self, name: str, known: tuple[str, ...], mark: Any) -> None:
+        super().__init__(None, None, "found undefined alias", mark)
+        self.name, self.known = name, known
+
+
+_OLD_BREAKS = "\x85\u2028\u2029"
+"""Characters that end a line for libyaml, as in YAML 1.1; in YAML 1.2 they are part of a text."""
+
+
+def shielded(text: str) -> tuple[str, Mapping[int, str]]:
+    """The text with other characters in place of those that only YAML 1.1 reads as line breaks; how to undo it.
+
+    Places stay: each character becomes one. The others are of the private use area, and not in the text.
+    """
+    old = [sign for sign in _OLD_BREAKS if sign in text]
+    if not old:
+        return text, {}
+    free = (code for code in range(0xE000, 0xF900) if chr(code) not in text)
+    meant = dict(zip(free, old, strict=False))
+    return text.translate({ord(sign): code for code, sign in meant.items()}), meant
+
+
 def compose(text: str) -> yaml.Node | None:
     """The root of the file's only document, None where it holds nothing; tags of plain scalars are not resolved.
 
@@ -36,15 +61,17 @@ def compose(text: str) -> yaml.Node | None:
     """
     if text.count("%TAG") > MAX_TAG_DIRECTIVES:
         raise TooLargeError(f"more than {MAX_TAG_DIRECTIVES} tag directives", None)
-    loader = yaml.CSafeLoader(text)
+    readable, meant = shielded(text)
+    loader = yaml.CSafeLoader(readable)
     try:
-        return _Composer(loader).document()
+        return _Composer(loader, meant).document()
     finally:
         loader.dispose()
 
 
 class _Composer:
-    def __init__(self, loader: yaml.CSafeLoader) -> None:
+    def __init__(self, loader: yaml.CSafeLoader, meant: Mapping[int, str]) -> None:
+        self._meant = meant
         self._next: Callable[[], Any] = loader.get_event
         self._anchors: dict[str, yaml.Node] = {}
         self._sizes: dict[str, int] = {}
@@ -67,10 +94,11 @@ class _Composer:
         kind, before = type(event), self._count
         self._add(1, event)
         if kind is yaml.AliasEvent:
-            return self._meant(event)
+            return self._named_before(event)
         node: yaml.Node
         if kind is yaml.ScalarEvent:
-            node = yaml.ScalarNode(event.tag or _TEXT, event.value, event.start_mark, event.end_mark, event.style)
+            value = event.value.translate(self._meant) if self._meant else event.value
+            node = yaml.ScalarNode(event.tag or _TEXT, value, event.start_mark, event.end_mark, event.style)
             self._named(event, node)
         else:
             node = self._list(event, depth + 1) if kind is yaml.SequenceStartEvent else self._map(event, depth + 1)
@@ -99,18 +127,16 @@ class _Composer:
         return node
 
     def _named(self, event: Any, node: yaml.Node) -> yaml.Node:
-        """The node, known by its anchor from here on."""
+        """The node, known by its anchor from here on: an anchor may be used again (YAML 1.2, 3.2.2.2)."""
         if event.anchor is not None:
-            if (first := self._anchors.get(event.anchor)) is not None:
-                context = "found duplicate anchor; first occurrence"
-                raise ComposerError(context, first.start_mark, "second occurrence", event.start_mark)
             self._anchors[event.anchor] = node
+            self._sizes.pop(event.anchor, None)
         return node
 
-    def _meant(self, event: Any) -> yaml.Node:
+    def _named_before(self, event: Any) -> yaml.Node:
         """The node that an alias stands for."""
         if event.anchor not in self._anchors:
-            raise ComposerError(None, None, "found undefined alias", event.start_mark)
+            raise UnknownAliasError(event.anchor, tuple(self._anchors), event.start_mark)
         if event.anchor not in self._sizes:
             raise TooLargeError("an alias stands within what it stands for", event.start_mark)
         self._add(self._sizes[event.anchor] - 1, event)

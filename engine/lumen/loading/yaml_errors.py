@@ -6,9 +6,10 @@ from typing import Any
 
 import yaml
 
-from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place, mean, nearest
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import TOO_LARGE
-from lumen.loading.yaml_composer import TooLargeError
+from lumen.loading.yaml_composer import TooLargeError, UnknownAliasError
 
 MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "a merge conflict is not resolved: both sides are in the file")
 NOT_UTF8 = Code("not-utf8", "text", ERROR, "a file is not UTF-8 text")
@@ -21,20 +22,21 @@ _HINTS = {
     "mapping values are not allowed": "put quotes around a text that holds a colon and a blank",
     "cannot start any token": "put quotes around a text that begins with `@`, `%`, a backquote or a quote",
     "another document": "a file holds one document: delete the line `---`",
-    "undefined alias": "put quotes around a text that begins with `*`; nothing here has that anchor `&`",
     "could not find expected ':'": "write `:` and a blank behind it if it is a key; else indent it below its key",
-    "duplicate anchor": "give each anchor `&` a name of its own",
 }
 _SMALLER = "split it, or use fewer levels and aliases"
-_CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
+_CONFLICT = re.compile(r"(<{7}|={7}|>{7})(?= |$)")
+_NOT_ALLOWED = yaml.reader.Reader.NON_PRINTABLE
+_MOST_NULS = 0.2
+"""The share of bytes that are zero from which on a file is taken for UTF-16 without a mark at its beginning."""
 
 
 def merge_conflict(file: str, text: str) -> Diagnostic | None:
     """What to say of a file that holds both sides of a merge, None where it does not."""
-    found = _CONFLICT.search(text)
+    begun = (_CONFLICT.match(line) for line in lines_of(text))
+    line, found = next(((number, match) for number, match in enumerate(begun, 1) if match), (0, None))
     if found is None:
         return None
-    line = text.count("\n", 0, found.start()) + 1
     place = Place(file, line, 1, line, len(found[0]) + 1)
     hint = "keep one of the two versions, and delete the lines with <<<<<<<, ======= and >>>>>>>"
     return MERGE_CONFLICT.at(place, "a merge conflict is not resolved: both sides are in the file", hint)
@@ -42,15 +44,38 @@ def merge_conflict(file: str, text: str) -> Diagnostic | None:
 
 def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
     """What to say of bytes that are no UTF-8 from there on."""
-    line = content.count(b"\n", 0, at) + 1
-    column = len(content[content.rfind(b"\n", 0, at) + 1 : at].decode("utf-8", "replace")) + 1
-    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        message = "the file is UTF-16 text, and should be UTF-8"
-    else:
-        message = (
-            f"the file is not UTF-8 text: `{content[at : at + 1].decode('latin-1')}` may be from Windows or Latin-1"
-        )
+    if _is_utf16(content):
+        return _utf16(file)
+    before = lines_of(content[:at].decode("utf-8-sig", "replace"))
+    line, column = len(before), len(before[-1]) + 1
+    sign = content[at : at + 1].decode("cp1252", "replace")
+    message = f"the file is not UTF-8 text: `{sign}` may be from Windows or Latin-1"
     return NOT_UTF8.at(Place(file, line, column, line, column + 1), message, "save it as UTF-8")
+
+
+def _utf16(file: str) -> Diagnostic:
+    return NOT_UTF8.at(Place(file, 1, 1, 1, 2), "the file is UTF-16 text, and should be UTF-8", "save it as UTF-8")
+
+
+def _is_utf16(content: bytes) -> bool:
+    """Whether the bytes begin with the mark of UTF-16, or hold as many zeros as a text of it does."""
+    return content[:2] in (b"\xff\xfe", b"\xfe\xff") or content.count(0) > _MOST_NULS * len(content)
+
+
+def not_allowed(file: str, text: str) -> Diagnostic | None:
+    """What to say of a text with a character that YAML does not allow (5.1), None if it has none."""
+    found = _NOT_ALLOWED.search(text)
+    if found is None:
+        return None
+    if _is_utf16(text.encode("utf-8", "surrogatepass")):
+        return _utf16(file)
+    before, sign = lines_of(text[: found.start()]), found[0]
+    line, column = len(before), len(before[-1]) + 1
+    place = Place(file, line, column, line, column + 1)
+    meant = bytes([ord(sign)]).decode("cp1252", "ignore") if "\x80" <= sign <= "\x9f" else ""
+    which = f"U+{ord(sign):04X}, {f'`{meant}` of Windows-1252' if meant else 'a control character'}"
+    hint = f"delete it, and type `{meant}` if it was meant" if meant else "delete it: an editor may not show it"
+    return YAML_SYNTAX.at(place, f"YAML does not allow the character {which}", hint)
 
 
 def too_large(file: str, error: TooLargeError) -> Diagnostic:
@@ -61,15 +86,15 @@ def too_large(file: str, error: TooLargeError) -> Diagnostic:
 
 
 def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
-    if isinstance(error, yaml.reader.ReaderError):
-        line = text.count("\n", 0, error.position) + 1
-        place = Place(file, line, 1, line, 2)
-        return YAML_SYNTAX.at(place, "the file holds a character that YAML does not allow", "delete it")
+    if found := not_allowed(file, text):  # libyaml counts its place in bytes
+        return found
+    if isinstance(error, UnknownAliasError):
+        return _unknown_alias(file, error)
     if conflict := merge_conflict(file, text):
         return conflict
     context = getattr(error, "context", None) or ""
     mark: Any = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-    lines, failed = text.split("\n"), mark.line
+    lines, failed = lines_of(text), mark.line
     source = lines[failed] if failed < len(lines) else ""  # YAML knows other ends of lines as well
     if "\t" in (before := source[: mark.column + 1]) and not before.strip():
         column = before.index("\t") + 1
@@ -80,8 +105,8 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     from lumen.loading.mending import mistake  # only where something slipped
     from lumen.loading.slips import NOT_CLOSED
 
-    if found := mistake(text, mark.line, failed):
-        slip, _ = found
+    if slipped := mistake(text, mark.line, failed):
+        slip, _ = slipped
         place = Place(file, slip.line, slip.column, slip.line, slip.column + slip.length)
         return YAML_SYNTAX.at(place, slip.message, slip.hint)
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
@@ -91,6 +116,17 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     detail = f"{problem} {context}" if context else problem
     hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
     return YAML_SYNTAX.at(place, f"this is not YAML: {detail}", hint)
+
+
+def _unknown_alias(file: str, error: UnknownAliasError) -> Diagnostic:
+    """What to say of `*name` without `&name` above it: a slip in the name, or a text that begins with `*`."""
+    mark, name = error.problem_mark, error.name
+    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + len(name) + 2)
+    quotes = f'put quotes around it if it is a text: "*{name}"'
+    hint = mean(f"*{name}", f"*{near}") if (near := nearest(name, error.known)) else quotes
+    if error.known and not near:
+        hint = f"{quotes}; the anchors above are {', '.join(f'`&{known}`' for known in error.known[:8])}"
+    return YAML_SYNTAX.at(place, f"there is no anchor `&{name}` above for `*{name}` to stand for", hint)
 
 
 def _begins_late(error: Any, lines: Sequence[str]) -> bool:

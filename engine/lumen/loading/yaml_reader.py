@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
+from lumen.language.lookalikes import typed
 from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
 from lumen.loading.memoization import last, memoize
 from lumen.loading.rereading import reread
@@ -197,9 +198,8 @@ def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
     """The number that a value and an empty key behind its comma were meant to be; empty where they are none."""
     near = key.start_mark.index == before.end_mark.index + 1 and value.start_mark.index == value.end_mark.index
     plain = near and all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
-    if plain and _WHOLE.fullmatch(before.value) and _DECIMALS.fullmatch(key.value):
-        return f"{before.value}.{key.value}"
-    return ""
+    whole, decimals = typed(before.value if plain else ""), typed(key.value if plain else "")
+    return f"{whole}.{decimals}" if _WHOLE.fullmatch(whole) and _DECIMALS.fullmatch(decimals) else ""
 
 
 def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:

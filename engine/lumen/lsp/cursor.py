@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 from lumen.loading.yaml_reader import parse
 from lumen.lsp.fragments import fragment
@@ -34,14 +35,14 @@ def cursor(text: str, line: int, column: int, readable: Callable[[], str]) -> Cu
 
     `readable` makes the text as far as it can be read, which is asked for only where the lines around do not tell.
     """
-    lines = text.split("\n")
+    lines = lines_of(text)
     if line > len(lines):
         return None
     near, at = fragment(lines, line - 1, column)
     found = _cursor(near, at + 1, column)
     if found:
         return found
-    others = readable().split("\n")
+    others = lines_of(readable())
     if len(others) != len(lines):
         return None
     return _cursor([*others[: line - 1], lines[line - 1], *others[line:]], line, column)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 
 
@@ -16,7 +17,7 @@ class Fold(NamedTuple):
 
 def folds(document: Document) -> list[Fold]:
     """All of them; of those that begin in the same line only the longest."""
-    lines, found = document.text.splitlines(), dict[int, Fold]()
+    lines, found = lines_of(document.text), dict[int, Fold]()
     for fold in (*_nodes(document, lines), *_comments(lines)):
         if fold.last > fold.first and (fold.first not in found or found[fold.first].last < fold.last):
             found[fold.first] = fold

@@ -33,7 +33,8 @@ class LanguageServer(pygls_server.LanguageServer):
     """Checks the projects of the files that are open, and answers what an editor asks about a position."""
 
     def __init__(self) -> None:
-        super().__init__("lumen", lumen.__version__)
+        # Whole texts: pygls applies changes of parts by lines that also end at U+2028 and the like.
+        super().__init__("lumen", lumen.__version__, text_document_sync_kind=lsp.TextDocumentSyncKind.Full)
         self.projects = OpenProjects()
         self.running = RunningExhibitions(self.projects.roots, self._moved)
         self._told: dict[Path, set[str]] = {}

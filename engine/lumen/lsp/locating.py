@@ -1,7 +1,6 @@
 """Names inside texts: the exact place of a part of a scalar, however it is quoted, folded or escaped."""
 
 import re
-from bisect import bisect_right
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
@@ -9,6 +8,7 @@ from typing import NamedTuple
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.tokens import Token, tokenize
 from lumen.language.diagnostics import NodePath, Place
+from lumen.language.text_lines import LineIndex
 from lumen.loading.document import Document
 from lumen.lsp.names import NameKind, covers
 
@@ -29,14 +29,11 @@ class DocumentText:
 
     def __init__(self, document: Document) -> None:
         self.document, self.text = document, document.text
-        self._starts = [0]
-        for line in self.text.splitlines(keepends=True):
-            self._starts.append(self._starts[-1] + len(line))
+        self._lines = LineIndex(document.text)
 
     def offset(self, line: int, column: int) -> int:
         """Where in the text a line and column, from 1, are; the end where they lie beyond it."""
-        start = self._starts[min(line, len(self._starts)) - 1]
-        return min(start + column - 1, len(self.text))
+        return self._lines.offset(line, column)
 
     def part(self, place: Place, source: str, offset: int, length: int) -> Place | None:
         """The place of some characters of a scalar's value, None where the file has them in no such form."""
@@ -52,9 +49,8 @@ class DocumentText:
 
     def between(self, start: int, length: int) -> Place:
         """The place of so many characters of one line."""
-        line = min(bisect_right(self._starts, start), len(self._starts) - 1) - 1 if start else 0
-        column = start - self._starts[line] + 1
-        return Place(self.document.file, line + 1, column, line + 1, column + length)
+        line, column = self._lines.line(start), self._lines.column(start)
+        return Place(self.document.file, line, column, line, column + length)
 
     def scalar(self, path: NodePath, *, key: bool = False) -> Place | None:
         """The place of a key or of a text, without its quotes."""

@@ -6,6 +6,7 @@ All other lines stay where they are, so that what is said of them is in the righ
 import re
 from typing import NamedTuple
 
+from lumen.language.text_lines import lines_of
 from lumen.loading.yaml_reader import parse
 from lumen.lsp.fragments import ancestors, block_end
 
@@ -29,7 +30,7 @@ class MendedText(NamedTuple):
 
 def mended(file: str, text: str) -> MendedText | None:
     """The text without the lines that keep it from being read; None where nothing helps."""
-    lines, cut = text.split("\n"), set[int]()
+    lines, cut = lines_of(text), set[int]()
     first: int | None = None
     for _ in range(MAX_CUTS):
         at = _fault(file, lines, cut)

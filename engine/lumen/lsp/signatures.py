@@ -5,6 +5,7 @@ import re
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.language.text_lines import lines_of
 from lumen.lsp.analysis import Analysis
 
 _OPEN = re.compile(r"(\w+)\s*\($")
@@ -26,7 +27,7 @@ class FunctionSignature(NamedTuple):
 
 def signature(analysis: Analysis, file: str, line: int, column: int) -> FunctionSignature | None:
     """The innermost call that is open at a line and column, from 1; None where there is none."""
-    lines = analysis.text(file).split("\n")
+    lines = lines_of(analysis.text(file))
     head = lines[line - 1][: column - 1] if line <= len(lines) else ""
     head = _TEXT.sub(lambda found: "_" * len(found[0]), re.sub(r"'[^']*$", "_", head) if head.count("'") % 2 else head)
     depth = commas = 0

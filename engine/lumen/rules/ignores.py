@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, NodePath, Place, Severity, did_you_mean, has_errors
+from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 
 IGNORE_WITHOUT_REASON = Code("ignore-without-reason", "comments", WARNING, "an ignore comment does not say why")
@@ -19,7 +20,6 @@ UNUSED_IGNORE = Code("unused-ignore", "comments", WARNING, "an ignore comment hi
 
 _COMMENT = re.compile(r"(?<!\S)#[ \t]*lumen:[ \t]*ignore\b[ \t]*(?:\[(?P<codes>[^\]]*)\])?[ \t]*(?P<reason>.*)")
 _WORD = re.compile(r"[^,\s]+")
-_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 
 
 class Ignore(NamedTuple):
@@ -49,7 +49,7 @@ def obey(
 
 def comments_of(document: Document) -> Iterator[Ignore]:
     """The comments of a document; what looks like one inside a text is none."""
-    lines = _BREAK.split(document.text)
+    lines = lines_of(document.text)
     for number, line in enumerate(lines, 1):
         if (match := _COMMENT.search(line)) and not _in_text(document, number, match.start() + 1):
             place = Place(document.file, number, match.start() + 1, number, len(line.rstrip()) + 1)

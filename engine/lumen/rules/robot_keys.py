@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from lumen.errors import UsageError
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
+from lumen.language.text_lines import lines_and_breaks
 from lumen.loading.document import Document
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.yaml_reader import parse
@@ -54,10 +55,10 @@ def _main(files: Mapping[str, bytes]) -> Document:
 
 def _rewriting(document: Document, name: str, key: str) -> Rewriting:
     route, value = document.spans[("routes", name)].value, document.spans[("routes", name, "key")].value
-    lines = document.text.split("\n")
+    lines, breaks = lines_and_breaks(document.text)
     within_braces = lines[route.line - 1][route.column - 1 :].startswith("{")
     column = document.place(("routes", name, "key"), key=True).column
-    line_break = "\r\n" if lines[value.line - 1].endswith("\r") else "\n"
+    line_break = breaks[value.line - 1] or "\n"
     between = ", " if within_braces else line_break + " " * (column - 1)
     why = f"`{name}` holds the robot, and `{key}` is its alias"
     return Rewriting(value, why, f'"{NEW_KEYS[key]}"{between}alias: {key}')

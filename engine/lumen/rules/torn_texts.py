@@ -6,6 +6,7 @@ from functools import partial
 from itertools import pairwise
 
 from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.language.text_lines import lines_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import value_at
@@ -35,7 +36,7 @@ def _cut(report: DocumentReport) -> None:
     text = report.document.text
     if not _HAS_CUT.search(text):
         return
-    lines = text.split("\n")
+    lines = lines_of(text)
     for path, span in list(report.document.spans.items()):
         place = span.value
         line = lines[place.end_line - 1] if place.end_line <= len(lines) else ""
@@ -50,7 +51,7 @@ def _cut(report: DocumentReport) -> None:
 
 def _torn(report: DocumentReport) -> None:
     """Lists of sentences of which one does not end, and goes on in small letters."""
-    lines = report.document.text.split("\n")
+    lines = lines_of(report.document.text)
     lists: dict[NodePath, list[str]] = {}
     for path in report.document.spans:
         if path and isinstance(path[-1], int) and isinstance(value := value_at(report, path), str):

@@ -8,9 +8,9 @@ from functools import partial
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
+from lumen.language.text_lines import LineIndex, lines_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.line_index import LineIndex
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
@@ -60,7 +60,7 @@ def _lines(text: str, pattern: re.Pattern[str]) -> set[int]:
 
 def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath, str, object]]:
     """Every value that stands in one of these lines without quotes: its path, as it is written, and as it is read."""
-    lines = report.document.text.split("\n")
+    lines = lines_of(report.document.text)
     for path, span in report.document.spans.items():
         place = span.value
         if place.line in wanted and path and place.line == place.end_line:
@@ -99,7 +99,7 @@ def _strange(report: DocumentReport) -> None:
     """Errors that come of curly quotes are told as such."""
     if not _CURLY.search(report.document.text):
         return
-    lines = report.document.text.split("\n")
+    lines = lines_of(report.document.text)
     for i, found in enumerate(report.diagnostics):
         start, line = found.place.column - 1, lines[found.place.line - 1]
         said = line[start : found.place.end_column - 1] if found.place.line == found.place.end_line else ""

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import NodePath, Place
+from lumen.language.text_lines import lines_of
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.document import Document
 from lumen.loading.packaged import MAIN_FILE
@@ -105,7 +106,7 @@ def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | N
     if first is None:
         raise UsageError(f"{MAIN_FILE} is empty: `lumen lint` says what is missing")
     key = main.place((first,), key=True)
-    ahead = main.text.split("\n")[key.line - 1][: key.column - 1].strip("\ufeff ")
+    ahead = lines_of(main.text)[key.line - 1][: key.column - 1].strip("\ufeff ")
     if ahead.strip("{ "):
         raise UsageError(f"{MAIN_FILE}: write `{VOCABULARY_KEY}: {vocabulary}` as its first key, by hand")
     after = ", " if ahead else line_break + " " * (key.column - 1)

@@ -1,18 +1,16 @@
 """Findings with the line of the file that each is about, and a mark below the very word."""
 
-import re
 from collections.abc import Iterator, Sequence
 
 from lumen.app.lint.findings import Findings
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary, width
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic, Place
+from lumen.language.text_lines import lines_of
 from lumen.loading.files import Unreadable
 
 MAX_EXCERPT_WIDTH = 140
 """Characters of a line that are shown; of a longer one those around the word."""
-
-_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
@@ -75,7 +73,7 @@ class _Excerpts:
         if file not in self.texts:
             content = self.found.files.get(file, b"")
             shown = b"" if isinstance(content, Unreadable) else content
-            self.texts[file] = _BREAK.split(shown.decode("utf-8-sig", "replace"))
+            self.texts[file] = lines_of(shown.decode("utf-8-sig", "replace"))
         return self.texts[file]
 
 

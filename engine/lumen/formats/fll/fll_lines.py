@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.language.diagnostics import Place
+from lumen.language.text_lines import lines_of
 
 MAX_FLL_LINES = 20_000
 """In a file."""
@@ -51,7 +52,7 @@ class FllLineReader:
             yield part
 
     def lines(self, text: str) -> Iterator[FllLine]:
-        rows = text.splitlines()
+        rows = lines_of(text)
         if len(rows) > MAX_FLL_LINES:
             raise broken(Place(self.file), "too-large", f"the file has more than {MAX_FLL_LINES:,} lines", "split it")
         for row, source in enumerate(rows, 1):

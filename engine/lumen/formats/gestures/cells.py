@@ -3,13 +3,14 @@
 from collections.abc import Iterator
 
 from lumen.language.diagnostics import Place
+from lumen.language.text_lines import lines_of
 
 Cell = tuple[str, Place]
 
 
 def cells_of(file: str, text: str, separator: str) -> Iterator[list[Cell]]:
     """The cells of every line that holds something, without the blanks around them."""
-    for i, line in enumerate(text.splitlines(), 1):
+    for i, line in enumerate(lines_of(text), 1):
         if line.strip():
             yield list(_cells(file, i, line, separator))
 

@@ -16,7 +16,7 @@ from lumen.interpreters.expressions.expression_findings import (
 from lumen.interpreters.expressions.functions import ALL_FUNCTIONS, CLOCK_FUNCTIONS, FUNCTIONS, Function
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
-from lumen.language.diagnostics import Code, did_you_mean
+from lumen.language.diagnostics import Code, did_you_mean, mean
 
 _INSTEAD = {
     "len": "size", "length": "size", "count": "size", "lowerAscii": "lower", "toLower": "lower", "strip": "trim",
@@ -37,7 +37,7 @@ def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | 
     function = ALL_FUNCTIONS.get(node.function)
     if function is None:
         similar = _INSTEAD.get(node.function)
-        hint = f"did you mean `{similar}`?" if similar else did_you_mean(node.function, FUNCTIONS, "there are")
+        hint = mean(node.function, similar) if similar else did_you_mean(node.function, FUNCTIONS, "there are")
         findings.report(UNKNOWN_FUNCTION, node, f"there is no function `{node.function}`", hint, node.named)
         return None
     wanted, given = len(function.parameters), len(node.arguments)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH
+from lumen.language.lookalikes import other_sign, typed
 
 _TOKEN = re.compile(
     r"""(?P<blank>[ \t\r\n]+)
@@ -17,6 +18,12 @@ _TOKEN = re.compile(
     re.VERBOSE | re.ASCII,
 )
 _ESCAPE = re.compile(r"\\(x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|[0-3][0-7]{2}|.)")
+_FILTER = re.compile(r"\|\s*(?P<name>[A-Za-z_]\w*)\b(?!\.)(?:\((?P<given>[^()]*)\))?")
+_FILTERS = frozenset((
+    "abs", "capitalize", "count", "default", "escape", "first", "float", "format", "int", "join", "last", "length",
+    "lower", "replace", "round", "safe", "size", "sort", "string", "title", "trim", "truncate", "upper",
+))  # fmt: skip
+"""Filters of Jinja and Liquid."""
 _SIMPLE = dict(zip("abfnrtv\\?\"'`", "\a\b\f\n\r\t\v\\?\"'`", strict=True))
 _HINTS = {
     "=": "compare with `==`",
@@ -65,8 +72,7 @@ def token_at(source: str, offset: int) -> Token:
     if match is None or match.lastgroup is None:
         character = source[offset]
         what = "this text is not closed" if character in "'\"" else f"`{character}` has no meaning here"
-        letter = "a field with such a letter is written in brackets: context['…']" if character.isalpha() else ""
-        raise ExpressionError(what, offset, _HINTS.get(character, letter))
+        raise ExpressionError(what, offset, _filter(source, offset) or _HINTS.get(character) or _other(source, offset))
     kind, text = match.lastgroup, match[0]
     if kind in ("int", "float"):
         return Token(kind, text, offset, _number(source, kind, text, match.end()))
@@ -75,6 +81,27 @@ def token_at(source: str, offset: int) -> Token:
     if kind == "text":
         return Token("text", text, offset, _unescape(text[1:-1], offset + 1))
     return Token(kind, text, offset)
+
+
+def _filter(source: str, offset: int) -> str:
+    """The hint for `| title`, a filter; empty for anything else."""
+    found = _FILTER.match(source, offset)
+    if found is None or found["name"] not in _FILTERS:
+        return ""
+    value = source[:offset].rpartition("{{")[2].strip()
+    name = {"length": "size", "count": "size"}.get(found["name"], found["name"])
+    if name in ("lower", "size", "trim"):
+        return f"there are no filters: write `{name}({value})`"
+    if name == "default" and found["given"]:
+        return f"there are no filters: write `has({value}) ? {value} : {found['given']}`"
+    return f"there are no filters: delete `{found[0].strip()}`"
+
+
+def _other(source: str, offset: int) -> str:
+    """The hint for a character that no expression has: one that looks like another, or a letter with an accent."""
+    if (sign := other_sign(source[offset])) and (meant := typed(source[offset])).isascii():
+        return f"write `{meant}`: {sign}" if meant else f"delete it: {sign}"
+    return "a field with such a letter is written in brackets: context['…']" if source[offset].isalpha() else ""
 
 
 def _number(source: str, kind: str, text: str, end: int) -> int | float:

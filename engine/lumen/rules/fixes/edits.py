@@ -1,12 +1,11 @@
 """Edits of a file's text, and the text by its lines as places count them."""
 
-import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
+from lumen.language.text_lines import lines_and_breaks
 
-_BREAK = re.compile("(\r\n|[\n\r\x85\u2028\u2029])")
 _BOM = b"\xef\xbb\xbf"
 
 
@@ -31,8 +30,7 @@ class FileText:
         self.file = file
         self.bom = content.startswith(_BOM)
         self.text = content.decode("utf-8-sig", "replace")
-        parts = _BREAK.split(self.text)
-        self.lines, self.breaks = parts[::2], [*parts[1::2], ""]
+        self.lines, self.breaks = lines_and_breaks(self.text)
 
     def line(self, number: int) -> str:
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""

@@ -1,0 +1,50 @@
+"""Characters that look like those of a keyboard and are others: letters of other alphabets, invisible ones, minuses."""
+
+import unicodedata
+from collections.abc import Iterator
+
+_TWINS = str.maketrans(
+    "АВЕЅІЈКМНОРСТУХаеѕіјорсухԁһԛԝΑΒΕΖΗΙΚΜΝΟΡΤΥΧοαινρυıɑɡℓ‐‑‒–—−﹣",
+    "ABESIJKMHOPCTYXaesijopcyxdhqwABEZHIKMNOPTYXoaivpuiagl-------",
+)
+
+
+def typed(text: str) -> str:
+    """The text as a keyboard types it: without invisible characters, and with Latin letters, digits and a minus."""
+    if text.isascii():
+        return text
+    whole = unicodedata.normalize("NFKC", text).translate(_TWINS)
+    shown = (sign for sign in whole if unicodedata.category(sign) != "Cf")
+    return "".join(str(unicodedata.decimal(sign, sign)) for sign in shown)
+
+
+def difference(word: str, other: str) -> str:
+    """The character by which two words that look equal differ; empty if they do not look equal."""
+    if word == other or typed(word) != typed(other):
+        return ""
+    if unicodedata.normalize("NFC", word) == unicodedata.normalize("NFC", other):
+        return "they look equal, but the accents of one are characters of their own: type the word again"
+    return next(_odd(word), "") or next((f"there {said}" for said in _odd(other)), "")
+
+
+def other_sign(text: str) -> str:
+    """Why a number is none although it looks like one; empty if each of its characters is one that a keyboard types."""
+    return next(_odd(text), "")
+
+
+def _odd(text: str) -> Iterator[str]:
+    """Each character that a keyboard types otherwise, once, and what it is."""
+    for sign in dict.fromkeys(text):
+        if typed(sign) == sign or sign.isascii():
+            continue
+        code = f"U+{ord(sign):04X} {unicodedata.name(sign, '')}".strip()
+        if not (meant := typed(sign)):
+            yield f"it holds an invisible character, {code}"
+        elif sign.isalpha():
+            yield f"`{sign}` is another letter than `{meant}`: {code}"
+        elif sign.isdigit():
+            yield f"`{sign}` is another digit than `{meant}`: {code}"
+        elif meant == "-":
+            yield f"`{sign}` is another minus than `-`: {code}"
+        else:
+            yield f"`{sign}` is another sign than `{meant}`: {code}"

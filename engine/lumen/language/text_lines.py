@@ -1,0 +1,45 @@
+"""The lines of a text, counted in one way by everything that reads, checks, shows or changes files.
+
+A line ends with LF, CR, or CR and LF (YAML 1.2, section 5.4, and the language server protocol). YAML 1.1 and
+`str.splitlines` also end one at U+0085, U+2028, U+2029 and more. Editors don't, so these are characters here.
+"""
+
+import re
+from bisect import bisect_right
+from itertools import accumulate
+
+_BREAK = re.compile("(\r\n|\n|\r)")
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines without their breaks; a text that ends with a break has an empty line behind it, as in an editor."""
+    return _BREAK.split(text)[::2] if "\r" in text else text.split("\n")
+
+
+def lines_and_breaks(text: str) -> tuple[list[str], list[str]]:
+    """The lines, and the break behind each; that of the last one is empty."""
+    parts = _BREAK.split(text)
+    return parts[::2], [*parts[1::2], ""]
+
+
+class LineIndex:
+    """Lines and columns of offsets in a text, found without counting from its beginning each time."""
+
+    def __init__(self, text: str) -> None:
+        lines, breaks = lines_and_breaks(text)
+        self._length = len(text)
+        self._starts = [0, *accumulate(len(line) + len(end) for line, end in zip(lines, breaks, strict=True))][:-1]
+
+    def line(self, offset: int) -> int:
+        """The number of the line, from 1, that an offset from 0 lies in."""
+        return bisect_right(self._starts, offset)
+
+    def column(self, offset: int) -> int:
+        """The column, from 1."""
+        return offset - self._starts[self.line(offset) - 1] + 1
+
+    def offset(self, line: int, column: int) -> int:
+        """The offset of a line and column, from 1; the end of the text if they lie beyond it."""
+        if line > len(self._starts):
+            return self._length
+        return min(self._starts[line - 1] + column - 1, self._length)

@@ -1,0 +1,207 @@
+"""Files as editors, word processors and other tools save them: what is wrong is found at its place, and nothing fails.
+
+Each input is a reduction of a public report about another system.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.text_lines import LineIndex, lines_of
+from lumen.loading.files import read_files
+from lumen.loading.yaml_reader import parse
+from lumen.rules import check_files
+from lumen.rules.repairs import repaired
+from tests.tables import for_each
+
+HERE = Path(__file__).parent
+INPUTS = HERE / "inputs" / "files"
+MINIMAL = Path(__file__).parents[2] / "examples" / "minimal"
+TOUR, WAVE = "behaviors/tour.yaml", "motions/wave.yaml"
+BASE = {
+    "lumen.yaml": read_files(MINIMAL)["lumen.yaml"].replace(b"behavior: hello", b"behavior: tour").replace(
+        b"story: visitor", b"# no story"
+    ),
+}  # fmt: skip
+
+STATES = """
+states:
+  idle:
+    on: {touched: greet}
+  greet:
+    do: {say: Hello}
+    onDone: idle
+    onError: idle
+"""
+"""A sound behaviour; the first line of it is empty."""
+
+
+def project(name: str, content: bytes) -> dict[str, bytes]:
+    """The files of a small project with that content as its behaviour or its motion."""
+    sound = {TOUR: STATES.encode()}
+    return {**BASE, **sound, (WAVE if name.endswith(".motion.yaml") else TOUR): content}
+
+
+def found(name: str, content: bytes) -> list[Diagnostic]:
+    return list(check_files(HERE, project(name, content))[1])
+
+
+def told(diagnostic: Diagnostic) -> str:
+    return f"{diagnostic.place.line}:{diagnostic.place.column} {diagnostic.code} | {diagnostic.hint}"
+
+
+def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
+    said = [told(d) for d in diagnostics if d.code not in ("unreachable-state", "unused-file")]
+    assert len(said) == len(expected), said
+    for one, beginning in zip(said, expected, strict=True):
+        assert one.startswith(beginning), one
+
+
+@for_each(
+    ("name", "expected"),
+    [
+        ("cr-only-crash.yaml", []),
+        ("line-separator-crash.yaml", ["6:13 unknown-state | did you mean `idle`?"]),
+        ("line-separator-place.yaml", ["7:14 unknown-state | did you mean `idle`?"]),
+        ("control-character.yaml", ["11:18 yaml-syntax | delete it, and type `’` if it was meant"]),
+        ("bom-inside.yaml", ["8:1 yaml-syntax | delete it"]),
+        ("anchor-twice.yaml", []),
+        ("alias-slip.yaml", ["11:9 yaml-syntax | did you mean `*steps`?"]),
+        (
+            "homoglyph.yaml",
+            ["6:5 unknown-key | did you mean `onDone`? `о` is another letter than `o`: U+043E"],
+        ),
+        ("other-minus.motion.yaml", ["2:32 wrong-type | write `-0.5`: `−` is another minus than `-`"]),
+    ],
+)
+def test_the_report_is_told_at_its_place_with_what_would_be_right(name: str, expected: list[str]) -> None:
+    assert_told(found(name, (INPUTS / name).read_bytes()), expected)
+
+
+def changed(old: str, new: str, more: str = "") -> bytes:
+    assert STATES.count(old) == 1
+    return (STATES.replace(old, new) + more).encode()
+
+
+BREAKS = {"lf": "\n", "crlf": "\r\n", "cr": "\r"}
+NO_BREAKS = {"next line": "\x85", "line separator": "\u2028", "paragraph separator": "\u2029"}
+
+
+@for_each("end", BREAKS.values(), ids=BREAKS)
+@for_each("sign", ["", *NO_BREAKS.values()])
+def test_a_line_is_counted_the_same_way_whatever_ends_it_and_stands_in_it(end: str, sign: str) -> None:
+    text = changed("say: Hello", f'say: "Hel{sign}{sign}lo"').decode().replace("onError: idle", "onError: idel")
+    content = text.replace("\n", end).encode()
+    assert_told(found("tour.yaml", content), ["8:14 unknown-state | did you mean `idle`?"])
+    after, done = repaired(
+        project("tour.yaml", content), lambda files: check_files(HERE, files)[1], lambda diagnostic: True
+    )
+    assert after[TOUR] == text.replace("idel", "idle").replace("\n", end).encode()
+    assert [fix.title for _, fix in done] == ["write idle"]
+
+
+@for_each("sign", NO_BREAKS.values(), ids=NO_BREAKS)
+def test_what_ends_a_line_for_yaml_1_1_alone_is_part_of_a_text(sign: str) -> None:
+    document, diagnostics = parse("a.yaml", f"# note{sign}not: read\na: [x{sign}y, '{sign}', \"\\L\"]\n".encode())
+    assert not diagnostics
+    assert document is not None
+    assert document.data == {"a": [f"x{sign}y", sign, "\u2028"]}
+    assert document.place(("a", 0)).line == 2
+
+
+def test_the_characters_that_stand_in_for_those_breaks_stay_what_they_are_in_a_text() -> None:
+    text = "a: \ue000\u2028\ue001\x85"
+    document, _ = parse("a.yaml", text.encode())
+    assert document is not None
+    assert document.data == {"a": "\ue000\u2028\ue001\x85"}
+
+
+@for_each("text", ["", "a", "a\n", "a\rb\r\nc\n\rd", "\u2028a\x0bb\x0c\x1c\x85\n", "\r\r\n\n"])
+def test_offsets_and_places_belong_together(text: str) -> None:
+    lines, index = lines_of(text), LineIndex(text)
+    assert index.line(len(text)) == len(lines)
+    for offset in range(len(text) + 1):
+        assert index.offset(index.line(offset), index.column(offset)) == offset
+
+
+def test_the_excerpt_beside_a_finding_is_the_line_that_it_is_about(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for file, content in project("tour.yaml", (INPUTS / "line-separator-place.yaml").read_bytes()).items():
+        path = tmp_path / file
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content)
+    assert main(["lint", str(tmp_path)]) == 1
+    assert " 7 |     onError: idel\n   |              ^^^^" in capsys.readouterr().out
+
+
+@for_each(
+    ("content", "expected"),
+    [
+        (STATES.encode("utf-16-le"), "1:1 not-utf8 | save it as UTF-8"),
+        (STATES.encode("utf-16-be"), "1:1 not-utf8 | save it as UTF-8"),
+        (STATES.encode("utf-16"), "1:1 not-utf8 | save it as UTF-8"),
+        (changed("Hello", "It’s").decode().encode("cp1252"), "6:17 not-utf8 | save it as UTF-8"),
+        (changed("Hello", "a\x07b"), "6:16 yaml-syntax | delete it"),
+        (changed("Hello", "Hé \x93Hello\x94"), "6:18 yaml-syntax | delete it, and type `“` if it was meant"),
+        (
+            changed("  greet:", "\u200b  greet:"),
+            "5:1 unknown-key | write `greet`: it holds an invisible",
+        ),
+        (
+            changed("  greet:", "  \ufeffgreet:"),
+            "5:3 wrong-key | write `greet`: it holds an invisible",
+        ),
+        (changed("onDone: idle", "onDone: *idle"), '7:13 yaml-syntax | put quotes around it if it is a text: "*idle"'),
+        (changed("{say: Hello}", "{say: *Hello*}"), "6:15 yaml-syntax | put quotes around it"),
+    ],
+)
+def test_a_character_that_yaml_does_not_allow_is_named_at_its_place(content: bytes, expected: str) -> None:
+    assert_told(found("tour.yaml", content), [expected])
+
+
+def test_an_anchor_stands_for_the_nearest_above() -> None:
+    document, diagnostics = parse("a.yaml", b"a: &x 1\nb: *x\nc: &x [2]\nd: *x\n")
+    assert not diagnostics
+    assert document is not None
+    assert document.data == {"a": 1, "b": 1, "c": [2], "d": [2]}
+
+
+@for_each(
+    ("content", "expected"),
+    [
+        (changed("{say: Hello}", "{sаy: Hello}"), "6:10 unknown-key | did you mean `say`? `а` is another letter"),
+        (changed("onDone: idle", "onDone: іdle"), "7:13 unknown-state | did you mean `idle`? `і` is another letter"),
+        (changed("onDone: idle", "onDone: idle\u200b"), "7:13 unknown-state | did you mean `idle`? it holds an invis"),
+        (
+            changed("onDone: idle", "ｏｎＤｏｎｅ: idle"),
+            "7:5 unknown-key | did you mean `onDone`? `ｏ` is another",
+        ),
+        (
+            changed("say: Hello", 'say: "{{ context.n − 1 }}"', "context: {n: 1}\n"),
+            "6:29 expression-syntax | write `-`: `−` is another minus",
+        ),
+        (
+            changed("say: Hello", 'say: "{{ context.n + １ }}"', "context: {n: 1}\n"),
+            "6:31 expression-syntax | write `1`: `１` is another digit",
+        ),
+    ],
+)
+def test_of_two_words_that_look_equal_it_is_told_how_they_differ(content: bytes, expected: str) -> None:
+    assert_told(found("tour.yaml", content), [expected])
+
+
+@for_each(
+    ("value", "expected"),
+    [
+        ("０．５", "write `0.5`: `０` is another digit than `0`: U+FF10"),
+        ("–0.5", "write `-0.5`: `–` is another minus"),
+        ("−0,5", "write a point: -0.5"),
+        ("٣", "write `3`: `٣` is another digit than `3`"),
+    ],
+)
+def test_a_number_with_other_signs_is_told_as_it_should_be(value: str, expected: str) -> None:
+    content = f"keyframes:\n  - {{at: 1s, joints: {{HeadYaw: {value}}}}}\n".encode()
+    assert [d.hint[: len(expected)] for d in found("a.motion.yaml", content)] == [expected]
