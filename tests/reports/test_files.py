@@ -69,11 +69,16 @@ def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
         ("bom-inside.yaml", ["8:1 yaml-syntax | delete it"]),
         ("anchor-twice.yaml", []),
         ("alias-slip.yaml", ["11:9 yaml-syntax | did you mean `*steps`?"]),
+        ("phrases-as-text.yaml", ["4:13 foreign-pattern | write a phrase for each: [dance, dance for me]"]),
+        ("phrases-with-commas.yaml", ["3:15 foreign-pattern | write a phrase for each: [dance, dance for me]"]),
+        ("braces-of-others.yaml", ["6:15 not-filled-in | write `{{ context.visitor }}`"]),
+        ("filter.yaml", ["6:42 expression-syntax | there are no filters: delete `| title`"]),
         (
             "homoglyph.yaml",
             ["6:5 unknown-key | did you mean `onDone`? `о` is another letter than `o`: U+043E"],
         ),
         ("other-minus.motion.yaml", ["2:32 wrong-type | write `-0.5`: `−` is another minus than `-`"]),
+        ("at-iso.yaml", ["4:10 bad-time | write `2026-12-24 18:00`"]),
     ],
 )
 def test_the_report_is_told_at_its_place_with_what_would_be_right(name: str, expected: list[str]) -> None:
@@ -205,3 +210,74 @@ def test_of_two_words_that_look_equal_it_is_told_how_they_differ(content: bytes,
 def test_a_number_with_other_signs_is_told_as_it_should_be(value: str, expected: str) -> None:
     content = f"keyframes:\n  - {{at: 1s, joints: {{HeadYaw: {value}}}}}\n".encode()
     assert [d.hint[: len(expected)] for d in found("a.motion.yaml", content)] == [expected]
+
+
+HEARD = """
+  heard:
+    hears: {dance: idle}
+    after: {5s: idle}
+"""
+
+
+@for_each(
+    ("phrases", "hints"),
+    [
+        ('"hello, good morning"', ["write a phrase for each: [hello, good morning]"]),
+        ('"halt; stop"', ["write a phrase for each: [halt, stop]"]),
+        ("halt / stop", ["write `(halt|stop)`, or a phrase for each"]),
+        ('"halt\\nstop now"', ["write a phrase for each: [halt, stop now]"]),
+        ('["sit, please", "oh robot, (sit|rest)"]', []),
+        ('"(run|walk), please"', []),
+        (">\n      jump\n      now", []),
+    ],
+)
+def test_a_text_that_holds_several_phrases_is_none(phrases: str, hints: list[str]) -> None:
+    content = f"phrases:\n  dance:\n    en: {phrases}{STATES.replace('greet}', 'heard}', 1)}{HEARD}"
+    said = [d.hint for d in found("tour.yaml", content.encode()) if d.code == "foreign-pattern"]
+    assert said == hints
+
+
+@for_each(
+    ("text", "expected"),
+    [
+        ("Hello, ${visitor}!", "not-filled-in | write `{{ context.visitor }}`"),
+        ("Hello, #{visitor}!", "not-filled-in | write `{{ context.visitor }}`"),
+        ("Hello, %visitor%", "not-filled-in | write `{{ context.visitor }}`"),
+        ("Hello, %(visitor)s", "not-filled-in | write `{{ context.visitor }}`"),
+        ("Hello, <visitor>", "not-filled-in | write `{{ context.visitor }}`"),
+        ("Hello, { visitor }", "not-filled-in | write `{{ context.visitor }}`"),
+        ("Hello, {name}", "not-filled-in | write `{{ context.NAME }}`; `context` has no `name`"),
+        ("{% if context.visitor %}Hi{% endif %}", "not-filled-in | texts have no `{% … %}`"),
+        ("{# a note #} Hi", "not-filled-in | texts have no `{# … #}`"),
+        ("Hello, {{{ context.visitor }}}!", "expression-syntax | write two on each side: `{{ context.visitor }}`"),
+        ("{{ context.visitor | length }}", "expression-syntax | there are no filters: write `size(context.visitor)`"),
+        (
+            "{{ context.visitor | default('you') }}",
+            "expression-syntax | there are no filters: write `has(context.visitor) ? context.visitor : 'you'`",
+        ),
+        ("{{ context.a | context.c }}", "expression-syntax | write `||`"),
+        ("5 % of [them] cost $5, <b>really</b>, {{ {'a': 1}.a }}", ""),
+    ],
+)
+def test_a_hole_of_another_tool_is_told_with_the_form_that_works(text: str, expected: str) -> None:
+    content = changed("say: Hello", f'say: "{text}"', "context: {visitor: my friend, a: true, c: true}\n")
+    said = [f"{d.code} | {d.hint}" for d in found("tour.yaml", content) if d.code != "unused-context-key"]
+    assert [each[: len(expected)] for each in said] == [expected] * bool(expected)
+
+
+@for_each(
+    ("time", "hint"),
+    [
+        ("2026-12-24T18:00:00", "write `2026-12-24 18:00`"),
+        ("2026-12-24T18:00:00Z", "write `2026-12-24 18:00`; times are in the project's time zone"),
+        ("2026-12-24t8:00+01:00", "write `2026-12-24 08:00`; times are in the project's time zone"),
+        ("0 18 * * 1-5", "this is a line of cron: write `mon-fri 18:00`"),
+        ("30 9,14 * * *", "this is a line of cron: write `09:30, 14:30`"),
+        ("0 0 18 ? * MON-FRI", "this is a line of cron: write `mon-fri 18:00`"),
+        ("*/5 * * * *", "this is a line of cron: days stand before times"),
+        ("18:00-19:00", "it is one moment that is waited for"),
+    ],
+)
+def test_a_time_of_another_tool_is_told_in_the_form_of_at(time: str, hint: str) -> None:
+    content = changed("    on: {touched: greet}", f'    on: {{touched: greet}}\n    at: {{"{time}": greet}}')
+    assert_told(found("tour.yaml", content), [f"5:10 bad-time | {hint}"])

@@ -20,6 +20,10 @@ _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})")
 _DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
 _OTHER_TIME = re.compile(r"([0-9]{1,2})(?:[.:h]?([0-9]{2}))? ?h?([ap]m)?(?::[0-9]{2})?", re.IGNORECASE)
 _OTHER_DATE = re.compile(r"[0-9]{1,4}[./][0-9]{1,2}[./][0-9]{0,4}|[0-9]{1,4}-[0-9]{1,2}-[0-9]{1,4}")
+_ISO = re.compile(
+    r"([0-9]{4}-[0-9]{2}-[0-9]{2})[Tt]([0-9]{1,2}:[0-9]{2})(?::[0-9]{2}(?:\.[0-9]+)?)?([Zz]|[+-][0-9:]+)?"
+)
+_CRON = re.compile(r"(?:[0-9*/,?L#-]+|[A-Za-z]{3}(?:[-,][A-Za-z]{3})*)")
 _SEXAGESIMAL = re.compile(r"[1-9][0-9]?:[0-5][0-9]")
 """What YAML 1.1 reads as a number to the base of 60, where it is not quoted."""
 
@@ -37,6 +41,8 @@ def read_schedule(text: str) -> Schedule:
     times: set[int] = set()
     weekdays: set[int] = set()
     dates: set[date] = set()
+    if hint := _iso(text) or _cron(text):
+        raise MisreadTimeError(f"`{text}` is not a time of day", hint)
     for word in _words(text):
         named, dated = word[0].isalpha(), _OTHER_DATE.fullmatch(word)
         if (named or dated) and times:
@@ -98,6 +104,37 @@ def _other_time(word: str) -> str:
     if "-" in word:
         return "it is one moment that is waited for: write where the span begins, and in another state where it ends"
     return TIME_HINT
+
+
+def _iso(text: str) -> str:
+    """The hint for `2026-12-24T18:00`, ISO 8601 with a `T`; empty for anything else."""
+    if (found := _ISO.fullmatch(text.strip())) is None:
+        return ""
+    zone = "; times are in the project's time zone, `timezone` in lumen.yaml: convert it" if found[3] else ""
+    return f"write `{found[1]} {found[2].zfill(5)}`{zone}"
+
+
+_CRON_DAYS = dict(zip("01234567", ("sun", *WEEKDAYS), strict=True))
+
+
+def _cron(text: str) -> str:
+    """The hint for a line of cron; empty for anything else."""
+    fields = text.split()
+    fields = fields[1:6] if len(fields) in (6, 7) else fields
+    if len(fields) != 5 or not all(map(_CRON.fullmatch, fields)) or all(f.isalpha() for f in fields):
+        return ""
+    minute, hour, day, month, weekday = fields
+    hint = "this is a line of cron: days stand before times, as in `mon-fri 18:00`"
+    if not (minute.isdigit() and re.fullmatch(r"[0-9]+(,[0-9]+)*", hour) and (day, month) in (("*", "*"), ("?", "*"))):
+        return hint
+    days = re.sub("[0-7]", lambda found: _CRON_DAYS[found[0]], weekday.lower()).strip("*?")
+    times = ", ".join(f"{int(each):02}:{int(minute):02}" for each in hour.split(","))
+    written = f"{days} {times}".strip()
+    try:
+        read_schedule(written)
+    except MisreadTimeError:
+        return hint
+    return f"this is a line of cron: write `{written}`"
 
 
 def _date(word: str) -> date:

@@ -34,7 +34,7 @@ class UnknownAliasError(ComposerError):
 
     def __init__(self, name: str, known: tuple[str, ...], mark: Any) -> None:
         super().__init__(None, None, "found undefined alias", mark)
-        self.name, self.known = name, known
+        self.name, self.known, self.mark = name, known, mark
 
 
 _OLD_BREAKS = "\x85\u2028\u2029"

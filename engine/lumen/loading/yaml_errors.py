@@ -120,7 +120,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 def _unknown_alias(file: str, error: UnknownAliasError) -> Diagnostic:
     """What to say of `*name` without `&name` above it: a slip in the name, or a text that begins with `*`."""
-    mark, name = error.problem_mark, error.name
+    mark, name = error.mark, error.name
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + len(name) + 2)
     quotes = f'put quotes around it if it is a text: "*{name}"'
     hint = mean(f"*{name}", f"*{near}") if (near := nearest(name, error.known)) else quotes

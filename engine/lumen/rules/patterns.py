@@ -20,7 +20,7 @@ BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase can't be read as
 DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can catch nothing")
 FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase is written as other tools have it")
 
-_SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;]")
+_SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
 """Signs without which a phrase can't be wrong here."""
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
@@ -143,17 +143,26 @@ def _foreign(phrase: WrittenPhrase) -> None:
         message = f"`{found[0]}` is heard as these words one after the other"
         hint = f"write `({found['one']}|{found['other']})`, or a phrase for each"
         _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), message, hint)
-    elif sign := _separator(text):
-        parts = [part.strip() for part in text.split(sign)]
-        message = f"this is one phrase, whose words are heard one after the other: `{sign}` does not separate them"
-        hint = f"write a phrase for each: [{', '.join(parts)}]"
-        _say(FOREIGN_PATTERN, phrase, text.index(sign), 1, message, hint)
+    elif sign := _separator(phrase):
+        parts = [part.strip().removeprefix("- ") for part in text.split(sign)]
+        shown = ", ".join(f'"{part}"' if "," in part else part for part in parts if part)
+        named = "a line break" if sign == "\n" else f"`{sign}`"
+        message = f"this is one phrase, whose words are heard one after the other: {named} does not separate them"
+        _say(FOREIGN_PATTERN, phrase, text.index(sign), 1, message, f"write a phrase for each: [{shown}]")
 
 
-def _separator(text: str) -> str:
-    """The sign between alternatives in one text; empty if there is none."""
+def _separator(phrase: WrittenPhrase) -> str:
+    """The sign between alternatives in one text; empty if there is none.
+
+    A single comma in a phrase of a list may belong to a sentence: who wrote it knows how to write several phrases.
+    """
+    text = phrase.text
+    if "\n" in text.strip():
+        return "\n"
     if ";" in text:
         return ";"
+    if "," in text and not isinstance(phrase.path[-1], int) and not _PATTERN_SIGNS.search(text):
+        return ","
     parts = [" ".join(folded(part)) for part in text.split(",")]
     if len(parts) == 1 or not all(parts):
         return ""

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import repeat
 
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
@@ -32,6 +33,11 @@ _DATA = ("context", "data", "body", "robot")
 _HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})")
 _SIGNS = re.compile(r"(?:<|%|\[)\s*((?:context|event|state)\.[\w.]+)\s*(?:>|%|\])")
 """A value to fill in, as other programs write it."""
+_OF_OTHERS = re.compile(
+    r"\{%.*?%\}|\{#.*?#\}|[$#]\{\s*(?P<certain>\w+)\s*\}|(?<!\{)\{\s*(?P<braces>[^\W\d]\w*)\s*\}(?!\})"
+    r"|%\((?P<percent>\w+)\)s|%(?P<signs>\w+)%|\$(?P<dollar>\w+)|<(?P<angles>\w+)>|\[(?P<square>\w+)\]"
+)
+"""A value to fill in, or a condition, as Python, JavaScript, Jinja, Liquid or a shell have it: by its name alone."""
 _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 
@@ -114,7 +120,23 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
         if isinstance(site.step.action, SayText):
             for template in (t for texts in site.step.action.texts.values() for t in texts):
                 said = template.shown
-                if found := _HALF.search(said) or _SIGNS.search(said) or _BARE.fullmatch(said):
+                if foreign := next((f for f in map(_foreign, _OF_OTHERS.finditer(said), repeat(machine)) if f), None):
+                    report(NOT_FILLED_IN, template.where, f"`{foreign[0]}` is said as it stands here", foreign[1])
+                elif found := _HALF.search(said) or _SIGNS.search(said) or _BARE.fullmatch(said):
                     name = found[0] if found.re is _BARE else found[1]
                     message = f"`{found[0]}` is said as it stands here"
                     report(NOT_FILLED_IN, template.where, message, f"write `{{{{ {name} }}}}`")
+
+
+def _foreign(found: re.Match[str], machine: MachineDefinition) -> tuple[str, str] | None:
+    """A hole as others write it, and what to write; None if it may be meant as a text."""
+    if found[0].startswith("{%"):
+        return found[0], "texts have no `{% … %}`: write `{{ CONDITION ? 'one text' : 'another' }}`"
+    if found[0].startswith("{#"):
+        return found[0], "texts have no `{# … #}`: write a comment of YAML, `# …`, outside of the text"
+    form, name = next((form, name) for form, name in found.groupdict().items() if name)
+    if name in machine.context:
+        return found[0], f"write `{{{{ context.{name} }}}}`"
+    if form in ("certain", "braces"):
+        return found[0], f"write `{{{{ context.NAME }}}}`; `context` has no `{name}`"
+    return None

@@ -117,5 +117,14 @@ def check_template(text: str, *, context: Mapping[str, Any] | None, **around: An
         holes = [part for part in split_template(text) if isinstance(part, Placeholder)]
     except ExpressionError as error:
         return [ExpressionFinding(EXPRESSION_SYNTAX, error.offset, 1, error.message, error.hint)]
-    found = [(hole, check_expression(hole.source, context=context, **around)) for hole in holes]
+    found = [(hole, _meant(hole, check_expression(hole.source, context=context, **around))) for hole in holes]
     return [finding._replace(offset=finding.offset + hole.offset) for hole, findings in found for finding in findings]
+
+
+def _meant(hole: Placeholder, findings: list[ExpressionFinding]) -> list[ExpressionFinding]:
+    """The findings in a hole; of one with three braces, as Handlebars has them, the third brace instead."""
+    inner = hole.source.removeprefix("{").removesuffix("}").strip()
+    if not hole.source.startswith("{") or not any(f.code == EXPRESSION_SYNTAX for f in findings):
+        return findings
+    message, hint = "the third brace begins a map", f"write two on each side: `{{{{ {inner} }}}}`"
+    return [ExpressionFinding(EXPRESSION_SYNTAX, 0, 1, message, hint)]
