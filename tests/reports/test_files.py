@@ -3,6 +3,9 @@
 Each input is a reduction of a public report about another system.
 """
 
+import errno
+import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -14,6 +17,7 @@ from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from lumen.rules.repairs import repaired
+from lumen.upkeep.replacing import replace_file
 from tests.tables import for_each
 
 HERE = Path(__file__).parent
@@ -281,3 +285,107 @@ def test_a_hole_of_another_tool_is_told_with_the_form_that_works(text: str, expe
 def test_a_time_of_another_tool_is_told_in_the_form_of_at(time: str, hint: str) -> None:
     content = changed("    on: {touched: greet}", f'    on: {{touched: greet}}\n    at: {{"{time}": greet}}')
     assert_told(found("tour.yaml", content), [f"5:10 bad-time | {hint}"])
+
+
+def placed(root: Path, files: dict[str, bytes]) -> Path:
+    for file, content in files.items():
+        path = root / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    return root
+
+
+MISSPELT = changed("onError: idle", "onError: idel")
+CHART = '<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0"><state id="a"/></scxml>'
+WRITERS = {
+    "import": ["import", "chart.scxml", "-o", "OUT.yaml"],
+    "export": ["export", "scxml", "-o", "OUT.scxml"],
+    "graph": ["graph", "-o", "OUT.dot"],
+    "plot": ["plot", "motions/wave.yaml", "-o", "OUT.svg"],
+    "schema": ["schema", "behavior", "-o", "OUT.json"],
+    "test": ["test", "--format", "junit", "-o", "OUT.xml"],
+}
+
+
+@pytest.mark.parametrize("verb", WRITERS)
+def test_a_full_disk_leaves_the_file_that_was_there(
+    verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    placed(tmp_path, read_files(MINIMAL))
+    (tmp_path / "chart.scxml").write_text(CHART)
+    output = tmp_path / WRITERS[verb][-1]
+    output.write_text("kept")
+    before = sorted(tmp_path.rglob("*"))
+    monkeypatch.chdir(tmp_path)
+
+    def full(handle: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as disk:
+        disk.setattr(os, "fsync", full)
+        assert main(WRITERS[verb]) == 2
+    assert f"can't write {output.name}: no space left on device" in capsys.readouterr().err
+    assert output.read_text() == "kept"
+    assert sorted(path for path in tmp_path.rglob("*") if ".lumen" not in path.parts) == before
+    assert main(WRITERS[verb]) == 0
+    assert output.read_text() != "kept"
+
+
+def test_a_disk_that_refuses_half_of_a_file_leaves_the_whole_one(tmp_path: Path) -> None:
+    file, kept = tmp_path / "a", resource.getrlimit(resource.RLIMIT_FSIZE)
+    file.write_bytes(b"kept")
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, kept[1]))
+    try:
+        with pytest.raises(OSError, match="large"):
+            replace_file(file, b"x" * 100_000)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, kept)
+    assert file.read_bytes() == b"kept"
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+def test_a_repaired_file_keeps_its_owner_its_rights_and_its_link(tmp_path: Path) -> None:
+    placed(tmp_path, project("tour.yaml", MISSPELT))
+    file, real = tmp_path / TOUR, tmp_path / "behaviors" / "real.txt"
+    file.rename(real)
+    file.symlink_to("real.txt")
+    real.chmod(0o640)
+    if os.geteuid() == 0:
+        os.chown(real, 65534, 65534)
+    before = real.stat()
+    assert main(["lint", "--fix", str(tmp_path)]) == 0
+    after = real.stat()
+    assert real.read_bytes() == STATES.encode()
+    assert file.is_symlink()
+    assert (after.st_uid, after.st_gid, after.st_mode) == (before.st_uid, before.st_gid, before.st_mode)
+    assert after.st_mtime_ns >= before.st_mtime_ns
+
+
+def test_a_file_whose_owner_may_not_be_given_is_written_in_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "a"
+    file.write_bytes(b"a longer text")
+    number = file.stat().st_ino
+
+    def refused(*given: object) -> None:
+        raise PermissionError(errno.EPERM, "not yours")
+
+    monkeypatch.setattr(os, "replace", refused)
+    replace_file(file, b"new")
+    assert file.read_bytes() == b"new"
+    assert file.stat().st_ino == number
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+def test_what_is_no_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    replace_file(Path("/dev/stdout"), b"printed")
+    replace_file(Path(os.devnull), b"gone")
+    assert capfd.readouterr().out == "printed"
+    assert not Path(os.devnull).is_file()
+    with pytest.raises(OSError, match="irectory"):
+        replace_file(tmp_path, b"no")
+    loop = tmp_path / "loop"
+    loop.symlink_to("loop")
+    with pytest.raises(OSError, match="symbolic links"):
+        replace_file(loop, b"no")

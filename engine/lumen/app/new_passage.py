@@ -69,6 +69,10 @@ def _created(file: Path, text: str) -> bool:
         held = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
     except FileExistsError:
         return False
-    with open(held, "w", encoding="utf-8") as opened:
-        opened.write(text)
+    try:
+        with open(held, "w", encoding="utf-8") as opened:
+            opened.write(text)
+    except OSError:
+        file.unlink(missing_ok=True)
+        raise
     return True

@@ -2,9 +2,7 @@
 
 import copy
 import json
-import os
 import re
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +20,7 @@ from lumen.rules import sayings, speech
 from lumen.rules.fixes.edits import Edit, FileText, edited
 from lumen.rules.lookups import value_at
 from lumen.rules.new_language import beside
+from lumen.upkeep.replacing import replace_file
 
 DAY_FILE = f"{SAYINGS_FOLDER}/day.yaml"
 HEADER = "# yaml-language-server: $schema=../../schemas/sayings.schema.json"
@@ -113,11 +112,7 @@ def _save(root: Path, before: bytes, after: bytes) -> None:
             raise UsageError(f"{DAY_FILE} is a link: nothing is written there")
         if (file.read_bytes() if file.exists() else b"") != before:
             raise UsageError(f"{DAY_FILE} was saved meanwhile: try again")
-        handle, draft_name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
-        with os.fdopen(handle, "wb") as opened:
-            opened.write(after)
-        os.chmod(draft_name, file.stat().st_mode & 0o7777 if file.exists() else 0o644)
-        os.replace(draft_name, file)
+        replace_file(file, after)
     except OSError as error:
         raise UsageError(f"{DAY_FILE} can't be written: {(error.strerror or str(error)).lower()}") from None
 

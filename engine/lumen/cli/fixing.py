@@ -1,9 +1,7 @@
 """`lumen lint --fix` and `--diff`: what can be repaired without asking."""
 
 import difflib
-import os
 import sys
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -14,6 +12,7 @@ from lumen.cli.terminal import paint
 from lumen.errors import UsageError
 from lumen.language.text_lines import lines_of
 from lumen.rules.repairs import Repair, repaired
+from lumen.upkeep.replacing import replace_file
 
 
 def repair(what: LintTarget, wanted: Wanted) -> tuple[Mapping[str, bytes], Mapping[str, bytes], list[Repair]]:
@@ -48,23 +47,9 @@ def write(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -
         try:
             if path.read_bytes() != before[file]:
                 raise UsageError(f"{path} was saved meanwhile: nothing was written to it, call lint again")
-            _replace(path, after[file])
+            replace_file(path, after[file])
         except OSError as error:
             raise UsageError(f"can't write {path}: {(error.strerror or str(error)).lower()}") from None
-
-
-def _replace(path: Path, content: bytes) -> None:
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(name, path.stat().st_mode & 0o7777)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
 
 
 def tell(done: Sequence[Repair], names: Findings) -> None:

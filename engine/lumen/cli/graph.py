@@ -7,6 +7,7 @@ from pathlib import Path
 
 import lumen
 from lumen.cli.formats import configure_format, print_object
+from lumen.cli.writing import write_file
 from lumen.errors import UsageError
 from lumen.formats.diagrams import dot_text, neighbourhood, overview, region, svg
 from lumen.formats.diagrams.diagram import Diagram
@@ -45,10 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if output is None:
         print(content.decode(), end="")
         return 0
-    try:
-        output.write_bytes(content)
-    except OSError as error:
-        raise UsageError(f"can't write {output}: {error.strerror}") from None
+    write_file(content, output)
     if options.format == "json":
         print_object({"behavior": name, "wrote": str(output)})
     else:

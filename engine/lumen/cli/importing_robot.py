@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.errors import LumenError, UsageError
+from lumen.cli.writing import write_file
+from lumen.errors import LumenError
 from lumen.extras import MissingExtraError
 from lumen.formats.conversion_findings import LOST
 from lumen.formats.robot_models import read_robot
@@ -49,11 +50,7 @@ def body_faults(file: str, text: str) -> list[Diagnostic]:
 def write_beside(files: Mapping[Path, bytes]) -> None:
     """Write what goes with a body file; raises UsageError where it can't be written."""
     for path, content in files.items():
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-        except OSError as error:
-            raise UsageError(f"can't write {path}: {(error.strerror or str(error)).lower()}") from None
+        write_file(content, path, folders=True)
     if files:
         print(f"wrote {next(iter(files))}" + (f" and {len(files) - 1} meshes" if len(files) > 1 else ""))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import lumen
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
+from lumen.cli.writing import write_file
 from lumen.errors import UsageError
 from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
@@ -33,10 +34,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(f"can't write {output}: there is no folder {output.parent}")
     sheet = _motion(path, options.at) if path.absolute().parent.name == "motions" else _controller(path, options.at)
     content = draw(sheet, ending)
-    try:
-        output.write_bytes(content)
-    except OSError as error:
-        raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None
+    write_file(content, output)
     if options.format == "json":
         print_object({"file": options.file, "wrote": str(output.absolute())})
     else:

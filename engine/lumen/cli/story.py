@@ -12,7 +12,7 @@ from lumen.app.storytelling.story_text import story_text
 from lumen.app.storytelling.visit_story import renaming, visit_story
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.reach import configure_robot_name
-from lumen.cli.writing import write_result
+from lumen.cli.writing import write_file, write_result
 from lumen.errors import UsageError
 from lumen.loading.packaged import find_project
 
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     text = story_text(made.story, remarks)
     if options.format == "json":
         if output:
-            _written(text, output)
+            write_file(text.encode(), output, folders=True)
         began, ended = one.began.isoformat(), one.ended.isoformat()
         said = {"began": began, "ended": ended, "same": made.same, "was": made.was, "is": made.now}
         print_object({**said, "story": text, "wrote": str(output.absolute()) if output else None})
@@ -74,11 +74,3 @@ def _name(pair: str) -> tuple[str, str]:
     if not (separator and old.strip() and new.strip()):
         raise UsageError(f"`--name {pair}` says no two names: write it as --name Budi=Ani")
     return old.strip(), new.strip()
-
-
-def _written(text: str, output: Path) -> None:
-    try:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None

@@ -16,6 +16,7 @@ from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
 from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.cli.verdicts import FORMATS, text
+from lumen.cli.writing import write_file
 from lumen.errors import UsageError
 from lumen.interpreters.explaining.sayings import tried as tried_sayings
 from lumen.interpreters.exploration import MAX_CONFIGURATIONS
@@ -168,8 +169,5 @@ def _deliver(shown: str, output: Path | None) -> None:
     if output is None:
         _print(shown)
         return
-    try:
-        output.write_text(shown + "\n", encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise UsageError(f"can't write {output}: {error.strerror}") from None
+    write_file(f"{shown}\n".encode("utf-8", "replace"), output)
     print(f"wrote {output}", file=sys.stderr)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lumen.errors import UsageError
+from lumen.upkeep.replacing import replace_file
 
 
 def write_result(text: str, output: Path | None, *, folders: bool = False) -> None:
@@ -10,10 +11,15 @@ def write_result(text: str, output: Path | None, *, folders: bool = False) -> No
     if output is None:
         print(text, end="")
         return
+    write_file(text.encode("utf-8", "replace"), output, folders=folders)
+    print(f"wrote {output}")
+
+
+def write_file(content: bytes, output: Path, *, folders: bool = False) -> None:
+    """Write a file as a whole; raises UsageError where it can't be, and then leaves what is there as it was."""
     try:
         if folders:
             output.parent.mkdir(parents=True, exist_ok=True)
-        output.write_text(text, encoding="utf-8")
+        replace_file(output, content)
     except OSError as error:
         raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None
-    print(f"wrote {output}")

@@ -1,0 +1,62 @@
+"""Saving a file as a whole or not at all: the content is written beside it, and then takes its place."""
+
+import os
+import secrets
+import shutil
+import stat
+from contextlib import suppress
+from pathlib import Path
+
+
+def replace_file(path: Path, content: bytes) -> None:
+    """Save the content under a path; raises OSError, and leaves what is there as it was.
+
+    A file that is there keeps its owner and rights, and a link stays a link: the file that it leads to is replaced. A
+    device or a pipe is written to, and so is a file whose owner, or whose folder, lets nobody put another in its place.
+    """
+    try:
+        there = os.stat(path)
+    except FileNotFoundError:
+        there = None
+    if (there and not stat.S_ISREG(there.st_mode)) or path.parts[1:2] in (("dev",), ("proc",)):
+        path.write_bytes(content)
+        return
+    target = Path(os.path.realpath(path))
+    draft = target.with_name(f".lumen-{secrets.token_hex(6)}.new")
+    try:
+        _write(draft, content)
+        if there:
+            _inherit(draft, target, there)
+        os.replace(draft, target)
+    except PermissionError:
+        if not there:
+            raise
+        _overwrite(target, content)
+    finally:
+        with suppress(OSError):
+            draft.unlink()
+
+
+def _write(draft: Path, content: bytes) -> None:
+    with open(draft, "xb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _inherit(draft: Path, target: Path, there: os.stat_result) -> None:
+    """Give the draft the owner, the rights and the access lists of the file; raises PermissionError if it may not."""
+    made = os.stat(draft)
+    if (made.st_uid, made.st_gid) != (there.st_uid, there.st_gid):
+        os.chown(draft, there.st_uid, there.st_gid)
+    shutil.copystat(target, draft)
+    os.utime(draft)
+
+
+def _overwrite(target: Path, content: bytes) -> None:
+    """Write into the file itself, after the disk has reserved the room for it."""
+    with open(target, "r+b") as file:
+        if content and hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(file.fileno(), 0, max(len(content), os.fstat(file.fileno()).st_size))
+        file.write(content)
+        file.truncate()
