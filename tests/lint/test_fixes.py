@@ -206,6 +206,6 @@ def test_a_folder_that_can_not_be_written_to(project: Path, capsys: pytest.Captu
     def refuse(*_: object, **__: object) -> tuple[int, str]:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("tempfile.mkstemp", refuse)
+    monkeypatch.setattr("os.replace", refuse)
     assert main(["lint", str(project), "--fix"]) == 2
     assert "can't write" in capsys.readouterr().err

@@ -17,6 +17,7 @@ from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from lumen.rules.repairs import repaired
+from lumen.upkeep import replacing
 from lumen.upkeep.replacing import replace_file
 from tests.tables import for_each
 
@@ -361,20 +362,26 @@ def test_a_repaired_file_keeps_its_owner_its_rights_and_its_link(tmp_path: Path)
     assert after.st_mtime_ns >= before.st_mtime_ns
 
 
-def test_a_file_whose_owner_may_not_be_given_is_written_in_its_place(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_of_another_owner_is_written_to(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "a"
     file.write_bytes(b"a longer text")
     number = file.stat().st_ino
+    monkeypatch.setattr(replacing, "_inherits", lambda draft, target, there: False)
+    replace_file(file, b"new")
+    assert (file.read_bytes(), file.stat().st_ino) == (b"new", number)
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
-    def refused(*given: object) -> None:
-        raise PermissionError(errno.EPERM, "not yours")
 
-    monkeypatch.setattr(os, "replace", refused)
+def test_a_file_that_a_container_mounts_alone_is_written_to(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "a"
+    file.write_bytes(b"a longer text")
+
+    def busy(*given: object) -> None:
+        raise OSError(errno.EBUSY, os.strerror(errno.EBUSY))
+
+    monkeypatch.setattr(os, "replace", busy)
     replace_file(file, b"new")
     assert file.read_bytes() == b"new"
-    assert file.stat().st_ino == number
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 

@@ -1,5 +1,6 @@
 """Saving a file as a whole or not at all: the content is written beside it, and then takes its place."""
 
+import errno
 import os
 import secrets
 import shutil
@@ -12,7 +13,7 @@ def replace_file(path: Path, content: bytes) -> None:
     """Save the content under a path; raises OSError, and leaves what is there as it was.
 
     A file that is there keeps its owner and rights, and a link stays a link: the file that it leads to is replaced. A
-    device or a pipe is written to, and so is a file whose owner, or whose folder, lets nobody put another in its place.
+    device or a pipe is written to, and so is a file that no other may replace: one of another owner, or a mounted one.
     """
     try:
         there = os.stat(path)
@@ -25,13 +26,14 @@ def replace_file(path: Path, content: bytes) -> None:
     draft = target.with_name(f".lumen-{secrets.token_hex(6)}.new")
     try:
         _write(draft, content)
-        if there:
-            _inherit(draft, target, there)
-        os.replace(draft, target)
-    except PermissionError:
-        if not there:
+        if there and not _inherits(draft, target, there):
+            _overwrite(target, content)
+        else:
+            os.replace(draft, target)
+    except OSError as error:
+        if error.errno != errno.EBUSY:
             raise
-        _overwrite(target, content)
+        _overwrite(target, content)  # a file that a container has been given alone
     finally:
         with suppress(OSError):
             draft.unlink()
@@ -44,13 +46,17 @@ def _write(draft: Path, content: bytes) -> None:
         os.fsync(file.fileno())
 
 
-def _inherit(draft: Path, target: Path, there: os.stat_result) -> None:
-    """Give the draft the owner, the rights and the access lists of the file; raises PermissionError if it may not."""
+def _inherits(draft: Path, target: Path, there: os.stat_result) -> bool:
+    """Whether the draft could be given the owner, the rights and the access lists of the file."""
     made = os.stat(draft)
     if (made.st_uid, made.st_gid) != (there.st_uid, there.st_gid):
-        os.chown(draft, there.st_uid, there.st_gid)
+        try:
+            os.chown(draft, there.st_uid, there.st_gid)
+        except PermissionError:
+            return False
     shutil.copystat(target, draft)
     os.utime(draft)
+    return True
 
 
 def _overwrite(target: Path, content: bytes) -> None:
