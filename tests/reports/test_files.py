@@ -6,10 +6,12 @@ Each input is a reduction of a public report about another system.
 import errno
 import os
 import resource
+import sys
 from pathlib import Path
 
 import pytest
 
+from lumen.app.local_timezone import local_timezone
 from lumen.cli.main import main
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.text_lines import LineIndex, lines_of
@@ -19,6 +21,7 @@ from lumen.rules import check_files
 from lumen.rules.repairs import repaired
 from lumen.upkeep import replacing
 from lumen.upkeep.replacing import replace_file
+from tests.guarded import run_guarded
 from tests.tables import for_each
 
 HERE = Path(__file__).parent
@@ -396,3 +399,121 @@ def test_what_is_no_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixt
     loop.symlink_to("loop")
     with pytest.raises(OSError, match="symbolic links"):
         replace_file(loop, b"no")
+
+
+def test_a_recording_that_has_another_name_than_was_wanted_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    placed(tmp_path, read_files(MINIMAL))
+    file = tmp_path / "a.mcap"
+    command = ["run", str(tmp_path), "--robot", "recording", "--speed", "max", "--story", "visitor"]
+    assert main([*command, "--record", str(file)]) == 0
+    assert "is there already" not in capsys.readouterr().out
+    first = file.read_bytes()
+    assert main([*command, "--record", str(file)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert f"{file} is there already: this recording is {tmp_path / 'a-2.mcap'}" in told
+    assert file.read_bytes() == first
+
+
+def lumen(root: Path, *words: str, **settings: str) -> tuple[int, str]:
+    """The exit code and all that `lumen` prints, with these settings of the environment."""
+    environment = {name: value for name, value in os.environ.items() if name not in ("MUJOCO_GL", "DISPLAY")}
+    command = [sys.executable, "-m", "lumen", *words]
+    done = run_guarded(command, cwd=root, env=environment | settings, capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.physics
+@pytest.mark.parametrize(
+    ("setting", "why"),
+    [
+        ({"MUJOCO_GL": "nonsense"}, "MUJOCO_GL=nonsense does not work here (invalid value"),
+        ({"MUJOCO_GL": "glfw"}, "MUJOCO_GL=glfw draws on a screen, and there is none"),
+        ({"MUJOCO_GL": "disable"}, "there is no OpenGL library"),
+    ],
+    ids=["nonsense", "glfw", "disable"],
+)
+def test_pictures_that_can_not_be_drawn_keep_nothing_else_from_running(
+    setting: dict[str, str], why: str, tmp_path: Path
+) -> None:
+    placed(tmp_path, read_files(MINIMAL))
+    code, told = lumen(tmp_path, "play", "wave", "--speed", "max", **setting)
+    assert (code, told.count("\n")) == (0, 2), told
+    code, told = lumen(tmp_path, "play", "wave", "--speed", "max", "--video", "a.mp4", **setting)
+    assert (code, told.count("\n")) == (2, 1), told
+    assert told.startswith(f"lumen play: {why}")
+
+
+@pytest.mark.physics
+def test_a_backend_without_its_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    from lumen.robots.simulation import gl  # 0.5 s
+
+    monkeypatch.setattr(gl, "_loads", lambda library: False)
+    assert gl._fault("osmesa") == (
+        "MUJOCO_GL=osmesa needs libOSMesa.so.8, which is not installed: unset it, or set it to egl, osmesa or disable"
+    )
+    assert gl.choose() == "disable"
+
+
+@pytest.mark.physics
+@pytest.mark.pictures
+@pytest.mark.slow
+def test_a_program_that_is_no_ffmpeg_is_named(tmp_path: Path) -> None:
+    placed(tmp_path, read_files(MINIMAL))
+    code, told = lumen(
+        tmp_path, "play", "wave", "--speed", "max", "--video", "a.mp4", IMAGEIO_FFMPEG_EXE=str(tmp_path / "none")
+    )
+    assert code == 2
+    assert f"IMAGEIO_FFMPEG_EXE={tmp_path / 'none'} is no ffmpeg: unset it" in told
+    assert "Traceback" not in told
+
+
+SETTINGS = {
+    "LANG": "xx_YY.UTF-9", "TZ": "Nowhere", "COLUMNS": "abc", "LINES": "-1", "TERM": "nonsense", "NO_COLOR": "",
+    "TMPDIR": "/nowhere", "HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null", "XDG_STATE_HOME": "relative",
+    "MPLBACKEND": "nonsense", "MPLCONFIGDIR": "/dev/null", "MUJOCO_GL": "nonsense", "PYTHONIOENCODING": "ascii",
+    "PYTHONTZPATH": "/nowhere", "LUMEN_BUS_CREDENTIALS": "/nowhere", "LUMEN_HOUSE": "none",
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["lint"],
+        ["run", "--robot", "recording", "--speed", "max", "--story", "visitor"],
+        ["plot", "motions/wave.yaml", "-o", "wave.svg"],
+        ["explain", "yaml-syntax"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_settings_that_are_not_needed_keep_nothing_from_running(words: list[str], tmp_path: Path) -> None:
+    placed(tmp_path, read_files(MINIMAL))
+    code, told = lumen(tmp_path, *words, **SETTINGS)
+    assert code == 0, told
+    assert "Traceback" not in told
+
+
+def test_an_unknown_time_zone_of_the_environment_is_named(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("TZ", "Nowhere")
+    used = local_timezone()
+    assert f"TZ=Nowhere is no time zone that is known here: times of day are those of {used}" in caplog.text
+    caplog.clear()
+    monkeypatch.setenv("TZ", ":Europe/Berlin")
+    assert local_timezone() == "Europe/Berlin"
+    assert not caplog.records
+
+
+def test_without_a_folder_for_temporary_files_it_is_told_which_setting_names_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def none(options: object) -> int:
+        raise FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/nowhere']")
+
+    monkeypatch.setattr("lumen.cli.lint.run", none)
+    assert main(["lint"]) == 2
+    assert "set TMPDIR to one that can" in capsys.readouterr().err

@@ -1,5 +1,6 @@
 """Where this machine's clock hangs."""
 
+import logging
 import os
 from datetime import datetime
 from pathlib import Path
@@ -7,16 +8,21 @@ from pathlib import Path
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
 
+_log = logging.getLogger(__name__)
+
 _LINK, _NAME = Path("/etc/localtime"), Path("/etc/timezone")
 
 
 def local_timezone() -> str:
     """The IANA name of this machine's time zone; `UTC+02:00` where it has none to tell, as it is now."""
-    for name in (os.environ.get("TZ", "").removeprefix(":"), _linked(), _named()):
-        if name and _known(name):
-            return name
-    offset = datetime.now().astimezone().strftime("%z")
-    return f"UTC{offset[:3]}:{offset[3:5]}"
+    wanted = os.environ.get("TZ", "").removeprefix(":")
+    found = next((name for name in (wanted, _linked(), _named()) if name and _known(name)), "")
+    if not found:
+        offset = datetime.now().astimezone().strftime("%z")
+        found = f"UTC{offset[:3]}:{offset[3:5]}"
+    if wanted not in ("", found):
+        _log.warning("TZ=%s is no time zone that is known here: times of day are those of %s", wanted, found)
+    return found
 
 
 def _linked() -> str:

@@ -132,6 +132,8 @@ def _run(options: argparse.Namespace) -> int:
             complain(f"lumen {options.verb}: can't print: no space left on device")
         elif error.errno == errno.ENAMETOOLONG:
             complain(f"lumen {options.verb}: a name is too long for this system: {str(error.filename)[:40]}…")
+        elif "No usable temporary directory" in str(error):
+            complain(f"lumen {options.verb}: no folder for temporary files can be written: set TMPDIR to one that can")
         elif not _somewhere():
             complain(f"lumen {options.verb}: the folder that you are in is gone: `cd` to another one")
         else:

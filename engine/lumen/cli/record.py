@@ -20,7 +20,7 @@ from lumen.cli.progress import progress
 from lumen.cli.reach import reach
 from lumen.errors import BusError, UsageError
 from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.recording_file import writable
+from lumen.formats.recordings.recording_file import renamed, writable
 from lumen.formats.recordings.rewriting import recover
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
@@ -95,9 +95,10 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
             *bundle_files(root, [project.hash], reached.home),
             *view.look(time.time()),
         ]
-        tape = FileTape(
-            writable(path), folder, first, lambda began: journal_files(root, began, time.time(), reached.home)
-        )
+        free = writable(path)
+        if other := renamed(path, free):
+            print(other, file=sys.stderr)
+        tape = FileTape(free, folder, first, lambda began: journal_files(root, began, time.time(), reached.home))
     except OSError as error:
         raise UsageError(f"{path} can't be written: {error.strerror}") from None
     recorder = Recorder(bus, project, [tape], camera=project.record.camera and not options.no_camera, extra=view)

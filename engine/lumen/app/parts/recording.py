@@ -18,7 +18,7 @@ from lumen.errors import LumenError, RecordingError, UsageError
 from lumen.extras import MissingExtraError
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import Recorded, RecordedNotes
-from lumen.formats.recordings.recording_file import demand_recording, writable
+from lumen.formats.recordings.recording_file import demand_recording, renamed, writable
 from lumen.language.projects import Project
 from lumen.runtime.home import home_of
 
@@ -87,6 +87,8 @@ class RecordingPart(Part):
     def _begin(self, file: Path) -> FileTape:
         try:
             path = writable(file)
+            if other := renamed(file, path):
+                self._tell(other)
             first: list[Recorded] = [
                 notes_of(self._project),
                 *bundle_files(self._root, [self._project.hash], self._robot),

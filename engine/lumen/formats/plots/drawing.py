@@ -2,6 +2,7 @@
 
 import io
 import logging
+import os
 from typing import TYPE_CHECKING, Any
 
 from lumen.extras import demand
@@ -40,6 +41,7 @@ def draw(sheet: PlotSheet, ending: str) -> bytes:
     """
     demand("plot", "a plot", "matplotlib")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    os.environ["MPLBACKEND"] = "agg"  # no window is opened, and matplotlib refuses to be imported with a wrong name
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

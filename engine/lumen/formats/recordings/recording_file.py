@@ -104,6 +104,11 @@ class RecordingFile:
         return number
 
 
+def renamed(wanted: Path, path: Path) -> str:
+    """What to tell of a recording that has another name than the one that was wanted; empty if it has that one."""
+    return f"{wanted} is there already: this recording is {path}" if path != wanted else ""
+
+
 def writable(path: Path) -> Path:
     """A path for a new recording: this, or where that is there already, the same with a number.
 

@@ -230,5 +230,12 @@ def _writer(path: Path, size: FilmSize) -> Generator[None, bytes, None]:
         macro_block_size=2,
         ffmpeg_log_level="error",
     )
-    writer.send(None)  # type: ignore[arg-type]  # starts the generator
+    try:
+        writer.send(None)  # type: ignore[arg-type]  # starts the generator
+    except (OSError, RuntimeError) as error:
+        chosen = os.environ.get("IMAGEIO_FFMPEG_EXE", "")
+        remedy = (
+            f"IMAGEIO_FFMPEG_EXE={chosen} is no ffmpeg: unset it" if chosen else "install `lumen-robot[simulation]`"
+        )
+        raise RobotModelError(f"ffmpeg, which writes films, can't be started ({error}): {remedy}") from None
     return writer

@@ -10,6 +10,11 @@ OPENGL_HINT = "install libegl1 and libgl1 (apt-get install -y --no-install-recom
 _LIBRARIES = {"egl": ("libEGL.so.1", "libGL.so.1"), "osmesa": ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")}
 
 
+_WITH_SCREEN = ("glfw", "glx", "on", "true", "1", "enable", "enabled")
+_OFF = ("disable", "disabled", "off", "false", "0")
+_REMEDY = "unset it, or set it to egl, osmesa or disable"
+
+
 def _loads(library: str) -> bool:
     try:
         ctypes.CDLL(library)
@@ -18,29 +23,62 @@ def _loads(library: str) -> bool:
     return True
 
 
+def _there(backend: str) -> bool:
+    """Whether its libraries load: for EGL all of them, for OSMesa any version."""
+    return (all if backend == "egl" else any)(_loads(library) for library in _LIBRARIES[backend])
+
+
 def choose() -> str:
     """`egl` where its libraries load, else `osmesa`, else `disable`: physics without pictures."""
-    if all(_loads(library) for library in _LIBRARIES["egl"]):
-        return "egl"
-    if any(_loads(library) for library in _LIBRARIES["osmesa"]):
-        return "osmesa"
-    return "disable"
+    return next((backend for backend in _LIBRARIES if _there(backend)), "disable")
 
 
-def _settle() -> str:
-    """The choice, the user's where there is one; mujoco chooses again where it was imported before."""
-    late = "MUJOCO_GL" not in os.environ and sys.modules.get("mujoco.rendering.classic.gl_context")
-    backend = os.environ.setdefault("MUJOCO_GL", choose())
+def _settle() -> tuple[str, str]:
+    """The choice, the user's if there is one, and why it can't draw; mujoco chooses again if it was imported before.
+
+    What the environment asks for and what is not there leaves the physics, without pictures.
+    """
+    wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
+    late = not wanted and sys.modules.get("mujoco.rendering.classic.gl_context")
+    os.environ["MUJOCO_GL"] = backend = wanted or choose()
     if late:
         importlib.reload(late)
-    return backend
+    why = _fault(backend)
+    if why:
+        os.environ["MUJOCO_GL"] = backend = "disable"
+        importlib.import_module("mujoco")
+    return backend, why
 
 
-BACKEND = _settle()
+def _fault(backend: str) -> str:
+    """Why mujoco and dm_control can't be imported with that backend; empty if they can, or are not installed."""
+    screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform != "linux"
+    if backend in _WITH_SCREEN and not screen:
+        return f"MUJOCO_GL={backend} draws on a screen, and there is none: {_REMEDY}"
+    if backend in _LIBRARIES:
+        if not _there(backend):
+            return f"MUJOCO_GL={backend} needs {_LIBRARIES[backend][0]}, which is not installed: {_REMEDY}"
+        os.environ["PYOPENGL_PLATFORM"] = backend
+    try:
+        for module in ("mujoco", "dm_control._render"):
+            importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name in ("mujoco", "dm_control"):
+            return ""
+        return f"MUJOCO_GL={backend} needs {error.name}, which is not installed: {_REMEDY}"
+    except Exception as error:
+        # PyOpenGL and the drivers raise whatever comes to hand, an AttributeError if a library is missing.
+        return f"MUJOCO_GL={backend} does not work here ({' '.join(str(error).split())[:120]}): {_REMEDY}"
+    return ""
+
+
+BACKEND, _WHY = _settle()
 
 
 def missing() -> str | None:
     """Why nothing can be drawn and what to do about it; None where it can."""
-    if BACKEND.lower() in ("disable", "off", "false", "0"):
+    if _WHY:
+        return _WHY
+    if BACKEND in _OFF:
         return f"there is no OpenGL library: {OPENGL_HINT}"
     return None
