@@ -25,7 +25,7 @@ def read_gesture(
     Raises ForeignFileError where the file holds no motion.
     """
     findings = ConversionFindings()
-    curves = _curves(file, content, findings, timeline)
+    curves = _curves(file, content, body, findings, timeline)
     data = MotionWriter(body, findings, retime).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
     if not data["keyframes"]:
         message = f"nothing in it moves a joint of {body.name}"
@@ -36,8 +36,8 @@ def read_gesture(
     return data, findings.diagnostics
 
 
-def _curves(file: str, content: bytes, findings: ConversionFindings, timeline: str) -> JointCurves:
+def _curves(file: str, content: bytes, body: Body, findings: ConversionFindings, timeline: str) -> JointCurves:
     if file.lower().endswith(".xar"):
-        return read_choregraphe(file, content, findings, timeline)
+        return read_choregraphe(file, content, findings, timeline, body.hands)
     text = decoded(file, content)
     return (read_naoqi if file.lower().endswith(".py") else read_webots)(file, text, findings)

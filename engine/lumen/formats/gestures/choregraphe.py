@@ -1,14 +1,19 @@
 """Choregraphe's `.xar` behaviours: the joint curves of one of their timelines.
 
 Aldebaran's project format 3: `Timeline fps` > `ActuatorList` > `ActuatorCurve actuator unit` > `Key frame value` >
-`Tangent side abscissaParam ordinateParam interpType`. Unit 0 is degrees, 1 a hand's opening; frame / fps is a time.
+`Tangent side abscissaParam ordinateParam interpType`. Degrees, and a hand's opening from 0 to 1; frame / fps is a time.
+Keys before the Start flag (`start_frame`) and behind the End flag (`end_frame`, -1 for none) are not played. A library
+of boxes holds the same as a project.
 """
 
-from collections.abc import Iterator
-from math import radians
+from collections.abc import Collection, Iterator
+from math import inf, radians
+from typing import NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, number
+from lumen.formats.known import FormatTable, Known
+from lumen.formats.known_elements import local, tell_losses
 from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import did_you_mean
 
@@ -18,28 +23,160 @@ MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
 DEFAULT_FPS = 25.0
 """Frames a second of a timeline that names none."""
 
+NAO_HANDS = ("LHand", "RHand")
+ROOTS = ("ChoregrapheProject", "ChoregrapheBox")
+VERSION = "3"
+
+_DRAWING = "how the box is drawn"
+_WIRES = "only boxes that do something else use it"
+_BOX = Known(
+    read=frozenset(("<Timeline>", "<Box>", "<script>")),
+    meaningless={
+        "name": "what `--timeline` chooses by",
+        "id": _WIRES, "localization": _DRAWING, "tooltip": _DRAWING, "x": _DRAWING, "y": _DRAWING, "plugin": _WIRES,
+        "<bitmap>": _DRAWING, "<Input>": _WIRES, "<Output>": _WIRES, "<Parameter>": _WIRES, "<Resource>": _WIRES,
+        "<Link>": _WIRES,
+    },
+)  # fmt: skip
+KNOWN: FormatTable = {
+    **{f"<{root}>": Known(frozenset(("xar_version", "<Box>"))) for root in ROOTS},
+    "<Box>": _BOX,
+    "<Timeline>": Known(
+        read=frozenset(("enable", "fps", "start_frame", "end_frame", "<ActuatorList>", "<BehaviorLayer>")),
+        meaningless={"size": "how long the ruler is drawn: a motion ends at its last key"},
+    ),
+    "<BehaviorLayer>": Known(frozenset(("<BehaviorKeyframe>",)), meaningless={"name": _DRAWING}),
+    "<BehaviorKeyframe>": Known(
+        frozenset(("<Diagram>",)), meaningless={"name": _DRAWING, "index": "when boxes begin that are left out"}
+    ),
+    "<Diagram>": Known(frozenset(("<Box>",)), meaningless={"scale": _DRAWING, "<Link>": _WIRES}),
+    "<ActuatorList>": Known(frozenset(("<ActuatorCurve>",)), meaningless={"model": "the robot on which it was drawn"}),
+    "<ActuatorCurve>": Known(
+        read=frozenset(("actuator", "mute", "unit", "<Key>")),
+        meaningless={"name": _DRAWING, "recordable": "whether the editor records it"},
+    ),
+    "<Key>": Known(
+        read=frozenset(("frame", "value", "<Tangent>")),
+        meaningless={"smooth": "how the editor moves handles", "symmetrical": "how the editor moves handles"},
+    ),
+    "<Tangent>": Known(frozenset(("side", "abscissaParam", "ordinateParam", "interpType"))),
+    "interpType": Known(frozenset(("bezier", "bezier_auto", "linear", "constant"))),
+}
+"""What of a `.xar` is carried over; boxes other than that of the timeline are listed as a whole."""
+
 Timelines = dict[str, XmlElement]
 
 
-def read_choregraphe(file: str, content: bytes, findings: ConversionFindings, timeline: str = "") -> JointCurves:
-    """The curves of the timeline of that name; of the only one without a name. Raises ForeignFileError."""
+class Flags(NamedTuple):
+    """The frames from which and up to which a timeline is played, and how many of them are a second."""
+
+    first: float
+    last: float
+    fps: float
+
+    def time(self, frame: float) -> float:
+        """When a frame is come to [s]; the first one is number 1."""
+        return (frame - self.first + 1) / self.fps
+
+
+def read_choregraphe(
+    file: str, content: bytes, findings: ConversionFindings, timeline: str = "", hands: Collection[str] = ()
+) -> JointCurves:
+    """The curves of the timeline of that name; of the only one without a name. Raises ForeignFileError.
+
+    `hands` are those of the robot, beside NAO's: their keys are openings.
+    """
     root = parse_xml(file, content, most=MAX_CHOREGRAPHE_ELEMENTS)
-    if _tag(root) != "ChoregrapheProject":
-        raise broken(root.place, "not-a-motion", f"this is no behaviour of Choregraphe: it begins with `{_tag(root)}`")
+    if local(root) not in ROOTS:
+        raise broken(root.place, "not-a-motion", f"this is no behaviour of Choregraphe: it begins with `{local(root)}`")
+    if (version := root.get("xar_version", VERSION)) != VERSION:
+        message = f"`xar_version` is {version[:20]}: the file is read as one of version {VERSION}"
+        findings.changed(root.place, message, "compare the motion with the original")
     timelines = dict(_timelines(root))
     chosen = _chosen(root, timelines, timeline)
     _others(root, chosen, findings, asked=bool(timeline))
-    fps = _pace(chosen, findings)
+    _tell_around(root, chosen, findings)
+    flags = _flags(chosen, findings)
     curves: dict[str, list[CurvePoint]] = {}
     for curve in _under(chosen, "ActuatorCurve"):
         joint = curve.get("actuator")
+        keys = list(_under(curve, "Key"))
         if curve.get("mute") == "1":
-            findings.lost(curve.place, f"`{joint}` is muted")
-        elif joint in curves:
+            if keys:
+                findings.lost(curve.place, f"`{joint}` is muted")
+            continue
+        if curve.get("mute", "0") != "0":
+            findings.lost(curve.place, f"`{joint}` is not muted: `mute` is `{curve.get('mute')[:20]}`", "write 0 or 1")
+        if joint in curves:
             findings.lost(curve.place, f"`{joint}` has a curve already")
-        elif points := list(_points(curve, fps, findings)):
+        elif points := list(_points(curve, _played(keys, curve, flags, findings), flags, findings, hands)):
             curves[joint] = points
     return curves
+
+
+def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
+    """List what is unknown in the timeline and in what is around it, and code that goes with it."""
+    way = _way(root, chosen)
+    seen = {id(element) for element in way}
+    waiting = [chosen]
+    while waiting:
+        inner = [child for child in waiting.pop().children if local(child) != "Box"]
+        seen.update(map(id, inner))
+        waiting += inner
+    tell_losses(root, KNOWN, findings, lambda element: id(element) in seen)
+    for box in way:
+        if local(box) == "Timeline" and (enabled := box.get("enable", "1")) not in ("0", "1"):
+            findings.lost(
+                box.place, f"`enable` is `{enabled[:20]}`: the timeline counts as switched on", "write 0 or 1"
+            )
+        for script in (child for child in box.children if local(child) == "script"):
+            if any(part.text.strip() for part in script.walk()):
+                findings.lost(script.place, f"the script of the box `{box.get('name')}` is left out")
+
+
+def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
+    """The elements from the root to that one."""
+    above: dict[int, XmlElement] = {}
+    for element in root.walk():
+        above.update((id(child), element) for child in element.children)
+    way = [wanted]
+    while id(way[-1]) in above:
+        way.append(above[id(way[-1])])
+    return way[::-1]
+
+
+def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
+    """The Start flag, 1 if there is none, and the End flag, -1 if there is none."""
+    found = {}
+    for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):
+        said = timeline.get(flag, f"{none:g}")
+        frame = number(said)
+        if frame is None or (frame < 1 and frame != none):
+            findings.lost(timeline.place, f"`{flag}` is `{said[:20]}`, which is no frame", f"write {none:g} for none")
+            frame = none
+        found[flag] = frame
+    first, last = found["start_frame"], inf if found["end_frame"] < 1 else found["end_frame"]
+    if last < first:
+        message = f"the End flag ({last:g}) is before the Start flag ({first:g}): no key is played between them"
+        findings.lost(timeline.place, message)
+    return Flags(first, last, _pace(timeline, findings))
+
+
+def _played(
+    keys: list[XmlElement], curve: XmlElement, flags: Flags, findings: ConversionFindings
+) -> Iterator[XmlElement]:
+    """The keys between the flags; that others are not played is listed once for each curve."""
+    outside = []
+    for key in keys:
+        frame = number(key.get("frame"))
+        if frame is None or flags.first <= frame <= flags.last:
+            yield key
+        else:
+            outside.append(key)
+    if outside:
+        keys_are = "a key" if len(outside) == 1 else f"{len(outside)} keys"
+        message = f"{keys_are} of `{curve.get('actuator')}` before the Start flag or behind the End flag"
+        findings.changed(outside[0].place, f"{message}: not played there, and left out here")
 
 
 def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
@@ -71,7 +208,7 @@ def _timelines(element: XmlElement, box: str = "") -> Iterator[tuple[str, XmlEle
     """The timelines that move joints, by the names of their boxes; a name that comes again has a number."""
     found: dict[str, int] = {}
     for name, timeline in _all_timelines(element, box):
-        if timeline.get("enable") != "0" and any(_tag(key) == "Key" for key in timeline.walk()):
+        if timeline.get("enable") != "0" and any(local(key) == "Key" for key in timeline.walk()):
             found[name] = found.get(name, 0) + 1
             yield (f"{name} {found[name]}" if found[name] > 1 else name), timeline
 
@@ -80,9 +217,9 @@ def _all_timelines(element: XmlElement, box: str) -> Iterator[tuple[str, XmlElem
     waiting = [(element, box)]
     while waiting:
         here, box = waiting.pop()
-        if _tag(here) == "Timeline" and any(_tag(child) == "ActuatorList" for child in here.children):
+        if local(here) == "Timeline" and any(local(child) == "ActuatorList" for child in here.children):
             yield box, here
-        box = here.get("name") if _tag(here) == "Box" else box
+        box = here.get("name") if local(here) == "Box" else box
         waiting.extend((child, box) for child in reversed(here.children))
 
 
@@ -90,34 +227,62 @@ def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, 
     """List the boxes that do something else; beside a timeline that was asked for they are nothing to be missed."""
     inside = {id(element) for element in chosen.walk()}
     for box in root.walk():
-        around = any(element is chosen or _tag(element) == "Box" for element in list(box.walk())[1:])
-        if _tag(box) == "Box" and (id(box) in inside or not around):
+        around = any(element is chosen or local(element) == "Box" for element in list(box.walk())[1:])
+        if local(box) == "Box" and (id(box) in inside or not around):
             say = findings.changed if asked and id(box) not in inside else findings.lost
             say(box.place, f"box `{box.get('name')}` is left out: only joints of a timeline are read")
 
 
-def _points(curve: XmlElement, fps: float, findings: ConversionFindings) -> Iterator[CurvePoint]:
-    factor = 1.0 if curve.get("unit") == "1" else radians(1.0)
-    for key in _under(curve, "Key"):
+def _points(
+    curve: XmlElement, keys: Iterator[XmlElement], flags: Flags, findings: ConversionFindings, hands: Collection[str]
+) -> Iterator[CurvePoint]:
+    joint = curve.get("actuator")
+    factor = _factor(curve, findings, hand=joint in (*NAO_HANDS, *hands))
+    for key in keys:
         frame, value = number(key.get("frame")), number(key.get("value"))
         if frame is None or value is None:
-            findings.lost(key.place, f"a key of `{curve.get('actuator')}` has no frame or no value")
+            findings.lost(key.place, f"a key of `{joint}` has no frame or no value")
             continue
-        tangents = {tangent.get("side"): tangent for tangent in _under(key, "Tangent")}
+        tangents: dict[str, XmlElement] = {}
+        for tangent in _under(key, "Tangent"):
+            if (side := tangent.get("side")) not in ("left", "right") or side in tangents:
+                findings.lost(
+                    tangent.place, f"a tangent of `{joint}` is `{side[:20]}`", "a key has one left, one right"
+                )
+            tangents.setdefault(side, tangent)
+            kind = tangent.get("interpType")
+            for _, hint in KNOWN["interpType"].losses([kind]):
+                findings.lost(tangent.place, f"`{joint}` moves here by `{kind[:20]}`, which is unknown", hint)
         kinds = {tangent.get("interpType") for tangent in tangents.values()}
         if "constant" in kinds:
-            findings.changed(key.place, f"`{curve.get('actuator')}` jumps here; no joint does, so it goes in a line")
+            findings.changed(key.place, f"`{joint}` jumps here; no joint does, so it goes in a line")
         left = tangents.get("left")
         straight = left is not None and left.get("interpType") in ("linear", "constant")
-        into, out = (_handle(tangents.get(side), fps, factor) for side in ("left", "right"))
-        yield CurvePoint(frame / fps, value * factor, key.place, straight, into, out)
+        into, out = (_handle(tangents.get(side), flags.fps, factor, findings) for side in ("left", "right"))
+        yield CurvePoint(flags.time(frame), value * factor, key.place, straight, into, out)
 
 
-def _handle(tangent: XmlElement | None, fps: float, factor: float) -> BezierHandle:
+def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> float:
+    """What a key's value is multiplied by: [rad], or a hand's opening, which `unit` does not change."""
+    joint, unit, usual = curve.get("actuator"), curve.get("unit"), "1" if hand else "0"
+    if unit not in ("", usual):
+        meant = "an opening from 0 to 1" if hand else "an angle in degrees"
+        message = f"`unit` of `{joint}` is `{unit[:20]}`: its keys are read as {meant}"
+        findings.changed(curve.place, message, f'Choregraphe writes `unit="{usual}"`')
+    return 1.0 if hand else radians(1.0)
+
+
+def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: ConversionFindings) -> BezierHandle:
     """(dt [s], da [rad]) of a tangent; none where it is not a Bezier's."""
     if tangent is None or tangent.get("interpType") != "bezier":
         return 0.0, 0.0
-    frames, value = number(tangent.get("abscissaParam")), number(tangent.get("ordinateParam"))
+    frames, value = (number(tangent.get(name, "0")) for name in ("abscissaParam", "ordinateParam"))
+    if frames is None or value is None:
+        findings.lost(tangent.place, "a tangent is left out: `abscissaParam` and `ordinateParam` are numbers")
+    elif (frames > 0) == (tangent.get("side") == "left") and frames:
+        findings.lost(
+            tangent.place, "a tangent is left out: on the left `abscissaParam` is below 0, on the right above"
+        )
     return ((frames or 0.0) / fps, (value or 0.0) * factor)
 
 
@@ -126,11 +291,7 @@ def _under(element: XmlElement, tag: str) -> Iterator[XmlElement]:
     waiting = list(reversed(element.children))
     while waiting:
         here = waiting.pop()
-        if _tag(here) == tag:
+        if local(here) == tag:
             yield here
-        elif _tag(here) != "Box":
+        elif local(here) != "Box":
             waiting.extend(reversed(here.children))
-
-
-def _tag(element: XmlElement) -> str:
-    return element.tag.rpartition("}")[2]
