@@ -113,7 +113,7 @@ def test_whatever_somebody_wrote_is_within_limits_and_speeds(rows: list[tuple[fl
         ("times[0][0] *= 3", "`times[0][0] *= 3` changes `times`"),
         ("keys[0].reverse()", "`keys[0].reverse()` changes `keys`"),
         ("del times[0][1]", "`del times[0][1]` changes `times`"),
-        ("def slow(t):\n    pass\nslow(times)", "`slow(times)` changes `times`"),
+        ("def slow(t):\n    t.reverse()\nslow(times)", "`slow(times)` changes `times`"),
         ("if names:\n    pass\nelse:\n    times = [[9.0]]", "`times = [[9.0]]` changes `times`"),
     ],
 )

@@ -3,8 +3,10 @@
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import lumen
-from lumen.formats.conversion_findings import LOST
+from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.packaged import shipped_root
@@ -16,7 +18,7 @@ BODY = lumen.load(shipped_root()).body
 
 def read(name: str, old: str = "", new: str = "", timeline: str = "") -> tuple[list[dict[str, Any]], list[Diagnostic]]:
     """The keyframes of an input in which `old` is `new`, and the findings."""
-    text = (INPUTS / name).read_text("utf-8")
+    text = (INPUTS / (name if name.endswith(".xar") else f"{name}.txt")).read_text("utf-8")
     assert old in text, old
     data, found = read_gesture(name, text.replace(old, new).encode(), BODY, timeline=timeline)
     return [{"at": frame["at"], **frame["joints"]} for frame in data["keyframes"]], found
@@ -107,3 +109,160 @@ def test_a_muted_curve_without_a_key_loses_nothing() -> None:
 def test_what_a_xar_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
     _, found = read("box-library.xar", old, new)
     assert message in [d.message for d in found]
+
+
+def times(keys: list[dict[str, Any]], joint: str) -> dict[str, float]:
+    """When a joint is where [deg]."""
+    return {key["at"]: key[joint] for key in keys if joint in key}
+
+
+def test_each_function_that_returns_a_gesture_can_be_chosen() -> None:
+    with pytest.raises(ForeignFileError, match=r"`scared`, `happy`.*--timeline"):
+        read("library_returns.py")
+    assert read("library_returns.py", timeline="happy") == ([{"at": "0.8s", "HeadPitch": -17.1887}], [])
+    assert read("library_returns.py", timeline="scared") == ([{"at": "0.8s", "LElbowRoll": -54.7}], [])
+    with pytest.raises(ForeignFileError, match="did you mean `happy`"):
+        read("library_returns.py", timeline="hapy")
+
+
+@for_each(
+    ("end", "first"),
+    [("\nshow()\n", "0.8s"), ("\nif __name__ == '__main__':\n    time.sleep(2)\n    show()\n", "2.8s")],
+)
+def test_a_function_plays_what_another_returned(end: str, first: str) -> None:
+    show = "\ndef show():\n    n, k, t = happy()\n    motion.angleInterpolation(n, k, t, True)\n"
+    text = (INPUTS / "library_returns.py.txt").read_text("utf-8") + show + end
+    data, found = read_gesture("show.py", text.encode(), BODY)
+    assert [frame["at"] for frame in data["keyframes"]] == [first]
+    assert [d.message for d in found] == ["the function `scared` is left out: nothing calls it"]
+
+
+def test_functions_play_in_the_order_of_their_calls() -> None:
+    keys, found = read("order.py")
+    assert times(keys, "HeadPitch") == {"1s": 17.1887, "2s": 0}
+    assert times(keys, "RShoulderPitch") == {"3s": -57.2958, "4s": 80.2141}
+    assert found == []
+
+
+def test_a_function_that_is_called_three_times_plays_three_times() -> None:
+    keys, _ = read("order.py", "nod()\nwave()", "nod()\nnod()\nnod()\nwave()")
+    nods = {f"{second}s": (17.1887, 0)[second % 2 == 0] for second in range(1, 7)}
+    assert times(keys, "HeadPitch") == nods
+    assert list(times(keys, "RShoulderPitch")) == ["7s", "8s"]
+
+
+def test_a_function_that_nothing_calls_is_listed() -> None:
+    keys, found = read("order.py", "nod()\nwave()", "wave()")
+    assert list(times(keys, "RShoulderPitch")) == ["1s", "2s"]
+    assert [(d.message, d.place.line) for d in found] == [("the function `nod` is left out: nothing calls it", 7)]
+
+
+def test_methods_and_what_they_are_handed_are_followed() -> None:
+    robot = """class Robot:
+    def __init__(self):
+        self.motion = ALProxy("ALMotion", "nao.local", 9559)
+    def nod(self, angle, pause=1.0):
+        self.motion.angleInterpolation("HeadPitch", angle, 1.0, True)
+        time.sleep(pause)
+robot = Robot()
+robot.nod(0.3)
+robot.nod(0.0, pause=2.0)
+robot.nod(0.3)
+"""
+    data, found = read_gesture("robot.py", robot.encode(), BODY)
+    keys = [(frame["at"], frame["joints"]["HeadPitch"]) for frame in data["keyframes"]]
+    assert keys == [("1s", 17.1887), ("2s", 17.1887), ("3s", 0), ("5s", 0), ("6s", 17.1887)]
+    assert found == []
+
+
+def test_functions_without_an_end_are_a_line() -> None:
+    ring = b"def a():\n    motion.angleInterpolation('HeadYaw', 0.1, 1.0)\n    b()\ndef b():\n    a()\na()\n"
+    data, found = read_gesture("a.py", ring, BODY)
+    assert len(data["keyframes"]) == 1
+    assert [d.message for d in found] == ["`a` calls itself: here it does once"]
+    doubling = "".join(f"def f{n}():\n    f{n + 1}()\n    f{n + 1}()\n" for n in range(30))
+    last = "def f30():\n    motion.angleInterpolation('HeadYaw', 0.1, 1.0)\nf0()\n"
+    with pytest.raises(ForeignFileError, match="without an end"):
+        read_gesture("a.py", (doubling + last).encode(), BODY)
+
+
+def test_calls_that_are_left_out_are_listed_at_their_places() -> None:
+    keys, found = read("other_calls.py")
+    assert times(keys, "RShoulderPitch") == {"1s": -57.2958, "2s": 80.2141}
+    lost = [(d.place.line, d.message.partition("(")[0].partition(".")[2]) for d in found if d.code == LOST]
+    assert lost == [
+        (5, "goToPosture"), (6, "setAngles"), (7, "openHand"), (9, "say"), (10, "angleInterpolationWithSpeed"),
+        (12, "moveTo"),
+    ]  # fmt: skip
+    assert all(d.hint for d in found)
+
+
+@for_each(
+    ("statement", "message"),
+    [
+        ("motion.angleInterpolatoin('HeadYaw', 0.1, 1.0, True)", "`motion.angleInterpolatoin("),
+        ("motion.angleInterpolation('HeadYaw', 0.1)", "`angleInterpolation` is handed 2 values"),
+        ("qi.async(motion.angleInterpolation, 'HeadYaw')".replace("async", "runAsync"), "`qi.runAsync("),
+        ("leds.fadeRGB('FaceLeds', 'red', 1.0)", "`leds.fadeRGB("),
+        ("motion.setStiffnesses('Body', 0.0)", "`motion.setStiffnesses("),
+        ("if motion.moveTo(1, 0, 0):\n    pass", "`motion.moveTo("),
+        ("from moves import bow\nbow()", "`bow()`"),
+        ("time.sleep(some)", "how long `time.sleep(some)` is"),
+        ("while waiting:\n    time.sleep(0.1)", "this pause is in a loop"),
+    ],
+)
+def test_other_calls_are_listed(statement: str, message: str) -> None:
+    _, found = read("sleep.py", "time.sleep(3.0)", statement)
+    assert [d.message.startswith(message) for d in found] == [True], found
+
+
+@for_each(
+    ("statement",),
+    [
+        "print(motion.getAngles('Body', True))",
+        "motion.setStiffnesses('Body', 1.0)",
+        "sys.exit(1)",
+        "session = qi.Session()\nsession.connect('tcp://nao.local')",
+    ],
+)
+def test_calls_that_change_nothing_are_no_findings(statement: str) -> None:
+    assert read("sleep.py", "time.sleep(3.0)", statement)[1] == []
+
+
+def test_pauses_count_and_the_joint_stays_in_them() -> None:
+    keys, found = read("sleep.py")
+    assert times(keys, "HeadYaw") == {"1s": 34.3775, "4s": 34.3775, "5s": 0}
+    assert found == []
+
+
+@for_each(
+    ("call", "wanted"),
+    [
+        ("['HeadYaw', 'HeadPitch'], [0.4, -0.2], [1.0, 1.5]", [("1s", "HeadYaw"), ("1.5s", "HeadPitch")]),
+        ("['HeadYaw', 'HeadPitch'], [0.4, -0.2], 1.0", [("1s", "HeadYaw"), ("1s", "HeadPitch")]),
+        ("'Head', [0.4, -0.2], 1.0", [("1s", "HeadYaw"), ("1s", "HeadPitch")]),
+        ("'Head', [[0.4], [-0.2]], [[1.0], [1.5]]", [("1s", "HeadYaw"), ("1.5s", "HeadPitch")]),
+        ("['Head'], [0.4, -0.2], [1.0, 1.5]", [("1s", "HeadYaw"), ("1.5s", "HeadPitch")]),
+        ("['HeadYaw', 'HeadPitch'], [[0.4], -0.2], [1.0, [1.5]]", [("1s", "HeadYaw"), ("1.5s", "HeadPitch")]),
+    ],
+)
+def test_every_form_of_angles_and_times_is_read(call: str, wanted: list[tuple[str, str]]) -> None:
+    keys, found = read("spread.py", '["HeadYaw", "HeadPitch"], [0.4, -0.2], [1.0, 1.5]', call)
+    assert [(key["at"], joint) for key in keys for joint in key if joint != "at"] == wanted
+    angles = {joint: key[joint] for key in keys for joint in key if joint != "at"}
+    assert angles == {"HeadYaw": 22.9183, "HeadPitch": -11.4592}
+    assert found == []
+
+
+@for_each(
+    ("call",),
+    [
+        "['HeadYaw', 'HeadPitch'], [0.4], [1.0, 1.5]",
+        "['HeadYaw', 'HeadPitch'], [0.4, 0.2], [1.0, 1.5, 2.0]",
+        "'Head', [0.4], 1.0",
+        "['HeadYaw'], [], []",
+    ],
+)
+def test_angles_and_times_that_do_not_fit_are_a_line(call: str) -> None:
+    with pytest.raises(ForeignFileError, match="do not fit together"):
+        read("spread.py", '["HeadYaw", "HeadPitch"], [0.4, -0.2], [1.0, 1.5]', call)

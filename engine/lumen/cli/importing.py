@@ -66,7 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="chart.scxml, machine.json, wave.motion, behavior.xar, keyframes.py, head.fll, robot.urdf, robot.xml",
     )
     add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
-    add("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
+    add("--timeline", metavar="NAME", default="", help="which one of a .xar that has several, or which function of a .py")
     add("--retime", action="store_true", help="give a motion the time that its joints need, where they are too fast")
     add("--project", metavar="DIR", help="whose robot a motion is for; default: here or above, else the shipped one")
     add("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")

@@ -21,8 +21,8 @@ def read_gesture(
 ) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a motion file for that body, and what could not be carried over; by the file's ending.
 
-    `timeline` is the one of a .xar to read; with `retime` the motion takes as long as its joints need.
-    Raises ForeignFileError where the file holds no motion.
+    `timeline` is the one of a .xar to read, or a function of a .py; with `retime` the motion takes as long as its
+    joints need. Raises ForeignFileError where the file holds no motion.
     """
     findings = ConversionFindings()
     curves = _curves(file, content, body, findings, timeline)
@@ -40,4 +40,8 @@ def _curves(file: str, content: bytes, body: Body, findings: ConversionFindings,
     if file.lower().endswith(".xar"):
         return read_choregraphe(file, content, findings, timeline, body.hands)
     text = decoded(file, content)
-    return (read_naoqi if file.lower().endswith(".py") else read_webots)(file, text, findings)
+    return (
+        read_naoqi(file, text, findings, timeline)
+        if file.lower().endswith(".py")
+        else read_webots(file, text, findings)
+    )

@@ -1,26 +1,35 @@
-"""Keyframes that Choregraphe exports as Python: read, never run.
+"""Keyframes in Python for NAOqi, as Choregraphe exports them or people write them: read, never run.
 
 NAOqi's ALMotion: `angleInterpolationBezier(names, times, keys)`, each key `[angle, [type, dt, da], [type, dt, da]]`,
-and `angleInterpolation(names, angles, times, isAbsolute)`; times in [s], angles in [rad].
+and `angleInterpolation(names, angles, times, isAbsolute)`; times in [s], angles in [rad]. Statements are followed in
+their order, and functions of the file where they are called. If nothing is called, each function that moves joints, or
+returns the lists for it, is a motion of its own.
 """
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from typing import Any
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves
 from lumen.formats.gestures.literals import MAX_NUMBER, NotWrittenOutError, value_of, written
-from lumen.formats.gestures.statements import Branch, changed_names, functions_of, statements
-from lumen.language.diagnostics import Place
+from lumen.formats.gestures.naoqi_calls import ALMOTION_CALLS, CALLS, CHAINS, PAUSE, WAIT, is_reading
+from lumen.formats.gestures.statements import (
+    Branch,
+    FunctionNode,
+    OwnFunctions,
+    attribute,
+    changed_names,
+    lists_of,
+    statements,
+)
+from lumen.language.diagnostics import Place, did_you_mean
 
-ALMOTION_CALLS = {
-    "angleInterpolationBezier": ("names", "times", "keys"),
-    "angleInterpolation": ("names", "keys", "times"),
-}
 BEZIER, LINEAR = 3, 1
+MAX_STEPS = 20_000
+"""Statements that are followed: functions that call each other may be endless."""
 
 _OLD = (
     (re.compile(r"^([ \t]*except[ \t]+[\w.]+),[ \t]*(\w+)[ \t]*:", re.MULTILINE), r"\1 as \2:"),
@@ -29,19 +38,55 @@ _OLD = (
 """What Python 2 wrote otherwise, and how it is read."""
 
 
-def read_naoqi(file: str, text: str, findings: ConversionFindings) -> JointCurves:
-    """The curves that the file hands to ALMotion. Raises ForeignFileError where it hands it none."""
+def read_naoqi(file: str, text: str, findings: ConversionFindings, timeline: str = "") -> JointCurves:
+    """The curves that the file hands to ALMotion, or a function of that name. Raises ForeignFileError for none."""
     tree = _tree(file, text)
-    reading = _Reading(file, findings, tree)
-    for statement, branch in statements(tree):
-        reading.take(statement, branch)
+    own = OwnFunctions(tree)
+    reading = _Reading(file, findings, tree, own)
+    function = _chosen(file, tree, own, findings, timeline)
+    if function is None:
+        reading.run(tree.body)
+    else:
+        reading.follows_calls = False
+        reading.run(tree.body)
+        reading.follows_calls = True
+        reading.enter(function, {})
+    body = function.body if function else tree.body
+    if not reading.called and (lists := lists_of(body)) and set(lists) <= reading.last.keys():
+        reading.play(body[-1], *(reading.last[name] for name in lists))
+        reading.used.update(lists)
     reading.tell_changes()
-    if not reading.called and {"names", "times", "keys"} <= reading.values.keys():
-        reading.play(tree.body[-1], *(reading.values[name] for name in ("names", "times", "keys")))
     if not reading.called:
         hint = "it should call angleInterpolation or angleInterpolationBezier with lists that are written out"
         raise broken(Place(file), "not-a-motion", "no keyframes for ALMotion stand in it", hint)
     return reading.curves
+
+
+def _chosen(
+    file: str, tree: ast.Module, own: OwnFunctions, findings: ConversionFindings, name: str
+) -> FunctionNode | None:
+    """The function that is the motion; None for what the file does when it is run."""
+    gestures = {name: function for name, function in own.all.items() if own.is_gesture(function.body)}
+    if name:
+        if name not in gestures:
+            hint = did_you_mean(name, gestures, "it has")
+            raise broken(Place(file), "not-a-motion", f"no function `{name}` moves a joint", hint)
+        return gestures[name]
+    called = own.reached(tree.body)
+    if own.is_gesture(tree.body):
+        for other, function in gestures.items():
+            if other not in called:
+                place = Place(file, function.lineno, function.col_offset + 1)
+                message = f"the function `{other}` is left out: nothing calls it"
+                findings.changed(place, message, f"--timeline {other} reads it instead of the rest")
+        return None
+    within = {inner for each in gestures for inner in own.reached(gestures[each].body) - {each}}
+    roots = [each for each in gestures if each not in within] or list(gestures)
+    if len(roots) > 1:
+        names = ", ".join(f"`{root}`" for root in roots)
+        hint = "choose one: --timeline NAME"
+        raise broken(Place(file), "not-a-motion", f"it has several functions that are motions: {names}", hint)
+    return gestures[roots[0]] if roots else None
 
 
 def _tree(file: str, text: str) -> ast.Module:
@@ -61,38 +106,146 @@ def _tree(file: str, text: str) -> ast.Module:
 class _Reading:
     """The variables so far, and the curves of the calls."""
 
-    def __init__(self, file: str, findings: ConversionFindings, tree: ast.Module) -> None:
-        self.file, self.findings = file, findings
+    def __init__(self, file: str, findings: ConversionFindings, tree: ast.Module, own: OwnFunctions) -> None:
+        self.file, self.findings, self.own = file, findings, own
         texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
         self.named = {node.value: node for node in reversed(texts)}
-        self.functions = functions_of(tree)
-        self.values: dict[str, Any] = {}
+        self.globals: dict[str, Any] = {}
+        self.values = self.last = self.globals
+        self.shared: set[str] = set()
         self.sources: dict[str, set[str]] = {}
-        self.used: set[str] = {"names", "times", "keys"}
+        self.used: set[str] = set()
         self.changes: list[tuple[frozenset[str], ast.stmt, Branch]] = []
         self.curves: dict[str, list[CurvePoint]] = {}
-        self.begin = 0.0
+        self.begin = self.end = 0.0
+        self.entered: list[str] = []
+        self.returned: dict[int, Any] = {}
+        self.steps = 0
+        self.follows_calls = True
         self.called = False
+
+    def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
+        """Follow statements in their order; what they return, None if that is not written out."""
+        for statement, branch in statements(body, around):
+            self.steps += 1
+            if self.steps > MAX_STEPS:
+                raise broken(self._place(statement), "too-large", "its functions call each other without an end")
+            if isinstance(statement, FunctionNode):
+                continue
+            if isinstance(statement, ast.ClassDef):
+                self.run([inner for inner in statement.body if not isinstance(inner, FunctionNode)], branch)
+                continue
+            self.take(statement, branch)
+            if isinstance(statement, ast.Return) and branch is Branch.ALWAYS:
+                return self._value(statement.value) if statement.value else None
+        return None
+
+    def enter(self, function: FunctionNode, given: Mapping[str, Any], around: Branch = Branch.ALWAYS) -> Any:
+        """Follow a function with its own variables; what it returns."""
+        outer, shared = self.values, self.shared
+        self.values, self.shared = {**self.globals, **self._defaults(function), **given}, set()
+        self.entered.append(function.name)
+        result = self.run(function.body, around)
+        self.entered.pop()
+        self.last = self.values
+        self.values, self.shared = outer, shared
+        return result
+
+    def _defaults(self, function: FunctionNode) -> dict[str, Any]:
+        """The parameters that a function has without being handed them; unknown ones hide the file's variables."""
+        given = function.args
+        names = [argument.arg for argument in (*given.posonlyargs, *given.args)]
+        pairs = [*zip(reversed(names), reversed(given.defaults), strict=False)]
+        pairs += [(a.arg, d) for a, d in zip(given.kwonlyargs, given.kw_defaults, strict=True) if d]
+        found = dict.fromkeys(names) | {name: self._value(default) for name, default in pairs}
+        return found
 
     def take(self, statement: ast.stmt, branch: Branch) -> None:
         """Follow what is written out; remember what changes a variable in another way."""
-        changed = changed_names(statement, self.functions)
+        if isinstance(statement, ast.Global):
+            self.shared.update(statement.names)
+        changed = changed_names(statement)
         for name in changed:
             self.sources.setdefault(name, set()).update(_names(statement))
-        calls = sorted(
-            (node for node in ast.walk(statement) if isinstance(node, ast.Call)),
-            key=lambda node: (node.lineno, node.col_offset),
-        )
+        if self.follows_calls:
+            calls = [node for node in ast.walk(statement) if isinstance(node, ast.Call)]
+            told = {
+                id(node) for call in calls if attribute(call) in CALLS.read for a in call.args for node in ast.walk(a)
+            }
+            for call in sorted(calls, key=lambda node: (node.lineno, node.col_offset)):
+                self._called(call, statement, branch, told=id(call) in told)
         followed = branch in (Branch.ALWAYS, Branch.IF) and self._followed(statement)
         if changed and not (followed and branch is Branch.ALWAYS):
             self.changes.append((changed, statement, branch if followed else Branch.LOOP))
-        for call in calls:
-            match call:
-                case ast.Call(func=ast.Attribute(attr=method), args=arguments) if (
-                    method in ALMOTION_CALLS and len(arguments) >= 3
-                ):
-                    self.used.update(name for argument in arguments for name in _names(argument))
-                    self._call(call, method, arguments, branch)
+
+    def _called(self, call: ast.Call, statement: ast.stmt, branch: Branch, *, told: bool) -> None:
+        """Carry out a call, or list it; `told` if a value that is not written out is listed there anyway."""
+        name, shown = attribute(call), written(call).partition("\n")[0][:60]
+        if name in ALMOTION_CALLS and self.own.called(call) is None:
+            self.used.update(name for argument in call.args for name in _names(argument))
+            self._call(call, name, branch)
+        elif function := self.own.called(call):
+            self._own(call, function, statement, branch)
+        elif name in (PAUSE, WAIT):
+            self._pause(call, name, branch)
+        elif name in ("setStiffnesses", "stiffnessInterpolation") and self._is_stiff(call):
+            pass  # motors of ours are stiff from the beginning
+        elif name not in self.own.classes and not is_reading(name) and (name in CALLS.lost or not told):
+            for _, hint in CALLS.losses([name]):
+                self.findings.lost(self._place(call), f"`{shown}` is left out", hint)
+
+    def _own(self, call: ast.Call, function: FunctionNode, statement: ast.stmt, branch: Branch) -> None:
+        """Follow a function of the file with what it is handed."""
+        if function.name in self.entered:
+            self.findings.lost(self._place(call), f"`{function.name}` calls itself: here it does once")
+            return
+        names = [argument.arg for argument in (*function.args.posonlyargs, *function.args.args)]
+        if names[:1] == ["self"]:
+            names = names[1:]
+        handed = {**dict(zip(names, call.args, strict=False)), **{k.arg: k.value for k in call.keywords if k.arg}}
+        for name, argument in handed.items():
+            self.sources.setdefault(name, set()).update(_names(argument))
+        before = len(self.changes)
+        self.returned[id(call)] = self.enter(
+            function, {name: self._value(argument) for name, argument in handed.items()}, branch
+        )
+        for changed, _, how in self.changes[before:]:
+            outside = {name for each in changed & handed.keys() for name in _names(handed[each])}
+            if outside:
+                self.changes.append((frozenset(outside), statement, how))
+
+    def _pause(self, call: ast.Call, name: str, branch: Branch) -> None:
+        """What comes later begins that much later, or after all that has begun."""
+        if name == WAIT:
+            self.begin = max(self.begin, self.end)
+            return
+        seconds: Any = self._value(call.args[0]) if len(call.args) == 1 else None
+        if not _is_number(seconds) or seconds < 0:
+            message = f"how long `{written(call)[:60]}` is, is known only when the file runs: it is left out"
+            self.findings.lost(self._place(call), message, "write the number out")
+            return
+        if branch is Branch.ELSE:
+            self.findings.lost(self._place(call), "a pause in an `else` or `except` is left out")
+            return
+        if branch is Branch.LOOP:
+            self.findings.lost(self._place(call), "this pause is in a loop: here it is made once")
+        elif branch is Branch.IF:
+            self.findings.changed(self._place(call), "this pause is in an `if`: here it is always made")
+        self.begin += float(seconds)
+
+    def _is_stiff(self, call: ast.Call) -> bool:
+        """Whether a call makes motors as stiff as they can be."""
+        stiffness = self._value(call.args[1]) if len(call.args) > 1 else None
+        return all(part == 1 for part in (stiffness if isinstance(stiffness, list) else [stiffness]))
+
+    def _value(self, node: ast.expr) -> Any:
+        """The value of what is written out, or of a call that was followed; else None."""
+        if id(node) in self.returned:
+            return self.returned[id(node)]
+        try:
+            return value_of(node, self.values)
+        except NotWrittenOutError:
+            return None
 
     def tell_changes(self) -> None:
         """Report what changes a variable that a call uses, and can't be known without running the file."""
@@ -125,6 +278,14 @@ class _Reading:
                 for name, value in zip(names, values, strict=True):
                     self._assign(name.id, value)  # type: ignore[attr-defined]
                 return True
+            case ast.Assign(targets=[ast.Tuple(elts=names)], value=value) if all(
+                isinstance(n, ast.Name) for n in names
+            ):
+                values = self._value(value)
+                if not isinstance(values, list) or len(values) != len(names):
+                    return False
+                self.values.update((name.id, one) for name, one in zip(names, values, strict=True))  # type: ignore[attr-defined]
+                return True
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="append"), args=[item])) if (
                 isinstance(self.values.get(name), list)
             ):
@@ -136,23 +297,27 @@ class _Reading:
         """Add the curves of one call, which begins when those before it have ended."""
         self.called = True
         end = begin = self.begin
-        names, times, keys = (value if isinstance(value, list) else [value] for value in (names, times, keys))
-        if len(names) == 1 and times and not isinstance(times[0], list):
-            times, keys = [times], [keys]
-        for joint, moments, rows in zip_longest(names, times, keys):
-            if not (isinstance(joint, str) and isinstance(moments, list) and isinstance(rows, list)):
-                self.findings.lost(self._place(node), "names, times and keys do not fit together")
-                return
-            for point in self._points(self.named.get(joint, node), joint, moments, rows):
-                self.curves.setdefault(joint, []).append(point._replace(time=begin + point.time))
+        joints = [joint for name in (names if isinstance(names, list) else [names]) for joint in _joints(name)]
+        rows = _rows(times, keys, len(joints))
+        if rows is None or not all(isinstance(joint, str) for joint in joints):
+            self.findings.lost(self._place(node), "names, times and keys do not fit together")
+            return
+        for joint, (moments, angles) in zip(joints, rows, strict=True):
+            curve = self.curves.setdefault(joint, [])
+            if curve and curve[-1].time < begin:  # it stays where it is until this call begins
+                curve.append(CurvePoint(begin, curve[-1].angle, self._place(node), straight=True))
+            for point in self._points(self.named.get(joint, node), joint, moments, angles):
+                curve.append(point._replace(time=begin + point.time))
                 end = max(end, begin + point.time)
-        self.begin = begin if ".post." in written(node) else end
+        self.end = max(self.end, end)
+        self.begin = begin if _is_posted(node) else end
 
     def _assign(self, name: str, value: ast.expr) -> None:
-        try:
-            self.values[name] = value_of(value, self.values)
-        except NotWrittenOutError:
-            self.values.pop(name, None)
+        known = self._value(value)
+        for variables in (self.values, *([self.globals] if name in self.shared else [])):
+            variables.pop(name, None)
+            if known is not None:
+                variables[name] = known
 
     def _append(self, name: str, item: ast.expr) -> None:
         try:
@@ -161,9 +326,14 @@ class _Reading:
             self.findings.lost(self._place(error.node), f"`{error}` is known only when the file runs", "write a number")
             self.values[name].append([])
 
-    def _call(self, node: ast.Call, method: str, arguments: list[ast.expr], branch: Branch) -> None:
+    def _call(self, node: ast.Call, method: str, branch: Branch) -> None:
+        arguments = node.args
+        if not 3 <= len(arguments) <= 4:
+            wanted = ", ".join(ALMOTION_CALLS[method])
+            self.findings.lost(self._place(node), f"`{method}` is handed {len(arguments)} values", f"it takes {wanted}")
+            return
         if branch is Branch.ELSE:
-            self.findings.lost(self._place(node), "what an `else` does is left out")
+            self.findings.lost(self._place(node), "what an `else` or `except` does is left out")
             return
         if branch is Branch.LOOP:
             self.findings.lost(self._place(node), "this is in a loop: here the robot does it once")
@@ -198,6 +368,38 @@ class _Reading:
         line, column = getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1
         same = getattr(node, "end_lineno", line) == line
         return Place(self.file, line, column, line, getattr(node, "end_col_offset", column) + 1 if same else column + 1)
+
+
+def _joints(name: Any) -> tuple[Any, ...]:
+    """The joints of a chain, or the joint itself."""
+    return CHAINS.get(name, (name,)) if isinstance(name, str) else (name,)
+
+
+def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]]] | None:
+    """Times and keys of each joint, in every form that ALMotion accepts; None if they do not fit.
+
+    One time for all, one time or angle for each joint, or a list for each of them; for a single joint, its own list.
+    """
+    if times == [] or keys == []:
+        return None
+    if joints == 1 and isinstance(times, list) and not isinstance(times[0], list):
+        return [(times, keys if isinstance(keys, list) else [keys])]
+    times = times if isinstance(times, list) else [times] * joints
+    keys = keys if isinstance(keys, list) else [keys]
+    if not joints or len(times) != joints or len(keys) != joints:
+        return None
+    return [
+        (t if isinstance(t, list) else [t], k if isinstance(k, list) else [k]) for t, k in zip(times, keys, strict=True)
+    ]
+
+
+def _is_posted(node: ast.AST) -> bool:
+    """Whether the script goes on while the robot moves: `motion.post.…`, or qi's `_async=True`."""
+    if not isinstance(node, ast.Call):
+        return False
+    return ".post." in written(node.func) or any(
+        k.arg == "_async" and isinstance(k.value, ast.Constant) and bool(k.value.value) for k in node.keywords
+    )
 
 
 def _handle(handle: Any) -> tuple[int, BezierHandle]:

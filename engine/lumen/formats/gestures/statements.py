@@ -1,8 +1,12 @@
 """The statements of a Python file in their order, each with what may keep it from being carried out once."""
 
 import ast
+import re
 from collections.abc import Iterator
 from enum import Enum
+from typing import NamedTuple
+
+from lumen.formats.gestures.naoqi_calls import ALMOTION_CALLS
 
 
 class Branch(Enum):
@@ -14,26 +18,36 @@ class Branch(Enum):
     LOOP = "loop"
 
 
-def statements(tree: ast.Module) -> Iterator[tuple[ast.stmt, Branch]]:
-    """The simple statements, functions and classes opened where they stand; what handles exceptions is left out."""
-    waiting = [(statement, Branch.ALWAYS) for statement in reversed(tree.body)]
+def statements(body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Iterator[tuple[ast.stmt, Branch]]:
+    """The simple statements, and functions and classes as a whole; what is asked by a compound one is one, too.
+
+    What handles exceptions counts as an `else`.
+    """
+    waiting = [(statement, around) for statement in reversed(body)]
     while waiting:
         statement, branch = waiting.pop()
         parts: list[tuple[list[ast.stmt], Branch]]
+        head: list[ast.expr] = []
         match statement:
-            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef() | ast.With() | ast.AsyncWith():
-                parts = [(statement.body, branch)]
+            case ast.With() | ast.AsyncWith():
+                head, parts = [item.context_expr for item in statement.items], [(statement.body, branch)]
             case ast.Try() | ast.TryStar():
-                parts = [(part, branch) for part in (statement.body, statement.orelse, statement.finalbody)]
+                parts = [(part, branch) for part in (statement.body, statement.orelse)]
+                parts += [(handler.body, _within(branch, Branch.ELSE)) for handler in statement.handlers]
+                parts.append((statement.finalbody, branch))
             case ast.For() | ast.AsyncFor() | ast.While():
+                head = [statement.test if isinstance(statement, ast.While) else statement.iter]
                 parts = [(statement.body, Branch.LOOP), (statement.orelse, Branch.LOOP)]
             case ast.If() if _is_main(statement.test):
                 parts = [(statement.body, branch)]
             case ast.If():
+                head = [statement.test]
                 parts = [(statement.body, _within(branch, Branch.IF)), (statement.orelse, _within(branch, Branch.ELSE))]
             case _:
                 yield statement, branch
                 continue
+        for asked in head:
+            yield ast.copy_location(ast.Expr(asked), asked), branch
         waiting += [(inner, where) for body, where in reversed(parts) for inner in reversed(body)]
 
 
@@ -50,11 +64,111 @@ def _is_main(test: ast.expr) -> bool:
     return False
 
 
+FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+class OwnFunctions:
+    """The functions and methods that a file defines, by name; of two that are called alike the last one."""
+
+    def __init__(self, tree: ast.Module) -> None:
+        self.plain: dict[str, FunctionNode] = {}
+        self.methods: dict[str, FunctionNode] = {}
+        classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        of_classes = {id(inner) for node in classes for inner in node.body}
+        for node in ast.walk(tree):
+            if isinstance(node, FunctionNode):
+                (self.methods if id(node) in of_classes else self.plain)[node.name] = node
+        for node in classes:
+            begin = next((f for f in node.body if isinstance(f, FunctionNode) and f.name == "__init__"), None)
+            if begin:
+                self.plain.setdefault(node.name, begin)
+        self.all = {**self.methods, **self.plain}
+        self.classes = {node.name for node in classes}
+
+    def called(self, call: ast.Call) -> FunctionNode | None:
+        """The function of the file that a call means."""
+        match call.func:
+            case ast.Name(id=name):
+                return self.plain.get(name)
+            case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner == "self" or name not in _OF_NAOQI:
+                return self.methods.get(name)
+        return None
+
+    def reached(self, body: list[ast.stmt]) -> set[str]:
+        """The names of the functions that statements call, and of those that these call."""
+        found: set[str] = set()
+        waiting = [body]
+        while waiting:
+            for call in (inner for inner in _inner(waiting.pop()) if isinstance(inner, ast.Call)):
+                function = self.called(call)
+                if function and function.name not in found:
+                    found.add(function.name)
+                    waiting.append(function.body)
+        return found
+
+    def is_gesture(self, body: list[ast.stmt]) -> bool:
+        """Whether statements, or the functions that they call, move joints, or return the lists of a motion."""
+        whole = [body, *(self.all[name].body for name in self.reached(body) if name in self.all)]
+        return any(_moves(part) for part in whole) or lists_of(body) is not None
+
+
+_OF_NAOQI = frozenset((*ALMOTION_CALLS, "say", "move", "rest", "play", "sleep", "wait"))
+"""Names that mean NAOqi's, unless `self` is called."""
+
+
+class NamedLists(NamedTuple):
+    """The variables that hold the names, times and keys of a motion."""
+
+    names: str
+    times: str
+    keys: str
+
+
+USUAL_LISTS = NamedLists("names", "times", "keys")
+
+
+def _inner(body: list[ast.stmt]) -> Iterator[ast.AST]:
+    """The nodes of statements, not those of functions and classes that are defined there."""
+    waiting: list[ast.AST] = list(body)
+    while waiting:
+        node = waiting.pop()
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            yield node
+            waiting += ast.iter_child_nodes(node)
+
+
+def _moves(body: list[ast.stmt]) -> bool:
+    return any(isinstance(n, ast.Call) and attribute(n) in ALMOTION_CALLS for n in _inner(body))
+
+
+def lists_of(body: list[ast.stmt]) -> NamedLists | None:
+    """The lists of a motion that statements fill: those of Choregraphe's export, or three that are returned."""
+    nodes = list(_inner(body))
+    if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:
+        return USUAL_LISTS
+    for node in nodes:
+        match node:
+            case ast.Return(value=ast.Tuple(elts=[ast.Name(id=a), ast.Name(id=b), ast.Name(id=c)])):
+                names = next((name for name in (a, b, c) if re.search("name|joint", name, re.IGNORECASE)), "")
+                times = next((name for name in (a, b, c) if re.search("time", name, re.IGNORECASE)), "")
+                if names and times and names != times:
+                    return NamedLists(names, times, next(name for name in (a, b, c) if name not in (names, times)))
+    return None
+
+
+def attribute(call: ast.Call) -> str:
+    """The last word of what is called."""
+    match call.func:
+        case ast.Name(id=name) | ast.Attribute(attr=name):
+            return name
+    return ""
+
+
 MUTATING_METHODS = frozenset(("append", "extend", "insert", "pop", "remove", "sort", "reverse", "clear"))
 
 
-def changed_names(statement: ast.stmt, own_functions: frozenset[str]) -> frozenset[str]:
-    """The variables that a statement sets or changes, also within lists and by functions that the file defines."""
+def changed_names(statement: ast.stmt) -> frozenset[str]:
+    """The variables that a statement sets or changes, also within lists."""
     found: set[str] = set()
     for node in ast.walk(statement):
         match node:
@@ -64,14 +178,7 @@ def changed_names(statement: ast.stmt, own_functions: frozenset[str]) -> frozens
                 found.update(_targets(target))
             case ast.Call(func=ast.Attribute(value=owner, attr=method)) if method in MUTATING_METHODS:
                 found.update(_targets(owner))
-            case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=args) if name in own_functions:
-                found.update(argument.id for argument in args if isinstance(argument, ast.Name))
     return frozenset(found)
-
-
-def functions_of(tree: ast.Module) -> frozenset[str]:
-    """The functions that a file defines and hands something to."""
-    return frozenset(n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.args.args)
 
 
 def _targets(target: ast.expr) -> Iterator[str]:
