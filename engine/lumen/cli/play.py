@@ -37,7 +37,12 @@ from lumen.runtime.loop import TICK_PERIOD
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("motion", metavar="MOTION", help="a name in motions/, or a file: .yaml, .motion, .xar, .py")
-    parser.add_argument("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
+    parser.add_argument(
+        "--timeline",
+        metavar="NAME",
+        default="",
+        help="which one of a .xar that has several, or which function of a .py",
+    )
     parser.add_argument(
         "--retime", action="store_true", help="give a .motion, .xar or .py the time that its joints need"
     )
