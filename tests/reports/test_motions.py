@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 import lumen
+from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.language.diagnostics import Diagnostic
@@ -266,3 +267,30 @@ def test_every_form_of_angles_and_times_is_read(call: str, wanted: list[tuple[st
 def test_angles_and_times_that_do_not_fit_are_a_line(call: str) -> None:
     with pytest.raises(ForeignFileError, match="do not fit together"):
         read("spread.py", '["HeadYaw", "HeadPitch"], [0.4, -0.2], [1.0, 1.5]', call)
+
+
+@for_each(
+    ("time", "at"),
+    [("00:01:050", "1.05s"), ("00:01:50", "1.05s"), ("1:5", "1.005s"), ("1500", "1.5s"), ("00:75:000", "75s")],
+)
+def test_milliseconds_of_webots_are_a_number(time: str, at: str) -> None:
+    data, found = read_gesture("a.motion", f"#WEBOTS_MOTION,V1.0,HeadYaw\n{time},Pose1,0.1\n".encode(), BODY)
+    assert [frame["at"] for frame in data["keyframes"]] == [at]
+    assert found == []
+
+
+def test_the_list_of_a_project_names_its_behaviours(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (INPUTS / "show.pml").read_text("utf-8")
+    more = '<BehaviorDescription name="bow" src="bow" xar="bow.xar" /></BehaviorDescriptions>'
+    rows = [
+        (text, "import `behavior_1/behavior.xar` beside it"),
+        (text.replace("</BehaviorDescriptions>", more), "import `behavior_1/behavior.xar` or `bow/bow.xar` beside it"),
+        ("<Package/>", "it lists no behaviour"),
+    ]
+    for content, words in rows:
+        (tmp_path / "show.pml").write_text(content, "utf-8")
+        assert main(["import", str(tmp_path / "show.pml")]) == 2
+        said = capsys.readouterr().err
+        assert words in said
+        assert "scxml" not in said.lower()
+        assert said.count("\n") == 1

@@ -20,7 +20,7 @@ from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.fcl import read_fcl
 from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
-from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
+from lumen.formats.gestures import GESTURE_ENDINGS, choregraphe_list, read_gesture
 from lumen.formats.robot_models import begins_robot
 from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
@@ -66,7 +66,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="chart.scxml, machine.json, wave.motion, behavior.xar, keyframes.py, head.fll, robot.urdf, robot.xml",
     )
     add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
-    add("--timeline", metavar="NAME", default="", help="which one of a .xar that has several, or which function of a .py")
+    add(
+        "--timeline",
+        metavar="NAME",
+        default="",
+        help="which one of a .xar that has several, or which function of a .py",
+    )
     add("--retime", action="store_true", help="give a motion the time that its joints need, where they are too fast")
     add("--project", metavar="DIR", help="whose robot a motion is for; default: here or above, else the shipped one")
     add("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
@@ -78,6 +83,8 @@ def run(options: argparse.Namespace) -> int:
     title = _title(options.output or options.file)
     if begins_robot(content) or options.file.suffix.lower() == ".urdf":
         return _robot(options, content, title)
+    if hint := choregraphe_list(content):
+        raise UsageError(f"{options.file} is the list of a project of Choregraphe, and holds no motion: {hint}")
     body = _body(options.project) if options.file.suffix.lower() in GESTURE_ENDINGS else None
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"

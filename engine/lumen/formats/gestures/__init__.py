@@ -3,7 +3,7 @@
 from typing import Any
 
 from lumen.formats.conversion_findings import LOST, ConversionFindings, broken, decoded
-from lumen.formats.gestures.choregraphe import read_choregraphe
+from lumen.formats.gestures.choregraphe import choregraphe_list, read_choregraphe
 from lumen.formats.gestures.joint_curves import JointCurves
 from lumen.formats.gestures.motion_writer import MotionWriter
 from lumen.formats.gestures.naoqi import read_naoqi
@@ -13,7 +13,7 @@ from lumen.language.robots import Body
 
 GESTURE_ENDINGS = (".motion", ".xar", ".py")
 
-__all__ = ["GESTURE_ENDINGS", "read_gesture"]
+__all__ = ["GESTURE_ENDINGS", "choregraphe_list", "read_gesture"]
 
 
 def read_gesture(

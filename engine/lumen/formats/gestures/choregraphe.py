@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator
 from math import inf, radians
 from typing import NamedTuple
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.conversion_findings import ConversionFindings, ForeignFileError, broken
 from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, number
 from lumen.formats.known import FormatTable, Known
 from lumen.formats.known_elements import local, tell_losses
@@ -112,6 +112,21 @@ def read_choregraphe(
         elif points := list(_points(curve, _played(keys, curve, flags, findings), flags, findings, hands)):
             curves[joint] = points
     return curves
+
+
+def choregraphe_list(content: bytes) -> str:
+    """What to import instead of a `.pml`, which lists the files of a project; empty if it is no such list."""
+    if b"<Package" not in content[:1_000]:
+        return ""
+    try:
+        root = parse_xml("", content)
+    except ForeignFileError:
+        return ""
+    if local(root) != "Package":
+        return ""
+    named = [e for e in root.walk() if local(e) == "BehaviorDescription"]
+    files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
+    return f"import {' or '.join(f'`{file}`' for file in files[:20])} beside it" if files else "it lists no behaviour"
 
 
 def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:

@@ -10,6 +10,7 @@ from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.cells import Cell, cells_of
 from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
 from lumen.formats.gestures.soccer import SOCCER_VERSION, read_soccer
+from lumen.formats.known import FormatTable, Known
 from lumen.language.diagnostics import Place
 
 FIRST_CELL = "#WEBOTS_MOTION"
@@ -17,7 +18,13 @@ FIRST_CELL = "#WEBOTS_MOTION"
 
 WEBOTS_VERSION = "V1.0"
 
-_TIME = re.compile(r"(\d{1,6}):(\d\d?):(\d{1,3})")
+KNOWN: FormatTable = {
+    "first line": Known(frozenset(("#WEBOTS_MOTION", "V1.0", "V1.1", "joint"))),
+    "pose": Known(frozenset(("time", "angle", "*")), lost={"name": "keyframes of ours have none"}),
+}
+"""What of a `.motion` is carried over: the cells of its lines, by what they are."""
+
+_TIME = re.compile(r"(?:(?:(\d{1,6}):)?(\d{1,6}):)?(\d{1,9})", re.ASCII)
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
 
@@ -69,5 +76,6 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
 
 
 def _time(text: str) -> float | None:
+    """The time of a pose [s], as Webots reads it: minutes and seconds may be missing, milliseconds are a number."""
     match = _TIME.fullmatch(text)
-    return int(match[1]) * 60.0 + int(match[2]) + int(match[3].ljust(3, "0")) / 1000.0 if match else None
+    return int(match[1] or 0) * 60.0 + int(match[2] or 0) + int(match[3]) / 1000.0 if match else None
