@@ -10,6 +10,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.encodings import text_of
 from lumen.formats.fcl_words import ACCUS, ACTS, ANDS, METHODS, NUMBER, ORS, function, reach, shape
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
 from lumen.formats.fll.fuzzylite_names import plain
@@ -49,8 +50,8 @@ class FclSection(NamedTuple):
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no block."""
-    text = content.decode("utf-8-sig", errors="replace")
     findings = ConversionFindings()
+    text = text_of(file, content, findings)
     reader = _FclReader(file, text, findings)
     sections = list(_sections(reader.first(_without_comments(text))))
     if not any(section.kind == "FUZZIFY" for section in sections):

@@ -1,7 +1,9 @@
 """MATLAB's fuzzy inference systems (`.fis`, and Octave's) as the data of a controller file.
 
 Fuzzy Logic Toolbox, "Save and Load Fuzzy Inference Systems": sections `[System]`, `[Input1]`, `[Output1]`, `[Rules]`; a
-rule is the numbers of its terms, `1 -2, 1 (0.5) : 1`, a minus for `not`, 0 for a variable that is not asked.
+rule is the numbers of its terms, `1 -2, 1 (0.5) : 1`, a minus for `not`, 0 for a variable that is not asked. Octave
+writes hedges behind a point: `1.2` is `very` of the first term. If no rule fires, an output is in the middle of its
+range.
 """
 
 import re
@@ -10,14 +12,18 @@ from math import isfinite, nan
 from typing import Any, NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.encodings import text_of
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
-from lumen.formats.fll.fuzzylite_names import written
+from lumen.formats.fll.fuzzylite_names import plain, written
+from lumen.formats.known import FormatTable, Known
+from lumen.formats.set_formulas import set_formula
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
-from lumen.language.diagnostics import Diagnostic, Place
+from lumen.language.diagnostics import Diagnostic, Place, did_you_mean
 from lumen.language.text_lines import lines_of
-from lumen.loading.rule_parser import RuleWord
+from lumen.loading.rule_parser import RuleSyntaxError, RuleWord, parse_rule
 
 _SECTION = re.compile(r"\[(System|Input|Output|Rules)\s*(\d*)\]", re.IGNORECASE)
+_MF = re.compile(r"MF(\d+)")
 _TERM = re.compile(r"'(?P<name>[^']*)'\s*:\s*'(?P<shape>\w+)'\s*,\s*\[(?P<values>[^\]]*)\]")
 _RULE = re.compile(r"(?P<asked>[-+.\d\s]+),(?P<said>[-+.\d\s]+)\((?P<weight>[-+.\deE]+)\)\s*:\s*(?P<join>[12])\s*$")
 
@@ -64,6 +70,26 @@ _USUAL = {
 }  # fmt: skip
 
 
+MAX_TERM_NUMBER, MAX_TERM_GAP = 1e6, 10
+"""Numbers of terms beyond that are no terms, and so many missing ones of a variable are listed."""
+
+_TYPES = ("mamdani", "sugeno", "tsukamoto")
+_VARIABLE = Known(read=frozenset(("Name", "Range", "NumMFs", "MF…")))
+KNOWN: FormatTable = {
+    "[System]": Known(
+        read=frozenset((*_NORMS, "Type", "NumInputs", "NumOutputs", "NumRules")),
+        meaningless={"Name": "the file's name is the controller's", "Version": "of the format"},
+    ),
+    "[Input]": _VARIABLE,
+    "[Output]": _VARIABLE,
+    "[Rules]": Known(read=frozenset(("rule", "hedge", "not", "weight"))),
+}
+"""What of a system of MATLAB or Octave is carried over, by the section; `MF…` stands for `MF1`, `MF2`, …"""
+
+_HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
+"""Octave's hedges as powers of a membership: the digits behind the point of a term's number, times ten."""
+
+
 class FisLine(NamedTuple):
     """`Key=value` of a section, or a rule (without a key), and its place."""
 
@@ -74,30 +100,50 @@ class FisLine(NamedTuple):
 
 class FisSection(NamedTuple):
     kind: str
+    number: int
     lines: list[FisLine]
     place: Place
+
+    def line(self, key: str) -> FisLine | None:
+        """The line of that key."""
+        return next((line for line in self.lines if line.key == key), None)
+
+
+class FisVariable(NamedTuple):
+    """An input or output under our name, and its terms by their numbers: our names, empty for those left out."""
+
+    name: str
+    spec: dict[str, Any]
+    terms: list[str]
+    shapes: dict[str, tuple[str, list[float]]]
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no system."""
-    text = content.decode("utf-8-sig", errors="replace")
     findings = ConversionFindings()
-    sections = list(_sections(file, text))
+    text = text_of(file, content, findings)
+    sections = list(_sections(file, text, findings))
     if not any(section.kind == "input" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no system of MATLAB: it has no [Input1]")
     return _FisReader(file, findings).system(sections), findings.diagnostics
 
 
-def _sections(file: str, text: str) -> Iterator[FisSection]:
+def _sections(file: str, text: str, findings: ConversionFindings) -> Iterator[FisSection]:
+    """The sections in their order; a line that belongs to none is listed."""
     section: FisSection | None = None
     for row, source in enumerate(lines_of(text), 1):
         said = source.strip()
         place = Place(file, row, len(source) - len(source.lstrip()) + 1, row, len(source.rstrip()) + 1)
+        if not said or said[0] in "%#":
+            continue
         if match := _SECTION.fullmatch(said):
             if section:
                 yield section
-            section = FisSection(match[1].lower(), [], place)
-        elif said and section and said[0] not in "%#":
+            section = FisSection(match[1].lower(), int(match[2][:6] or 0), [], place)
+        elif section is None or said.startswith("["):
+            hint = "the sections are [System], [Input1], [Output1] and [Rules]"
+            findings.lost(place, f"`{said[:40]}` is left out: it is in no section", hint)
+        else:
             key, equals, value = said.partition("=")
             plain = section.kind == "rules" or not equals
             section.lines.append(FisLine("", said, place) if plain else FisLine(key.strip(), value.strip(), place))
@@ -108,66 +154,118 @@ def _sections(file: str, text: str) -> Iterator[FisSection]:
 class _FisReader:
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.findings, self.draft = findings, ControllerDraft(file, findings)
-        self.order: dict[str, list[tuple[str, list[str]]]] = {"input": [], "output": []}
-        self.shown: set[str] = set()
+        self.order: dict[str, list[FisVariable]] = {"input": [], "output": []}
 
     def system(self, sections: list[FisSection]) -> dict[str, Any]:
-        head = next((section for section in sections if section.kind == "system"), None)
-        said = self.norms(head) if head else {}
         for section in sections:
-            if section.kind in self.order:
+            self.known(section)
+        heads = [section for section in sections if section.kind == "system"]
+        said = self.norms(heads[0]) if heads else {}
+        for twice in heads[1:]:
+            self.findings.lost(twice.place, "a second [System] is left out")
+        for side in self.order:
+            for section in self.numbered([section for section in sections if section.kind == side]):
                 self.variable(section, said)
-        rules = [self.rule(line) for section in sections if section.kind == "rules" for line in section.lines]
+        lines = [line for section in sections if section.kind == "rules" for line in section.lines]
+        rules = [self.rule(line) for line in lines]
+        if heads:
+            found = (len(self.order["input"]), len(self.order["output"]), len(lines))
+            for key, count in zip(("NumInputs", "NumOutputs", "NumRules"), found, strict=True):
+                self.count(heads[0], key, count)
         weighted = said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         usual = {**_USUAL, "aggregation": "unbounded-sum" if weighted else "maximum"}
         block = {"name": "", "operators": operators(said, usual), "rules": [rule for rule in rules if rule]}
         self.draft.blocks.append(block)
         return self.draft.result()
 
+    def known(self, section: FisSection) -> None:
+        """List the keys of a section that nothing reads, and those that come twice."""
+        if section.kind == "rules":
+            return
+        table, seen = KNOWN[f"[{section.kind.capitalize()}]"], set[str]()
+        for line in section.lines:
+            key = "MF…" if section.kind != "system" and _MF.fullmatch(line.key) else line.key
+            for name, hint in table.losses([key]):
+                self.findings.lost(line.place, f"`{(name or line.value)[:40]}` is left out", hint)
+            if line.key and line.key in seen:
+                self.findings.lost(line.place, f"`{line.key}` comes twice: the first one counts")
+            seen.add(line.key)
+
+    def numbered(self, sections: list[FisSection]) -> list[FisSection]:
+        """The sections in the order of their numbers, by which rules count; numbers that leave a gap are listed."""
+        found = sorted(sections, key=lambda section: section.number)
+        for number, section in enumerate(found, 1):
+            if section.number != number:
+                kind = section.kind.capitalize()
+                message = f"[{kind}{section.number or ''}] is number {number} of its kind: rules count by that"
+                self.findings.lost(section.place, message, f"number the sections: [{kind}{number}]")
+        return found
+
+    def count(self, section: FisSection, key: str, found: int) -> None:
+        """Report a number of things that is not how many there are."""
+        line = section.line(key)
+        if line and _numbers(line.value) != [float(found)]:
+            self.findings.lost(line.place, f"`{key}` is {line.value[:20]}, and there are {found}: all of them count")
+
     def norms(self, head: FisSection) -> dict[str, Any]:
         said: dict[str, Any] = {}
         for line in head.lines:
+            value = line.value.strip("'\"").lower()
             if line.key in _NORMS:
                 word, table = _NORMS[line.key]
-                value = line.value.strip("'\"").lower()
                 if value in table:
-                    said[word] = table[value]
+                    said.setdefault(word, table[value])
                 else:
-                    self.findings.lost(line.place, f"there is no {word} `{value}` here: the usual one is used")
-        if said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS:
+                    near = did_you_mean(value, table, "there are")
+                    self.findings.lost(line.place, f"there is no {word} `{value}` here: the usual one is used", near)
+            elif line.key == "Type" and value not in _TYPES:
+                self.findings.lost(line.place, f"`{value[:40]}` is no type of a system", f"one of {', '.join(_TYPES)}")
+        kind, weighted = head.line("Type"), said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
+        if kind and (kind.value.strip("'\"").lower() == "mamdani") == weighted:
+            method = said.get("defuzzifier", "centroid")
+            message = f"`Type` is {kind.value[:40]}, and the values are found by {method}: that counts"
+            self.findings.changed(kind.place, message, "mamdani has sets, sugeno and tsukamoto have wtaver or wtsum")
+        if weighted:
             said.pop("implication", None)  # a value is not cut
             said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever is set in the file
         return said
 
     def variable(self, section: FisSection, said: Mapping[str, Any]) -> None:
         side = section.kind
-        named = next((line for line in section.lines if line.key == "Name"), None)
+        named = section.line("Name")
         name = named.value.strip("'\"") if named else f"{side}{len(self.order[side]) + 1}"
         place = named.place if named else section.place
         spec = self.draft.variable(f"{side}s", name, place)
-        self.order[side].append((name, []))
-        span = next((line for line in section.lines if line.key == "Range"), None)
+        variable = FisVariable(next(reversed(self.draft.sides[f"{side}s"])), spec, [], {})
+        self.order[side].append(variable)
+        span = section.line("Range")
         ends = _numbers(span.value.strip("[]")) if span else []
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
             self.findings.lost(span.place if span else place, f"the range of `{name}` holds nothing")
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
-        for line in section.lines:
-            if re.fullmatch(r"MF\d+", line.key):
-                self.term(side, name, spec, line)
-            elif line.key not in ("Name", "Range", "NumMFs"):
-                self.findings.lost(line.place, f"`{line.key or line.value[:20]}` can't be said of a variable")
+        if side == "output":
+            spec["default"] = plain((ends[0] + ends[1]) / 2)  # MATLAB's value where no rule fires
+        if side == "output" and said.get("defuzzifier", "centroid") != "centroid":
+            spec["defuzzifier"] = said["defuzzifier"]
+        terms = {int(match[1][:6]): line for line in reversed(section.lines) if (match := _MF.fullmatch(line.key))}
+        for number in sorted(terms):
+            while len(variable.terms) < min(number - 1, len(terms) + MAX_TERM_GAP):
+                variable.terms.append("")
+                self.findings.lost(terms[number].place, f"`{name}` has no MF{len(variable.terms)}")
+            self.term(name, variable, terms[number])
+        self.count(section, "NumMFs", len(terms))
 
-    def term(self, side: str, variable: str, spec: dict[str, Any], line: FisLine) -> None:
+    def term(self, said: str, variable: FisVariable, line: FisLine) -> None:
         match = _TERM.fullmatch(line.value)
-        self.order[side][-1][1].append("")
+        variable.terms.append("")
         if match is None or match["shape"] not in _SHAPES:
             what = (
                 f"there is no shape `{match['shape']}` here"
                 if match
                 else "'NAME':'SHAPE',[PARAMETERS] should stand here"
             )
-            self.findings.lost(line.place, f"a term of `{variable}` is left out: {what}")
+            self.findings.lost(line.place, f"a term of `{said}` is left out: {what}")
             return
         kind, order = _SHAPES[match["shape"]]
         values = _numbers(match["values"])
@@ -175,60 +273,85 @@ class _FisReader:
             values = order(values)
         except IndexError:
             values = []
-        before = len(spec.get("terms", ()))
-        self.draft.term(variable, spec, match["name"], kind, values, line.place)
-        if len(spec.get("terms", ())) > before:
-            self.order[side][-1][1][-1] = next(reversed(spec["terms"]))
+        before = len(variable.spec.get("terms", ()))
+        self.draft.term(said, variable.spec, match["name"], kind, values, line.place)
+        if len(variable.spec.get("terms", ())) > before:
+            variable.terms[-1] = next(reversed(variable.spec["terms"]))
+            variable.shapes[variable.terms[-1]] = kind, values
 
     def rule(self, line: FisLine) -> str:
         match = _RULE.fullmatch(line.value)
-        asked, said = (_whole(match[key]) for key in ("asked", "said")) if match else ([], [])
+        asked, said = (_numbers(match[key]) for key in ("asked", "said")) if match else ([], [])
         if match is None or (len(asked), len(said)) != (len(self.order["input"]), len(self.order["output"])):
             self.findings.lost(line.place, "this rule can't be read", "it reads: 1 2, 1 (1) : 1")
             return ""
-        inputs, outputs = self.propositions("input", asked), self.propositions("output", said)
-        if inputs is None or outputs is None or not outputs:
+        inputs = self.propositions("input", asked, line)
+        outputs = self.propositions("output", said, line)
+        if inputs is None or outputs is None:
+            return ""
+        if not outputs:
             self.findings.lost(line.place, "this rule names a term that is not there")
             return ""
         join = " and " if match["join"] == "1" else " or "
-        everything = f"{self.known(*self.order['input'][0])} is any"
+        everything = f"{self.order['input'][0].name} is any"
         weight = _numbers(match["weight"])[0]
-        return self.written(join.join(inputs) or everything, " and ".join(outputs), weight, line)
-
-    def written(self, asked: str, said: str, weight: float, line: FisLine) -> str:
-        def spot(_: RuleWord) -> Place:
-            return line.place
-
         suffix = "" if weight == 1.0 else f" with {written(weight) if isfinite(weight) else weight}"
-        return self.draft.rule(f"if {asked} then {said}{suffix}", line.place, spot)
+        rule = f"if {join.join(inputs) or everything} then {' and '.join(outputs)}{suffix}"
+        try:
+            parse_rule(rule)
+        except RuleSyntaxError as error:
+            self.findings.lost(line.place, f"this rule is left out: {error.message}", error.hint)
+            return ""
+        return rule
 
-    def propositions(self, side: str, numbers: list[float]) -> list[str] | None:
-        """`variable is [not] term` for each number that is not 0; None where one is no term."""
+    def propositions(self, side: str, numbers: list[float], line: FisLine) -> list[str] | None:
+        """`variable is [not] term` for each number that is not 0; None, and a finding, where one is no term."""
         found = []
-        for (name, terms), number in zip(self.order[side], numbers, strict=True):
-            if number != int(number) or abs(number) > len(terms) or (number and not terms[int(abs(number)) - 1]):
+        for variable, number in zip(self.order[side], numbers, strict=True):
+            if not number:
+                continue
+            size = abs(number) if abs(number) < MAX_TERM_NUMBER else 0.0
+            which = int(size) if size == size else 0
+            if not (0 < which <= len(variable.terms) and variable.terms[which - 1]):
+                self.findings.lost(line.place, "this rule names a term that is not there")
                 return None
-            if number:
-                negated = "not " if number < 0 else ""
-                found.append(f"{self.known(name, terms)} is {negated}{terms[int(abs(number)) - 1]}")
+            term, power = variable.terms[which - 1], round(10 * (size - which), 2) or 1.0
+            derive = side == "output" and (number < 0 or power != 1.0)
+            if derive or (power != 1.0 and power not in _HEDGES):
+                term = self.derived(variable, term, power, line, negated=number < 0 and side == "output")
+                if not term:
+                    return None
+                power = 1.0
+            hedges = (*(("not",) if number < 0 and side == "input" else ()), *_HEDGES.get(power, ()))
+            found.append(" ".join([variable.name, "is", *hedges, term]))
         return found
 
-    def known(self, name: str, terms: list[str]) -> str:
-        """Our name of a variable; the draft has it, and its terms, as the file's too: MATLAB's may hold blanks."""
-        ours = self.draft.names[name]
-        if name not in self.shown:
-            self.shown.add(name)
-            self.draft.names.setdefault(ours, ours)
-            self.draft.terms[ours] = {term: term for term in terms if term}
-        return ours
+    def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
+        """A term for the complement of a set, or for a power of its membership: rules of ours have no word for it.
+
+        A hedge of ours in a conclusion changes the degree of the rule, and Octave's changes the set.
+        """
+        kind, values = variable.shapes[term]
+        formula = set_formula(kind, values)
+        what = f"`{variable.name} is {'not ' if negated else ''}{term}`"
+        if power != 1.0:
+            what += f", a hedge: its membership to the power of {power:g}"
+        if not formula:
+            self.findings.lost(line.place, f"this rule is left out: it says {what}, and `{term}` is no set")
+            return ""
+        raised = formula if power == 1.0 else f"pow({formula}, {power:g})"
+        name = f"{'not-' if negated else ''}{term}{'' if power == 1.0 else f'-{power:g}'}".replace(".", "_")
+        shape = {"function": f"1 - ({raised})" if negated else raised}
+        terms = variable.spec["terms"]
+        while name in terms and terms[name] != shape:
+            name += "_"
+        terms[name] = shape
+        self.findings.changed(line.place, f"{what} is written as a term of its own, `{name}`")
+        return name
 
 
 def _numbers(text: str) -> list[float]:
     return [_number(word) for word in text.replace(",", " ").split()]
-
-
-def _whole(text: str) -> list[float]:
-    return [0.5 if value != value or abs(value) > 1e6 else value for value in _numbers(text)]
 
 
 def _number(word: str) -> float:

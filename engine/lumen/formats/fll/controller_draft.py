@@ -2,21 +2,30 @@
 
 import re
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
 from math import inf, isfinite, isnan
-from typing import Any
+from typing import Any, assert_never
+from unicodedata import normalize
 
 from lumen.formats.conversion_findings import LOST, ConversionFindings, ForeignFileError, broken
 from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.rule_text import rule_text
 from lumen.formats.unused_names import unused_name
-from lumen.language.controllers import TERM_PARAMETERS
+from lumen.language.controllers import (
+    TERM_PARAMETERS,
+    Antecedent,
+    Conjunction,
+    Disjunction,
+    Negation,
+    Proposition,
+)
 from lumen.language.diagnostics import Place
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.plain import plain_document
 from lumen.loading.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
 from lumen.loading.terms import build_terms
 
-_UNFIT = re.compile(r"[^A-Za-z0-9_\-]+")
+_UNFIT = re.compile(r"[^\w\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")
 
 MAX_TERM_PARAMETERS = 1_000
@@ -28,7 +37,10 @@ PlaceOfWord = Callable[[RuleWord], Place]
 
 
 class ControllerDraft:
-    """Collects a controller's data; `names` and `terms` map the file's names to ours."""
+    """Collects a controller's data; `names` maps the file's names to ours, `terms` those of a variable of ours.
+
+    Variables of one name stay several: a proposition means the first that has its term, a condition an input first.
+    """
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.file, self.findings = file, findings
@@ -36,27 +48,36 @@ class ControllerDraft:
         self.data: dict[str, Any] = {"description": f"From {file.replace(chr(92), '/').rpartition('/')[2]}"}
         self.sides: dict[str, dict[str, dict[str, Any]]] = {"inputs": {}, "outputs": {}}
         self.names: NewNames = {}
+        self.called: dict[str, dict[str, list[str]]] = {"inputs": {}, "outputs": {}}
         self.terms: dict[str, NewNames] = {}
         self.blocks: list[dict[str, Any]] = []
+        self._named: dict[int, str] = {}
 
     def variable(self, side: str, name: str, place: Place) -> dict[str, Any]:
         """A new input or output; its settings go into the dict returned."""
         known = {*self.sides["inputs"], *self.sides["outputs"]}
         ours = self.fresh(name, known, place)
         self.names.setdefault(name, ours)
-        self.terms.setdefault(name, {})
+        self.called[side].setdefault(name, []).append(ours)
+        self.terms[ours] = {}
         spec: dict[str, Any] = {}
         self.places[ours] = place
+        self._named[id(spec)] = ours
         self.sides[side][ours] = spec
         return spec
 
+    def own_terms(self, spec: dict[str, Any]) -> NewNames:
+        """The names of a variable's terms in the file to ours."""
+        return self.terms[self._named[id(spec)]]
+
     def fresh(self, name: str, taken: Collection[str], place: Place) -> str:
         """A name like that one which our rules can use and which is not taken."""
-        stem = _UNFIT.sub("_", name).strip("-") or "unnamed"
+        stem = _UNFIT.sub("_", normalize("NFC", name)).strip("-") or "unnamed"
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours = unused_name(stem, taken.__contains__, len(taken))
         if ours != name:
-            self.findings.changed(place, f"`{name}` is called `{ours}`", "rules can't say that name, or it is taken")
+            reason = "that name is taken" if stem == name else "rules can't say that name"
+            self.findings.changed(place, f"`{name}` is called `{ours}`", reason)
         return ours
 
     def term(self, variable: str, spec: dict[str, Any], name: str, kind: str, values: Any, place: Place) -> None:
@@ -66,14 +87,14 @@ class ControllerDraft:
             return
         terms = spec.setdefault("terms", {})
         ours = self.fresh(name, terms, place)
-        self.terms[variable][name] = ours  # of two that are called alike FuzzyLite's rules mean the last
+        self.own_terms(spec)[name] = ours  # of two that are called alike FuzzyLite's rules mean the last
         height = None
         if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERM_PARAMETERS[kind]) + 1:
             *values, height = values
         shape = {kind: _shape(kind, values)} | ({} if height in (None, 1.0) else {"height": plain(height)})
         if problem := _refused(ours, shape, len(values)):
             self.findings.lost(place, f"the term `{name}` of `{variable}` is left out: {problem}")
-            del self.terms[variable][name]
+            del self.own_terms(spec)[name]
         else:
             terms[ours] = shape
 
@@ -101,15 +122,39 @@ class ControllerDraft:
         if wrong:
             self.findings.lost(spot(wrong), f"this rule is left out: there is no `{wrong.text}`")
             return ""
-        return rule_text(said.antecedent, said.consequents, said.weight, self.names, self.terms)
+        concluded = [self._ours(one, concluded=True) for one in said.consequents]
+        return rule_text(self._asked(said.antecedent), concluded, said.weight)
+
+    def _asked(self, node: Antecedent) -> Antecedent:
+        """The condition with our names."""
+        match node:
+            case Proposition():
+                return self._ours(node, concluded=False)
+            case Negation(operand):
+                return Negation(self._asked(operand))
+            case Conjunction(left, right):
+                return Conjunction(self._asked(left), self._asked(right))
+            case Disjunction(left, right):
+                return Disjunction(self._asked(left), self._asked(right))
+        assert_never(node)
+
+    def _ours(self, node: Proposition, *, concluded: bool) -> Proposition:
+        variable = self._meant(node.variable, node.term, concluded=concluded)
+        return replace(node, variable=variable, term=self.terms[variable].get(node.term, node.term))
+
+    def _meant(self, name: str, term: str, *, concluded: bool) -> str:
+        """Our name of the variable that a proposition is about; empty for none."""
+        found = [] if concluded else self.called["inputs"].get(name, [])
+        found = [*found, *self.called["outputs"].get(name, [])]
+        return next((ours for ours in found if term in self.terms[ours]), found[0] if found else "")
 
     def _unknown(self, mention: Mention) -> RuleWord | None:
         """The word of a proposition that names nothing here."""
         variable, term = mention.variable, mention.term
-        name = self.names.get(variable.text)
-        if name is None or (mention.concluded and name not in self.sides["outputs"]):
+        name = self._meant(variable.text, term.text if term else "", concluded=mention.concluded)
+        if not name:
             return variable
-        return term if term and term.text not in self.terms[variable.text] else None
+        return term if term and term.text not in self.terms[name] else None
 
     def result(self) -> dict[str, Any]:
         """The data of the file: one block of rules stands at its top, several have names."""

@@ -134,8 +134,8 @@ class _FllReader(FllLineReader):
                 return
         elif kind == "discrete" and len(values) % 2:
             self.draft.term(variable, spec, words[0], kind, values[:-1], self.place(line))
-            if values[-1] != 1.0 and words[0] in self.draft.terms[variable]:
-                spec["terms"][self.draft.terms[variable][words[0]]]["height"] = plain(values[-1])
+            if values[-1] != 1.0 and words[0] in self.draft.own_terms(spec):
+                spec["terms"][self.draft.own_terms(spec)[words[0]]]["height"] = plain(values[-1])
             return
         self.draft.term(variable, spec, words[0], kind, values, self.place(line))
 

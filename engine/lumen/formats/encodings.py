@@ -1,0 +1,29 @@
+"""The text of a file whose encoding is written nowhere: UTF-8, UTF-16 by its mark, else what its bytes look like."""
+
+import re
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.language.diagnostics import Place
+
+_LATIN_WORD = re.compile(rb"[A-Za-z][\x80-\xff]|[\x80-\xff][A-Za-z]")
+_CYRILLIC_WORD = re.compile(rb"[\xc0-\xff\xa8\xb8]{2,}")
+
+
+def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
+    """The text; an encoding that was guessed is reported. Different bytes never become the same letters."""
+    if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+    name, codec = ("Windows-1251", "cp1251") if _is_cyrillic(content) else ("Latin-1", "latin-1")
+    message = f"the file is not UTF-8: it is read as {name}"
+    findings.changed(Place(file, line, 1), message, "look at the names, or save it as UTF-8")
+    return content.decode(codec, errors="backslashreplace")
+
+
+def _is_cyrillic(content: bytes) -> bool:
+    """Whether letters of Windows-1251 stand beside each other as in words, more often than beside Latin ones."""
+    return len(_CYRILLIC_WORD.findall(content)) > len(_LATIN_WORD.findall(content))
