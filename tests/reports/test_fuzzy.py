@@ -7,7 +7,9 @@ from typing import Any
 import pytest
 
 from lumen.formats.conversion_findings import LOST
+from lumen.formats.fcl import read_fcl
 from lumen.formats.fis import read_fis
+from lumen.formats.fll import read_fll
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import Diagnostic
 from tests.tables import for_each
@@ -24,7 +26,11 @@ def read(name: str, *changes: tuple[str, str], encoding: str = "utf-8") -> tuple
     return READERS[name.rpartition(".")[2]](name, text.encode(encoding), name)
 
 
-READERS: dict[str, Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]] = {"fis": read_fis}
+READERS: dict[str, Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]] = {
+    "fis": read_fis,
+    "fcl": read_fcl,
+    "fll": read_fll,
+}
 
 
 def value(data: dict[str, Any], **inputs: float) -> float:
@@ -235,3 +241,107 @@ def test_a_hedge_of_a_value_is_listed() -> None:
         (LOST, 29),
         ("carried-over-differently", 30),
     ]
+
+
+THEIR_TERMS = "the range of `out` is that of its terms"
+DECLARED = "temperature : REAL; RANGE := ( 100 .. 150 );"
+
+
+@for_each(
+    "declaration",
+    [
+        DECLARED,
+        "temperature : REAL (100 .. 150);",
+        "temperature: REAL; RANGE : (100..150);",
+        "TEMPERATURE, temperature : REAL; RANGE := (100 .. 150);",
+    ],
+)
+def test_a_range_in_the_declaration_is_read(declaration: str) -> None:
+    data, found = read("range-in-declaration.fcl", (DECLARED, declaration))
+    assert data["inputs"]["temperature"]["range"] == [100, 150]
+    lost = ["`TEMPERATURE` has no terms, and is left out"] if "TEMPERATURE" in declaration else []
+    assert [d.message for d in found] == [*lost, THEIR_TERMS]
+
+
+def test_two_variables_in_one_declaration_are_read() -> None:
+    data, found = read("two-in-one-declaration.fcl")
+    assert list(data["inputs"]) == ["temperature", "humidity"]
+    assert [d.code for d in found] == ["carried-over-differently"] * 3
+    data, _ = read("two-in-one-declaration.fcl", ("humidity : REAL;", "humidity : REAL; RANGE := (0 .. 200);"))
+    assert [spec["range"] for spec in data["inputs"].values()] == [[0, 200], [0, 200]]
+
+
+@for_each(
+    ("old", "new", "message"),
+    [
+        ("RANGE := ( 100", "RNAGE := ( 100", "this can't be read"),
+        (
+            "FUZZIFY temperature",
+            "FUZZIFY temperature RANGE := (0 .. 9);",
+            "`temperature` has another range in its decl",
+        ),
+        (": REAL;\nEND", ": INT;\nEND", "`INT` is read as REAL: a value is any number"),
+        (": REAL;\nEND", ": REAL := 5;\nEND", "`:= 5` of a declaration is left out"),
+        ("VAR_OUTPUT", "VAR\n a : REAL;\nEND_VAR\nVAR_OUTPUT", "`VAR` and what follows it are left out: that is no"),
+        ("RULEBLOCK No1", "OPTIONS\n x;\nEND_OPTIONS\nRULEBLOCK No1", "`OPTIONS` and what follows it are left out"),
+        ("END_FUZZIFY", "METHOD : COG; END_FUZZIFY", "`METHOD` can't be said of an input"),
+        ("METHOD : COG;", "METHOD : COG; METHOD : COA;", "`METHOD` comes twice: the first one counts"),
+        ("METHOD : COG;", "METOD : COG;", "`METOD : COG` can't be said of an output"),
+        ("ACT : MIN;", "AKT : MIN;", "this can't be read"),
+        ("ACCU : MAX;", "ACCU : MAXX;", "there is no ACCU `MAXX` here"),
+        ("SIGM -4", "SIGN -4", "the term `low` of `temperature` is left out"),
+    ],
+)
+def test_what_a_function_block_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+    _, found = read("range-in-declaration.fcl", (old, new))
+    assert [d.message for d in found if d.message.startswith(message)], [d.message for d in found]
+
+
+ENGINE = """Engine: e
+InputVariable: a
+  enabled: true
+  range: 0 10
+  lock-range: false
+  term: low Ramp 10 0
+OutputVariable: a
+  enabled: true
+  range: 0 1
+  lock-range: false
+  aggregation: Maximum
+  defuzzifier: Centroid 100
+  default: nan
+  lock-previous: false
+  term: few Ramp 1 0
+RuleBlock: r
+  enabled: true
+  conjunction: Minimum
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if a is low then a is few
+"""
+
+
+def test_an_input_and_an_output_of_an_engine_of_one_name_stay_two() -> None:
+    data, found = read_fll("e.fll", ENGINE.encode(), "e")
+    assert data["rules"] == ["if a is low then a_2 is few"]
+    assert [d.message for d in found] == ["`a` is called `a_2`"]
+
+
+@for_each(
+    ("old", "new", "message"),
+    [
+        ("lock-range: false", "lock-rang: false", "a variable has no `lock-rang`"),
+        ("lock-range: false", "lock-range: tru", "`tru` is neither `true` nor `false`"),
+        ("enabled: true\n  con", "enabled: no\n  con", "`no` is neither `true` nor `false`"),
+        ("range: 0 10", "range: 0 10\n  range: 0 5", "`range` comes twice: the last one counts"),
+        ("conjunction: Minimum", "conjunctoin: Minimum", "a rule block has no `conjunctoin`"),
+        ("Engine: e", "Engine: e\nversion: 8", "an engine has no `version`"),
+        ("Centroid 100", "Centroid 1e2", "`1e2` can't be said of a defuzzifier"),
+        ("General", "Generl", "`Generl` is no activation"),
+        ("default: nan", "default: non", "`non` is no number"),
+    ],
+)
+def test_what_an_engine_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+    _, found = read_fll("e.fll", ENGINE.replace(old, new, 1).encode(), "e")
+    assert message in [d.message for d in found]

@@ -1,11 +1,13 @@
 """Fuzzy Control Language (IEC 61131-7) as the data of a controller file; also as jFuzzyLogic and FuzzyLite write it.
 
 `FUNCTION_BLOCK` holds `VAR_INPUT`, `VAR_OUTPUT`, a `FUZZIFY` for each input, a `DEFUZZIFY` for each output, and
-`RULEBLOCK`s. A term is a row of points, a single value, or (not in the norm) a shape with its parameters.
+`RULEBLOCK`s. A declaration may name several variables and their range. A term is a row of points, a single value, or
+(not in the norm) a shape with its parameters.
 """
 
 import re
 from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
 from math import inf
 from typing import Any, NamedTuple
 
@@ -15,6 +17,7 @@ from lumen.formats.fcl_words import ACCUS, ACTS, ANDS, METHODS, NUMBER, ORS, fun
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
 from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.infix_formulas import Trouble
+from lumen.formats.known import FormatTable, Known
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.text_lines import LineIndex, lines_of
@@ -27,6 +30,26 @@ _RANGE = re.compile(rf"\(\s*({NUMBER}?)\s*\.\.\s*({NUMBER}?)\s*\)")
 _RULE = re.compile(r"RULE\s+\w+\s*:\s*(.*)", re.IGNORECASE | re.DOTALL)
 _SETTING = re.compile(r"(\w+)\s*(?::=|:)\s*(.*)", re.DOTALL)
 _TERM = re.compile(r"TERM\s+(\S+)\s*:=\s*(.*)", re.IGNORECASE | re.DOTALL)
+
+_DECLARATION = re.compile(
+    r"(?P<names>[^\s:,;()]+(?:\s*,\s*[^\s:,;()]+)*)\s*:\s*(?P<type>\w+)\s*(?P<range>\(.*?\))?\s*(?P<rest>.*)",
+    re.DOTALL,
+)
+_FRAME = re.compile(r"\s*(?:FUNCTION_BLOCK(?:[ \t]+[^\s;]+)?|END_FUNCTION_BLOCK|;)?\s*", re.IGNORECASE)
+
+_DECLARED = Known(read=frozenset(("NAME", "REAL", "RANGE")), meaningless={"LREAL": "all numbers are of that kind"})
+KNOWN: FormatTable = {
+    "VAR_INPUT": _DECLARED,
+    "VAR_OUTPUT": _DECLARED,
+    "FUZZIFY": Known(frozenset(("TERM", "RANGE"))),
+    "DEFUZZIFY": Known(frozenset(("TERM", "RANGE", "METHOD", "DEFAULT", "ACCU"))),
+    "RULEBLOCK": Known(frozenset(("RULE", "AND", "OR", "ACT", "ACCU"))),
+    "FUNCTION_BLOCK": Known(
+        frozenset(("VAR_INPUT", "VAR_OUTPUT", "FUZZIFY", "DEFUZZIFY", "RULEBLOCK")),
+        meaningless={"name": "the file's name is the controller's"},
+    ),
+}
+"""What of a function block is carried over, by the section."""
 
 _OPERATORS = ("AND", "OR", "ACT", "ACCU")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
@@ -46,6 +69,7 @@ class FclSection(NamedTuple):
     name: str
     statements: list[FclStatement]
     offset: int
+    end: int
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -53,7 +77,9 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     findings = ConversionFindings()
     text = text_of(file, content, findings)
     reader = _FclReader(file, text, findings)
-    sections = list(_sections(reader.first(_without_comments(text))))
+    block = reader.first(_without_comments(text))
+    sections = list(_sections(block))
+    reader.tell_outside(block, sections)
     if not any(section.kind == "FUZZIFY" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no function block: it has no FUZZIFY")
     return reader.block(sections), findings.diagnostics
@@ -82,7 +108,8 @@ def _sections(text: str) -> Iterator[FclSection]:
         begin, name = match.end(), ""
         if not kind.startswith("VAR") and (word := re.compile(r"\s*([^\s;]+)").match(text, begin, stop)):
             begin, name = word.end(), word[1]
-        yield FclSection(kind, name, list(_statements(text, begin, stop)), match.start())
+        until = close.end() if close else len(text)
+        yield FclSection(kind, name, list(_statements(text, begin, stop)), match.start(), until)
         at = close.end() if close else len(text)
 
 
@@ -98,6 +125,8 @@ class _FclReader:
         self.file, self.lines, self.findings = file, LineIndex(text), findings
         self.draft = ControllerDraft(file, findings)
         self.accu: dict[str, str] = {}
+        self.ranges: dict[str, tuple[str, FclStatement]] = {}
+        self.declarations: list[tuple[str, str, FclStatement]] = []
 
     def place(self, offset: int, length: int = 1) -> Place:
         row, column = self.lines.line(offset), self.lines.column(offset)
@@ -115,9 +144,25 @@ class _FclReader:
         self.findings.lost(place, "a second function block is left out", "put each into a file of its own")
         return text[: begins[1].start()]
 
+    def tell_outside(self, text: str, sections: list[FclSection]) -> None:
+        """List what is in no section that is read, at its first word."""
+        for begin, end in zip([0, *(s.end for s in sections)], [*(s.offset for s in sections), len(text)], strict=True):
+            outside = text[begin:end]
+            at = 0
+            while (match := _FRAME.match(outside, at)) and match.end() > at:
+                at = match.end()
+            if word := re.compile(r"\S+").match(outside, at):
+                near = get_close_matches(word[0].upper(), [*KNOWN, *(f"END_{name}" for name in KNOWN)], 1)
+                message = f"`{word[0][:40]}` and what follows it are left out: that is no section"
+                hint = f"did you mean `{near[0]}`?" if near else ""
+                self.findings.lost(self.place(begin + at, len(word[0])), message, hint)
+
     def block(self, sections: list[FclSection]) -> dict[str, Any]:
         blocks = [section for section in sections if section.kind == "RULEBLOCK"]
         said = [self.operators(section) for section in blocks]
+        for section in sections:
+            if section.kind.startswith("VAR"):
+                self.declare(section)
         self.asked(sections)
         for section in sections:
             if section.kind in ("FUZZIFY", "DEFUZZIFY"):
@@ -126,16 +171,33 @@ class _FclReader:
             rules = [self.rule(statement) for statement in section.statements]
             named = {"name": section.name, "operators": operators(norms, _USUAL)}
             self.draft.blocks.append({**named, "rules": [rule for rule in rules if rule]})
-        for section in sections:
-            if section.kind.startswith("VAR"):
-                self.declared(section)
-        return self.draft.result()
-
-    def declared(self, section: FclSection) -> None:
-        for statement in section.statements:
-            name = statement.text.partition(":")[0].strip()
+        for _, name, statement in self.declarations:
             if name not in self.draft.names:
                 self.findings.lost(self.at(statement), f"`{name}` has no terms, and is left out")
+        return self.draft.result()
+
+    def declare(self, section: FclSection) -> None:
+        """Read `a, b : REAL;` and the range of the last ones, `RANGE := (0 .. 9);` or `REAL (0 .. 9)`."""
+        names: list[str] = []
+        for statement in section.statements:
+            setting = _SETTING.fullmatch(statement.text)
+            if setting and setting[1].upper() == "RANGE" and names:
+                self.ranges.update((name, (setting[2].strip(), statement)) for name in names)
+                continue
+            match = _DECLARATION.fullmatch(statement.text)
+            if match is None:
+                self.findings.lost(self.at(statement), "this can't be read", "a declaration reads: a, b : REAL;")
+                continue
+            names = [name.strip() for name in match["names"].split(",")]
+            self.declarations += [(section.kind, name, statement) for name in names]
+            if match["range"]:
+                self.ranges.update((name, (match["range"], statement)) for name in names)
+            known = KNOWN[section.kind]
+            if match["type"].upper() not in (*known.read, *known.meaningless):
+                message = f"`{match['type'][:40]}` is read as REAL: a value is any number"
+                self.findings.changed(self.at(statement), message)
+            if match["rest"]:
+                self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` of a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
         """Inputs without terms that formulas ask for: any number may come in."""
@@ -144,11 +206,11 @@ class _FclReader:
             re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))
         )
         known = {section.name for section in sections if section.kind == "FUZZIFY"}
-        for section in sections:
-            for statement in section.statements if section.kind == "VAR_INPUT" else ():
-                name = statement.text.partition(":")[0].strip()
-                if name in words - known:
-                    self.draft.variable("inputs", name, self.at(statement))["range"] = ranged(-inf, inf)
+        for kind, name, statement in self.declarations:
+            if kind == "VAR_INPUT" and name in words - known:
+                match = _RANGE.fullmatch(self.ranges.get(name, ("", None))[0])
+                ends = (float(match[1] or -inf), float(match[2] or inf)) if match else (-inf, inf)
+                self.draft.variable("inputs", name, self.at(statement))["range"] = ranged(*ends)
 
     def operators(self, section: FclSection) -> dict[str, Any]:
         """What a rule block says of AND, OR and ACT; what it says of ACCU is kept for the outputs."""
@@ -180,10 +242,15 @@ class _FclReader:
     def variable(self, section: FclSection) -> None:
         side = "inputs" if section.kind == "FUZZIFY" else "outputs"
         spec = self.draft.variable(side, section.name, self.place(section.offset, len(section.kind)))
-        settings = {}
+        settings: dict[str, tuple[str, FclStatement]] = {}
         for statement in section.statements:
             if (match := _SETTING.fullmatch(statement.text)) and not statement.text.upper().startswith("TERM"):
-                settings[match[1].upper()] = (match[2].strip(), statement)
+                key = match[1].upper()
+                if key in settings:
+                    self.findings.lost(self.at(statement), f"`{key}` comes twice: the first one counts")
+                settings.setdefault(key, (match[2].strip(), statement))
+                for _, hint in KNOWN[section.kind].losses([key]) if side == "inputs" else ():
+                    self.findings.lost(self.at(statement), f"`{key}` can't be said of an input", hint)
         if side == "outputs":
             self.output(spec, settings)
         ends: list[float] = []
@@ -198,7 +265,11 @@ class _FclReader:
         spec.update({key: spec.pop(key) for key in ("terms",) if key in spec})
 
     def range(self, section: FclSection, spec: dict[str, Any], settings: Mapping[str, Any], ends: list[float]) -> None:
-        said, statement = settings.get("RANGE", ("", None))
+        declared = self.ranges.get(section.name, ("", None))
+        said, statement = settings.get("RANGE", declared)
+        if declared[1] and _RANGE.sub(r"\1 \2", said) != _RANGE.sub(r"\1 \2", declared[0]):
+            message = f"`{section.name}` has another range in its declaration: that one is left out"
+            self.findings.lost(self.at(declared[1]), message, "write one of the two")
         match = _RANGE.fullmatch(said)
         if match and match[1] and match[2] and float(match[1]) < float(match[2]):
             spec["range"] = ranged(float(match[1]), float(match[2]))

@@ -12,11 +12,25 @@ from lumen.formats.fll.controller_draft import ControllerDraft, operators, range
 from lumen.formats.fll.fll_lines import FllLine, FllLineReader, FllPart
 from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, plain
 from lumen.formats.fll.infix_formulas import read_formula
+from lumen.formats.known import FormatTable, Known
 from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rule_parser import RuleWord
 
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}
+_VARIABLE = frozenset(("description", "enabled", "range", "lock-range", "term"))
+KNOWN: FormatTable = {
+    "Engine": Known(frozenset(("description",)), meaningless={"Engine": "the file's name is the controller's"}),
+    "InputVariable": Known(_VARIABLE),
+    "OutputVariable": Known(_VARIABLE | {"lock-previous", "default", "defuzzifier", "aggregation"}),
+    "RuleBlock": Known(
+        read=frozenset(("enabled", "conjunction", "disjunction", "implication", "activation", "rule")),
+        lost={"description": "write a comment"},
+    ),
+}
+"""What of an engine is carried over, by the part."""
+
+_FLAGS = ("enabled", "lock-range", "lock-previous")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
 
 
@@ -39,6 +53,7 @@ class _FllReader(FllLineReader):
             message = "this is no engine of FuzzyLite: it has no variables"
             raise broken(Place(self.file), "not-a-controller", message)
         for part in parts:
+            self.known(part)
             if part.head.key in _SIDES:
                 self.variable(part)
             elif part.head.key == "Engine":
@@ -52,8 +67,19 @@ class _FllReader(FllLineReader):
         for line in part.lines:
             if line.key == "description":
                 self.draft.data["description"] = line.value or self.draft.data["description"]
-            else:
-                self.lost(line, f"an engine has no `{line.key}`")
+
+    def known(self, part: FllPart) -> None:
+        """List the keys of a part that nothing reads, those that come twice, and flags that are neither of two."""
+        kind = {"Engine": "an engine", "RuleBlock": "a rule block"}.get(part.head.key, "a variable")
+        seen = set[str]()
+        for line in part.lines:
+            for _, hint in () if line.key == "description" else KNOWN[part.head.key].losses([line.key]):
+                self.lost(line, f"{kind} has no `{line.key}`", hint)
+            if line.key in seen and line.key not in ("term", "rule"):
+                self.lost(line, f"`{line.key}` comes twice: the last one counts")
+            if line.key in _FLAGS and line.value not in ("true", "false"):
+                self.lost(line, f"`{line.value}` is neither `true` nor `false`", "write one of them")
+            seen.add(line.key)
 
     def variable(self, part: FllPart) -> None:
         side, name = _SIDES[part.head.key], part.head.value
@@ -71,8 +97,6 @@ class _FllReader(FllLineReader):
         for line in part.lines:
             if line.key == "term":
                 self.term(side, name, spec, line)
-            elif line.key not in _KNOWN[side]:
-                self.lost(line, f"a variable has no `{line.key}`")
 
     def range(self, side: str, name: str, spec: dict[str, Any], line: FllLine | None, head: FllLine) -> None:
         ends = [_number(word) for word in line.value.split()] if line else []
@@ -168,9 +192,6 @@ class _FllReader(FllLineReader):
             "activation": self.activation(said.get("activation")),
         }
         rules = [self.rule(line) for line in part.lines if line.key == "rule"]
-        for line in part.lines:
-            if line.key not in (*norms, "enabled", "description", "rule"):
-                self.lost(line, f"a rule block has no `{line.key}`")
         self.draft.blocks.append(
             {"name": part.head.value, "operators": operators(norms, _USUAL), "rules": [rule for rule in rules if rule]}
         )
@@ -201,19 +222,6 @@ class _FllReader(FllLineReader):
         return self.draft.rule(line.value, self.place(line), spot)
 
 
-_KNOWN = {
-    "inputs": ("description", "enabled", "range", "lock-range"),
-    "outputs": (
-        "description",
-        "enabled",
-        "range",
-        "lock-range",
-        "lock-previous",
-        "default",
-        "defuzzifier",
-        "aggregation",
-    ),
-}
 _WHOLE = re.compile(r"[0-9]{1,6}")
 _PLAIN_SETTINGS = {"rules": 1, "threshold": 0, "comparison": ">="}
 
