@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from lumen.formats.conversion_findings import LOST
 from lumen.formats.fcl import read_fcl
@@ -12,6 +13,11 @@ from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.controllers import build_controller
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.schema import check_schema
+from lumen.loading.yaml_reader import parse
+from lumen.rules import rulebooks
 from tests.tables import for_each
 
 INPUTS = Path(__file__).parent / "inputs" / "fuzzy"
@@ -345,3 +351,70 @@ def test_an_input_and_an_output_of_an_engine_of_one_name_stay_two() -> None:
 def test_what_an_engine_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
     _, found = read_fll("e.fll", ENGINE.replace(old, new, 1).encode(), "e")
     assert message in [d.message for d in found]
+
+
+POINT = "trapezoid: [1, 1, 1, 1]"
+
+
+def controller(name: str, old: str = "", new: str = "") -> Controller:
+    """A controller of an input, in which `old` is `new`."""
+    text = (INPUTS / name).read_text("utf-8")
+    assert old in text
+    return Controller.from_dict(yaml.safe_load(text.replace(old, new)))
+
+
+@for_each(
+    ("shape", "wanted"),
+    [
+        (POINT, 1.0),
+        ("triangle: [1, 1, 1]", 1.0),
+        ("triangle: [1.0996, 1.1, 1.1004]", 1.1),
+        ("rectangle: [2, 2]", 2.0),
+        ("trapezoid: [0.7, 0.7, 0.7, 0.7]", 0.7),
+        ("discrete: [[1.3, 0], [1.3, 1], [1.3001, 0]]", 1.3),
+        ("gaussian: [1, 1.0e-6]", 1.0),
+    ],
+)
+@for_each("method", ["centroid", "bisector", "mean-of-maximum", "smallest-of-maximum", "largest-of-maximum"])
+def test_a_set_of_one_point_is_found(shape: str, wanted: float, method: str) -> None:
+    found = controller(
+        "point-set.yaml",
+        f"range: [0, 2], terms: {{Plus100: {{{POINT}}}",
+        f"range: [0, 2], defuzzifier: {method}, terms: {{Plus100: {{{shape}}}",
+    )
+    assert found.evaluate({"E": 12})["Adjust"] == pytest.approx(wanted, abs=1e-9)
+    assert found.evaluate({"E": 0})["Adjust"] == 0
+    assert found.evaluate_batch({"E": [12.0, 0.0]})["Adjust"].tolist() == pytest.approx([wanted, 0], abs=1e-9)
+
+
+def test_two_sets_of_one_point_share_by_their_degrees() -> None:
+    assert controller("point-set.yaml").evaluate({"E": 8.25})["Adjust"] == pytest.approx(0.5)
+    explained = controller("point-set.yaml").explain({"E": 12}).outputs["Adjust"]
+    assert (explained.fired, explained.value, max(explained.memberships)) == (True, 1.0, 1.0)
+
+
+@for_each(
+    ("conclusion", "said"),
+    [
+        ("Tip is not Low", "to 1 minus the degree of the rule"),
+        ("Tip is very not Low", "to 1 minus the degree of the rule"),
+        ("Tip is any Low", "in full, however true the rule is"),
+        ("Tip is very Low and Tip is High", "counts for `Tip is High` behind it, too"),
+        ("Tip is very Low", ""),
+        ("Tip is Low", ""),
+    ],
+)
+def test_not_in_a_conclusion_is_a_finding(conclusion: str, said: str) -> None:
+    """The words mean what FuzzyLite means (docs/decisions/113): a rule that is fully true concludes nothing."""
+    text = (INPUTS / "not-low.yaml").read_text("utf-8")
+    document, found = parse("fuzzy/tip.yaml", text.replace("Tip is not Low", conclusion).encode())
+    assert document is not None
+    report = DocumentReport(document)
+    built = build_controller(check_schema(document, "controller", report), report, name="tip")
+    assert built is not None
+    rulebooks.check(built, report)
+    hedged = [d for d in report.diagnostics if d.code == "hedged-conclusion"]
+    assert [(said in d.message, d.place.line) for d in hedged] == ([(True, 6)] if said else [])
+    assert found == []
+    if conclusion == "Tip is not Low":
+        assert Controller.from_dict(yaml.safe_load(text)).evaluate({"Q": 0})["Tip"] == 0

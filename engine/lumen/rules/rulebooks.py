@@ -21,6 +21,12 @@ CONTRADICTING_RULE = Code(
     "contradicting-rule", "controllers", WARNING, "two rules ask the same and conclude different things"
 )
 DUPLICATE_RULE = Code("duplicate-rule", "controllers", WARNING, "a rule is written twice")
+HEDGED_CONCLUSION = Code(
+    "hedged-conclusion",
+    "controllers",
+    WARNING,
+    "a hedge in a conclusion changes the degree of the rule, not the set",
+)
 IDLE_RULE = Code("idle-rule", "controllers", WARNING, "a rule has the weight 0")
 MISSING_RULE = Code("missing-rule", "controllers", WARNING, "a table of rules leaves out a case")
 SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another one")
@@ -33,9 +39,10 @@ MAX_COMPARISONS = 10_000
 
 
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:
-    """Report idle, duplicate, contradicting, subsumed and missing rules, and terms that no rule mentions."""
+    """Report idle, hedged, duplicate, contradicting, subsumed and missing rules, and terms that no rule mentions."""
     for block in controller.blocks:
         _idle(block, report)
+        _hedged(block, report)
         _pairs(block, controller, report)
         _missing(block, controller, report)
     _unused(controller, report)
@@ -46,6 +53,24 @@ def _idle(block: RuleBlock, report: DocumentReport) -> None:
         if rule.weight == 0:
             message, hint = "with the weight 0 this rule never counts", "write a weight up to 1, or delete the rule"
             report(IDLE_RULE, rule.where, message, hint)
+
+
+def _hedged(block: RuleBlock, report: DocumentReport) -> None:
+    """Report `not` and `any` in conclusions, and other hedges that count for what is concluded behind them, too."""
+    for rule in block.rules:
+        for i, one in enumerate(rule.consequents):
+            said = f"`{one.variable} is {' '.join((*one.hedges, one.term))}`"
+            behind = rule.consequents[i + 1 :]
+            if "any" in one.hedges:
+                message = f"{said} concludes `{one.term}` in full, however true the rule is"
+                report(HEDGED_CONCLUSION, rule.where, message, "leave out `any`")
+            elif "not" in one.hedges:
+                message = f"{said} concludes `{one.term}`, to 1 minus the degree of the rule: not what is outside of it"
+                hint = f"give `{one.variable}` a term for what you mean, and conclude that"
+                report(HEDGED_CONCLUSION, rule.where, message, hint)
+            elif one.hedges and behind:
+                message = f"the hedge in {said} counts for `{behind[0].variable} is {behind[0].term}` behind it, too"
+                report(HEDGED_CONCLUSION, rule.where, message, "write it last, or as a rule of its own")
 
 
 def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:

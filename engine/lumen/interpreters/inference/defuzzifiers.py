@@ -1,6 +1,7 @@
 """From the degrees of an output's conclusions to its value, by the cheapest way that is exact."""
 
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from lumen.interpreters.inference.arithmetic import NUMBERS
@@ -9,7 +10,7 @@ from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.program import Conclusion
 from lumen.interpreters.inference.sampled import Sampled
 from lumen.interpreters.inference.weighted import Weighted
-from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS, Term, Variable
+from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Term, Variable
 
 if TYPE_CHECKING:
     from lumen.interpreters.inference.arithmetic import Array
@@ -46,9 +47,26 @@ def defuzzifier(
 
 
 def midpoints(variable: Variable) -> list[float]:
-    """Where an output's set is sampled: the middles of `resolution` equal parts of its range."""
+    """Where an output's set is sampled: the middles of `resolution` equal parts of its range.
+
+    The top of a set that lies between two of them, such as a single point, is one more.
+    """
     step = (variable.maximum - variable.minimum) / variable.resolution
-    return [variable.minimum + (i + 0.5) * step for i in range(variable.resolution)]
+    points = [variable.minimum + (i + 0.5) * step for i in range(variable.resolution)]
+    slim = {top for term in variable.terms.values() for top in _between(term, points, variable)}
+    return sorted({*points, *slim}) if slim else points
+
+
+def _between(term: Term, points: list[float], variable: Variable) -> Iterator[float]:
+    """Corners of a term at which it is true, and at no point beside them."""
+    if term.kind in (*VALUE_TERMS, "function"):
+        return
+    shape = membership(NUMBERS, term)
+    for x in term.parameters[:: 2 if term.kind == "discrete" else 1]:
+        if variable.minimum <= x <= variable.maximum and shape(x) > 0.0:
+            i = bisect_left(points, x)
+            if not any(shape(y) > 0.0 for y in points[max(i - 1, 0) : i + 1]):
+                yield x
 
 
 def sampled(term: Term, points: list[float]) -> list[float]:

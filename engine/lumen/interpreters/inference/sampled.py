@@ -73,9 +73,13 @@ def _centroid(y: "Array", whole: "Array") -> "Array":
 
 def _bisector(y: "Array", whole: "Array") -> "Array":
     """The point where half of the area lies on either side; the mean of all that come equally near."""
+    import numpy as np
+
     half = whole.cumsum(axis=1)
     off = abs(half / half[:, -1:] - 0.5)
-    return _mean(y, off == off.min(axis=1, keepdims=True))
+    found = _mean(y, off == off.min(axis=1, keepdims=True))
+    within = whole > 0.0
+    return np.where(within.sum(axis=1) == 1, within @ y, found)  # a single point has no area beside it
 
 
 def _mean(y: "Array", chosen: "NDArray[np.bool_]") -> "Array":
