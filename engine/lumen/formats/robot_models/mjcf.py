@@ -3,7 +3,9 @@
 from math import pi, radians
 
 from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.robot_models.mjcf_defaults import ACTUATORS, Defaults
+from lumen.formats.known_elements import tell_losses
+from lumen.formats.robot_models.mjcf_defaults import Defaults
+from lumen.formats.robot_models.mjcf_known import ACTUATORS, KNOWN
 from lumen.formats.robot_models.numbers import Numbers
 from lumen.formats.robot_models.orientation import (
     AXES,
@@ -16,11 +18,13 @@ from lumen.formats.robot_models.orientation import (
     turn,
     unit,
 )
-from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel
+from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel, follows
 from lumen.formats.xml_elements import XmlElement
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _FOVY = 45.0
+_EQUAL = (0.0, 1.0, 0.0, 0.0, 0.0)
+"""The coefficients of a joint that equals another one."""
 _PLACED_ELSEWHERE = ("include", "attach", "replicate", "composite", "flexcomp")
 _SENSORS = ("gyro", "accelerometer")
 
@@ -37,6 +41,12 @@ class _MjcfReader:
         compiler = {key: value for element in root.of("compiler") for key, value in element.attributes.items()}
         self.angle = 1.0 if compiler.get("angle") == "radian" else radians(1.0)
         self.sequence = compiler.get("eulerseq", "xyz")
+        self.one_of(root, compiler.get("angle", "degree"), "angle", ("radian", "degree"))
+        self.one_of(root, compiler.get("autolimits", "true"), "autolimits", ("true", "false"))
+        if len(self.sequence) != len(_ORIGIN) or not set(self.sequence.lower()) <= set(AXES):
+            findings.lost(
+                root.place, f"`eulerseq` is `{self.sequence[:20]}`", "three of x, y, z, in capitals for fixed axes"
+            )
         self.autolimits = compiler.get("autolimits", "true") != "false"
         self.motors: dict[str, XmlElement] = {}
         self.followers: dict[str, str] = {}
@@ -45,7 +55,22 @@ class _MjcfReader:
         self.cameras: list[ModelCamera] = []
         self.sites: dict[str, str] = {}
 
+    def one_of(self, element: XmlElement, said: str, name: str, words: tuple[str, ...]) -> None:
+        """Report a value that is none of those that MuJoCo reads."""
+        if said not in words:
+            message = f"`{name}` is `{said[:40]}`: it is read as `{words[-1]}`"
+            self.findings.lost(element.place, message, f"MuJoCo reads {', '.join(words)}")
+
+    def classed(self, element: XmlElement, childclass: str = "") -> XmlElement:
+        """The element with what its class says; a class that is not there is listed."""
+        for name in (element.get("class"), childclass):
+            if not self.defaults.has(name):
+                hint = "MuJoCo refuses the model: correct the name, or write the class into `<default>`"
+                self.findings.lost(element.place, f"there is no class `{name[:60]}`", hint)
+        return self.defaults.whole(element, childclass)
+
     def read(self) -> RobotModel:
+        tell_losses(self.root, KNOWN, self.findings, lambda element: element.tag != "equality")
         for element in self.root.walk():
             if element.tag in _PLACED_ELSEWHERE:
                 message = f"`<{element.tag}>` is not followed: joints that it makes are not seen"
@@ -53,7 +78,7 @@ class _MjcfReader:
                     element.place, message, "import what `mj_saveLastXML` writes, where joints are missing"
                 )
         for actuator in (e for block in self.root.of("actuator") for e in block.of(*ACTUATORS)):
-            whole = self.defaults.whole(actuator)
+            whole = self.classed(actuator)
             self.motors.setdefault(whole.get("joint"), whole)
         for pair in (e for block in self.root.of("equality") for e in block.of("joint")):
             self.equality(pair)
@@ -70,11 +95,17 @@ class _MjcfReader:
 
     def equality(self, pair: XmlElement) -> None:
         """A joint that equals another; in another way it follows without us."""
+        for name, hint in KNOWN["<equality> <joint>"].losses(pair.attributes):
+            self.findings.lost(pair.place, f"`{name[:60]}` of `<joint>` in `<equality>` is left out", hint)
         follower, leader = pair.get("joint1"), pair.get("joint2")
-        coefficients = tuple(pair.get("polycoef", "0 1 0 0 0").split())
-        if follower and leader:
-            equal = [float(c) if _is_number(c) else None for c in coefficients] == [0.0, 1.0, 0.0, 0.0, 0.0]
-            self.followers[follower] = leader if equal else ""
+        count = min(len(pair.get("polycoef").split()), len(_EQUAL))
+        given = self.numbers.all(pair, "polycoef", count) if count else ()
+        if pair.get("active") == "false" or not follower or not leader or given is None:
+            return
+        equal = (*given, *_EQUAL[count:]) == _EQUAL
+        self.followers[follower] = leader if equal else ""
+        if not equal:
+            self.findings.changed(pair.place, *follows(follower, leader))
 
     def body(self, body: XmlElement, outer: NestedFrame, above: str, childclass: str) -> None:
         """What hangs on a link, and what hangs on that."""
@@ -88,9 +119,9 @@ class _MjcfReader:
                 case "freejoint":
                     self.free(element)
                 case "joint":
-                    self.joint(self.defaults.whole(element, childclass), frame, name)
+                    self.joint(self.classed(element, childclass), frame, name)
                 case "camera":
-                    self.camera(self.defaults.whole(element, childclass), name)
+                    self.camera(self.classed(element, childclass), name)
                 case "site" if element.get("name"):
                     self.sites[element.get("name")] = name
                 case "body" | "frame":
@@ -144,6 +175,7 @@ class _MjcfReader:
         """The joint's range [rad], or nothing where it turns for ever."""
         span = self.numbers.all(joint, "range", 2)
         limited = joint.get("limited", "auto")
+        self.one_of(joint, limited, "limited", ("true", "false", "auto"))
         if not span or limited == "false" or (limited == "auto" and not self.autolimits):
             return None, None
         if span[0] >= span[1]:

@@ -1,8 +1,8 @@
 """The defaults of MJCF: what an element's class says that the element does not."""
 
+from lumen.formats.robot_models.mjcf_known import ACTUATORS
 from lumen.formats.xml_elements import XmlElement
 
-ACTUATORS = ("position", "velocity", "motor", "general", "intvelocity", "damper", "cylinder", "muscle", "adhesion")
 _MAIN = "main"
 
 
@@ -25,6 +25,10 @@ class Defaults:
         self._classes[name] = known
         for inner in default.of("default"):
             self._read(inner, known, name)
+
+    def has(self, name: str) -> bool:
+        """Whether the model has a class of that name; no name is the main one."""
+        return not name or name in self._classes
 
     def whole(self, element: XmlElement, childclass: str = "") -> XmlElement:
         """The element with what its class, else that of the body around it, else the main one says."""

@@ -67,3 +67,11 @@ class RobotModel:
             seen.add(other)
             other = self.links.get(other, "")
         return False
+
+
+def follows(follower: str, leader: str) -> tuple[str, str]:
+    """The message and the hint for a joint that another one moves in another way than as its equal."""
+    message = (
+        f"`{follower}` follows `{leader}` times a factor, or shifted: the model moves it, and the body has no motor"
+    )
+    return message, "motions name the joint that it follows"

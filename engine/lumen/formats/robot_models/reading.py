@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.conversion_findings import LOST, ConversionFindings, broken
 from lumen.formats.robot_models.body_text import CIRCLE, body_text
 from lumen.formats.robot_models.guessing import guess_roles
 from lumen.formats.robot_models.mjcf import mjcf_model
@@ -13,7 +13,7 @@ from lumen.formats.xml_elements import parse_xml
 from lumen.language.diagnostics import Diagnostic
 
 _READERS = {"robot": urdf_model, "mujoco": mjcf_model}
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 _BEFORE = re.compile(rb"<\?.*?\?>|<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(rb"<(robot|mujoco)[\s>/]")
 MAX_JOINTS = 1_000
@@ -50,8 +50,10 @@ def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, l
     wanted = [j for j in model.joints if j.name not in driving and (not j.follows or j.name in with_role)]
     joints = _named(wanted, findings)
     if not joints:
-        message = "the model has no joint that turns and has a name"
-        raise broken(root.place, "not-a-robot", message, "import the robot itself, not a scene or a part of it")
+        lost = next((finding for finding in findings.diagnostics if finding.code == LOST and wanted), None)
+        message = f"no joint is left: {lost.message}" if lost else "the model has no joint that turns and has a name"
+        hint = lost.hint if lost else "import the robot itself, not a scene or a part of it"
+        raise broken(lost.place if lost else root.place, "not-a-robot", message, hint)
     names = {joint.name for joint in joints}
     roles.joints = {path: name for path, name in roles.joints.items() if name in names}
     roles.biped = roles.biped and all(
@@ -66,7 +68,7 @@ def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[M
     found: dict[str, ModelJoint] = {}
     for joint in joints:
         if not _NAME.fullmatch(joint.name):
-            hint = "rename it in the model: letters, digits and _"
+            hint = "rename it in the model: a letter, then letters, digits, _ and -"
             findings.lost(joint.place, f"the joint `{joint.name[:60]}` has a name that can't be written", hint)
         elif joint.name in found:
             findings.lost(joint.place, f"there is another joint `{joint.name}`", "rename one of them in the model")

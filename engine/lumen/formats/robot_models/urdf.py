@@ -1,10 +1,57 @@
 """A robot of URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and simulators' tags say nothing here."""
 
 from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.known import FormatTable, Known
+from lumen.formats.known_elements import tell_losses
 from lumen.formats.robot_models.numbers import Numbers
 from lumen.formats.robot_models.orientation import AXES, NestedFrame, Quaternion, euler, rotated
-from lumen.formats.robot_models.parts import ModelJoint, RobotModel
+from lumen.formats.robot_models.parts import ModelJoint, RobotModel, follows
 from lumen.formats.xml_elements import XmlElement
+
+_LOOKS = "how it looks"
+_SIMULATOR = "a setting of another simulator"
+_SHAPE = Known(frozenset(("size", "radius", "length")))
+_LINK = Known(frozenset(("link",)))
+KNOWN: FormatTable = {
+    "<robot>": Known(
+        read=frozenset(("name", "<link>", "<joint>")),
+        lost={"<mujoco>": "write it into the MJCF", "<sensor>": "write it into the MJCF"},
+        meaningless={
+            "version": "of the format", "<material>": _LOOKS, "<gazebo>": _SIMULATOR, "<ros2_control>": _SIMULATOR,
+            "<transmission>": "limits of joints are in `<limit>`",
+        },
+    ),
+    "<link>": Known(
+        read=frozenset(("name", "<inertial>", "<collision>")), meaningless={"<visual>": _LOOKS, "type": _SIMULATOR}
+    ),
+    "<inertial>": Known(frozenset(("<origin>", "<mass>", "<inertia>"))),
+    "<mass>": Known(frozenset(("value",))),
+    "<inertia>": Known(frozenset(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))),
+    "<collision>": Known(
+        read=frozenset(("<origin>", "<geometry>")),
+        meaningless={
+            "name": "nothing refers to it", "group": _SIMULATOR, "<verbose>": _SIMULATOR, "<material>": _LOOKS,
+        },
+    ),
+    "<geometry>": Known(frozenset(("<box>", "<cylinder>", "<sphere>", "<capsule>", "<mesh>"))),
+    **dict.fromkeys(("<box>", "<cylinder>", "<sphere>", "<capsule>"), _SHAPE),
+    "<mesh>": Known(frozenset(("filename", "scale"))),
+    "<joint>": Known(
+        read=frozenset(
+            ("name", "type", "<origin>", "<parent>", "<child>", "<axis>", "<limit>", "<mimic>", "<dynamics>")
+        ),
+        lost={"<safety_controller>": "write its narrower limits into `<limit>`"},
+        meaningless={"<calibration>": "joints of ours know their zero"},
+    ),
+    "<origin>": Known(frozenset(("xyz", "rpy"))),
+    "<parent>": _LINK,
+    "<child>": _LINK,
+    "<axis>": Known(frozenset(("xyz",))),
+    "<limit>": Known(frozenset(("lower", "upper", "effort", "velocity"))),
+    "<mimic>": Known(frozenset(("joint", "multiplier", "offset"))),
+    "<dynamics>": Known(frozenset(("damping", "friction"))),
+}  # fmt: skip
+"""What of a URDF goes into the body file, or into the MJCF that MuJoCo makes of it."""
 
 _HINGES = ("revolute", "continuous")
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -21,8 +68,10 @@ class _UrdfReader:
         self.numbers = Numbers(findings)
         self.links: dict[str, str] = {link.get("name"): "" for link in root.of("link") if link.get("name")}
         self.above: dict[str, XmlElement] = {}
+        self.driven: dict[str, XmlElement] = {}
 
     def read(self) -> RobotModel:
+        tell_losses(self.root, KNOWN, self.findings)
         joints = [joint for joint in self.root.of("joint") if self.known(joint)]
         frames: dict[str, NestedFrame] = {}
         found = [hinge for joint in joints if (hinge := self.hinge(joint, self.frame(joint, frames)))]
@@ -32,6 +81,9 @@ class _UrdfReader:
                 self.findings.lost(
                     hinge.place, f"`{hinge.name}` follows `{hinge.follows}`, which is no joint that turns"
                 )
+            elif hinge.name in self.driven:
+                self.findings.changed(self.driven[hinge.name].place, *follows(hinge.name, hinge.follows))
+        found = [hinge for hinge in found if hinge.name not in self.driven or hinge.follows not in names]
         return RobotModel(self.root.get("name"), self.file, self.root.place, found, self.links)
 
     def known(self, joint: XmlElement) -> bool:
@@ -89,9 +141,12 @@ class _UrdfReader:
         if kind == "revolute" and low is None:
             hint = 'give it `<limit lower="-1" upper="1" …/>` [rad]'
             self.findings.lost(joint.place, f"the joint `{name}` says no limits", hint)
+        leader, equal = self.mimic(joint)
+        if leader and not equal:
+            self.driven[name] = next(joint.of("mimic"))
         return ModelJoint(
             name, next(joint.of("child")).get("link"), joint.place, frame.place, _turned(frame.turned, axis_here),
-            low if kind == "revolute" else None, high if kind == "revolute" else None, speed, effort, self.mimic(joint),
+            low if kind == "revolute" else None, high if kind == "revolute" else None, speed, effort, leader,
         )  # fmt: skip
 
     def limits(self, limit: XmlElement | None) -> tuple[float | None, float | None, float | None, float | None]:
@@ -108,18 +163,15 @@ class _UrdfReader:
             low = high = None
         return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
 
-    def mimic(self, joint: XmlElement) -> str:
-        """The joint that this one equals; one that follows it in another way is told, and stays a joint of its own."""
+    def mimic(self, joint: XmlElement) -> tuple[str, bool]:
+        """The joint that this one follows, and whether as its equal."""
         mimic = next(joint.of("mimic"), None)
         if mimic is None:
-            return ""
+            return "", True
         factor, offset = self.numbers.one(mimic, "multiplier"), self.numbers.one(mimic, "offset")
-        if factor not in (None, 1.0) or offset not in (None, 0.0):
-            message = f"`{joint.get('name')}` follows `{mimic.get('joint')}` times a factor, or shifted"
-            hint = "`shared` knows joints that equal another; leave this one to the model (an equality of the MJCF)"
-            self.findings.lost(mimic.place, message, hint)
-            return ""
-        return mimic.get("joint")
+        if not mimic.get("joint"):
+            self.findings.lost(mimic.place, f"`{joint.get('name')}` follows no joint", 'write `<mimic joint="…"/>`')
+        return mimic.get("joint"), factor in (None, 1.0) and offset in (None, 0.0)
 
 
 def _turned(turned: Quaternion, axis: tuple[float, float, float]) -> tuple[float, float, float]:
