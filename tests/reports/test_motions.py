@@ -1,5 +1,6 @@
 """Motions and bodies of other people's bug reports: each keeps its numbers, and what is left out is listed."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,17 @@ from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.formats.robot_models import read_robot
+from lumen.language.commands import Look
 from lumen.language.diagnostics import Diagnostic
+from lumen.language.mirrors import mirror_of
+from lumen.language.roles import JointRole
+from lumen.language.skills import lack_of
+from lumen.loading.bodies import build_body
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
+from lumen.loading.schema import check_schema
+from lumen.loading.yaml_reader import parse
 from tests.tables import for_each
 
 INPUTS = Path(__file__).parent / "inputs" / "motions"
@@ -416,3 +426,29 @@ def test_what_a_model_is_not_read_for_is_listed(old: str, new: str, message: str
     assert not any(d.code == LOST and "torque" not in d.message for d in before)
     _, found = read_robot("m.xml", model.replace(old, new, 1).encode(), "m", "m.xml")
     assert message in [d.message for d in found]
+
+
+def test_a_head_that_rolls_is_turned_round_by_a_mirror() -> None:
+    bodies = Path(shipped_root()) / "models" / "lantern.yaml"
+    document, _ = parse("models/lantern.yaml", bodies.read_bytes())
+    assert document is not None
+    report = DocumentReport(document)
+    lantern = build_body(check_schema(document, "body", report), report, name="lantern")
+    assert lantern is not None
+    assert mirror_of(lantern)["tilt"] == ("tilt", -1.0)
+    for name in ("dance", "sing"):
+        file = f"motions/lantern/{name}.yaml"
+        written, _ = parse(file, (Path(shipped_root()) / file).read_bytes())
+        assert written is not None
+        said = DocumentReport(written)
+        motion = build_motion(check_schema(written, "motion", said), said, name=name, body=lantern)
+        assert motion is not None
+        angles = [key.angle for key in motion.tracks["tilt"]]
+        assert min(angles) == pytest.approx(-max(angles), abs=0.03)
+        assert max(angles) > 0.1
+
+
+def test_a_head_that_only_rolls_can_not_look() -> None:
+    rolls = replace(BODY, roles=replace(BODY.roles, head={"roll": JointRole("HeadYaw")}))
+    assert lack_of(Look(0.1, 0.0), rolls) is not None
+    assert lack_of(Look(0.1, 0.0), BODY) is None

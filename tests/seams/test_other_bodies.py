@@ -92,7 +92,7 @@ def test_without_a_head_nothing_looks_and_nothing_is_tracked(remote: Made, tmp_p
     """The same words from lint, from the robot here and there, and in the transcript of the one who asked."""
     folder = copied(tmp_path)
     model = folder / "models" / "lantern.yaml"
-    model.write_text(model.read_text("utf-8").replace("  head: {yaw: turn, pitch: nod}\n", ""), "utf-8")
+    model.write_text(model.read_text("utf-8").replace("  head: {yaw: turn, pitch: nod, roll: tilt}\n", ""), "utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(MODEL_VARIABLE, "lantern")
         project, found = lumen.load(folder), lumen.check(folder)

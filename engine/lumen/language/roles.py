@@ -10,12 +10,13 @@ from enum import StrEnum
 LEFT, RIGHT = SIDES = ("left", "right")
 
 HEAD_ROLES = ("yaw", "pitch")
+"""The joints by which a head looks somewhere; a `roll` only tilts it."""
 ARM_ROLES = ("shoulder-pitch", "shoulder-roll", "elbow-yaw", "elbow-roll", "wrist-yaw")
 LEG_ROLES = ("hip-yaw", "hip-roll", "hip-pitch", "knee", "ankle-pitch", "ankle-roll")
 """The joints of a leg from the hip to the sole; walking on feet needs all six."""
 
 JOINT_PATHS = (
-    *(f"head.{name}" for name in HEAD_ROLES),
+    *(f"head.{name}" for name in (*HEAD_ROLES, "roll")),
     *(f"arms.{side}.{name}" for side in SIDES for name in ARM_ROLES),
     *(f"{kind}.{side}" for kind in ("hands", "antennas") for side in SIDES),
     *(f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES),

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from lumen.language.commands import GoTo, Leds, Look, Move, Track, Walk
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
-from lumen.language.roles import JOINT_PATHS, BaseKind
+from lumen.language.roles import HEAD_ROLES, JOINT_PATHS, BaseKind
 
 _WOULD_GIVE = " under `roles` of its body would give it"
 
@@ -24,7 +24,7 @@ def lack_of(command: object, body: Body) -> Lack | None:
         case Walk() | Move() | GoTo() if roles.base.kind is BaseKind.FIXED:
             wanted = "`base: {kind: biped}` with `legs`, `soles` and `sensors`, or `base: {kind: wheels, …}`"
             return Lack(f"{body.name} has no legs and no wheels", wanted + _WOULD_GIVE)
-        case Look() if not roles.head:
+        case Look() if not any(role in roles.head for role in HEAD_ROLES):
             return Lack(
                 f"{body.name} has no head that turns", "`head: {yaw: …}` under `roles` of its body would give it"
             )

@@ -54,7 +54,8 @@ class LifeLayer:
 
     def __init__(self, body: Body, seed: int = 0) -> None:
         self.style: LifeStyle = STILL_STYLE
-        self._seed, self._part, self._turns = seed, part_of(body), body.roles.head
+        self._seed, self._part = seed, part_of(body)
+        self._turns = {role: turn for role, turn in body.roles.head.items() if role in HEAD_ROLES}
         self._speeds = {joint.name: SPEED_SHARE * joint.speed for joint in body.joints.values()}
         self._attention: Attention | None = None
         self._led_at = -LED_FOR

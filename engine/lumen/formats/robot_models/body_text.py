@@ -68,7 +68,7 @@ def _lines(
 def _roles(model: RobotModel, roles: GuessedRoles) -> Iterator[str]:
     if roles.torso:
         yield f"  torso: {_quoted(roles.torso)}{GUESSED}"
-    if head := _given(roles, "head", HEAD_ROLES):
+    if head := _given(roles, "head", (*HEAD_ROLES, "roll")):
         yield f"  head: {_flow(head)}{GUESSED}"
     eyes = {"camera": roles.camera.name if roles.camera else "", "face": roles.face}
     if any(eyes.values()):

@@ -90,7 +90,7 @@ class _Guesser:
         """Give a joint its role, where nobody has it."""
         turn = turn or _dominant(joint)
         path = {
-            "head": f"head.{turn}" if turn in ("yaw", "pitch") else "",
+            "head": f"head.{turn}",
             "antenna": f"antennas.{side}" if side else "",
             "hip": f"legs.{side}.hip-{turn}" if side else "",
             "knee": f"legs.{side}.knee" if side and turn == "pitch" else "",

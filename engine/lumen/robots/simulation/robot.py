@@ -244,7 +244,8 @@ class SimulatedRobot:
             torso = self.world.data.body(f"{self.world.prefix}/{self.body.roles.torso}")
             x, y, z = (torso.xmat.reshape(3, 3).T @ (np.array(face) - torso.xpos)).tolist()
             away = dict(zip(HEAD_ROLES, centring((x, y, z), self.body.camera), strict=True))
-            for role, turn in self.body.roles.head.items():
+            for role in self.body.roles.head.keys() & away.keys():
+                turn = self.body.roles.head[role]
                 away[role] -= turn.sign * self.motors.wanted((turn.joint,))[turn.joint]
             self._life.heard(away["yaw"], away["pitch"], self.time)
 
