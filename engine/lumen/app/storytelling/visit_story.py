@@ -162,7 +162,7 @@ def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequenc
                 if _alike(rendition.told, again.told) == len(rendition.told) or digits == 2:
                     return story
                 break
-            number = rows[failed.step - 1][0]
+            number = rows[max(failed.step - 1 - len(approved), 0)][0]
             if number is None:
                 break
             left_out.add(number)
