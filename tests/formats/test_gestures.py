@@ -258,8 +258,10 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["play", str(file)]) == 0
     assert "NAO plays `wave` (2.5 s)" in capsys.readouterr().out
     file.write_text("#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,Pose,2.0\n00:00:300,Pose,-2.0\n")
-    assert main(["play", str(file)]) == 0
-    assert "`HeadYaw` comes late: to get there by 0.30 s it would have to move at 20 rad/s" in capsys.readouterr().err
+    assert main(["play", str(file)]) == 1
+    told = capsys.readouterr().err
+    assert "`HeadYaw` comes late: to get there by 0.30 s it would have to move at 20 rad/s" in told
+    assert "in `wave` a joint missed its goal: `HeadYaw` was" in told
     file.write_text("nothing")
     assert main(["play", str(file)]) == 2
     assert "does not begin with" in capsys.readouterr().err

@@ -25,6 +25,10 @@ from lumen.language.stories import (
 from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 from lumen.runtime.performer import LEFT_OUT
+from lumen.runtime.troubles import Trouble
+
+MAX_TROUBLES = 100
+"""How many troubles of a run are remembered for its end: the first."""
 
 
 class Narrator(Observer):
@@ -43,6 +47,7 @@ class Narrator(Observer):
         self.said = 0
         self.played: dict[str, int] = {}
         self._ignored = IgnoredEvents()
+        self.troubles: list[str] = []
         self.of_visitor: list[Callable[[VisitorAction], None]] = []
 
     def line(self, who: str, text: str) -> None:
@@ -95,6 +100,11 @@ class Narrator(Observer):
         if not verb.instant:
             self._running[id] = words
 
+    def refused(self, command: Start, reason: str) -> None:
+        wanted = command.command
+        if not isinstance(wanted, Say | Ask):  # what is only said is never refused
+            self.line("refused", f"{_base(verb_of(wanted).transcript(wanted))}: {reason}")
+
     def answered(self, event: Event) -> None:
         kind, _, id = event.name.partition(".command.")
         running = self._running.pop(id, "")
@@ -114,6 +124,13 @@ class Narrator(Observer):
         elif not id:
             details = ", ".join(f"{k} {v}" for k, v in (event.data or {}).items())
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
+
+    def troubled(self, trouble: Trouble) -> None:
+        """Remember it for the end of the run; most of them have been told already, as what they are."""
+        if trouble.kind == "joint":
+            self.line("trouble", trouble.what)
+        if len(self.troubles) < MAX_TROUBLES:
+            self.troubles.append(trouble.what)
 
     def visitor_action(self, action: VisitorAction) -> None:
         """The visitor does something."""

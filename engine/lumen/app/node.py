@@ -86,6 +86,11 @@ class Node:
         return any(part.failed for part in self._begun)
 
     @property
+    def troubles(self) -> list[str]:
+        """What went wrong in the behaviour of this process; a story judges that itself."""
+        return list(self._narrator.troubles)
+
+    @property
     def interrupted(self) -> bool:
         return self._interrupts > 0
 

@@ -23,7 +23,7 @@ from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
-from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, WELL, RunVerdict
+from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
@@ -95,16 +95,20 @@ class HouseRun:
         nodes = list(self.nodes.values())
         failed, early = any(node.failed for node in nodes), any(node.interrupted for node in nodes)
         failure = self._player.failure if self._player else ""
-        print(f"\n{'The story failed' if failed else 'Ended'}: {clock_time(lived)}.")
-        lines = [f"{name}: {line}" for name, node in self.nodes.items() for line in node.summary()]
+        told = {name: node.troubles for name, node in self.nodes.items() if not self.stories[name]}
+        troubles = [f"{name}: {trouble}" for name, troubles in told.items() for trouble in troubles]
+        with_trouble = "Ended with trouble" if troubles else "Ended"
+        print(f"\n{'The story failed' if failed else with_trouble}: {clock_time(lived)}.")
+        lines = [*RunVerdict.listed(troubles)]
+        lines += [f"{name}: {line}" for name, node in self.nodes.items() for line in node.summary()]
         for line in [*([failure] if failure else []), *lines]:
             print(f"  {line}")
         for name, directory in self.directories.items():
             if not self._parts or BRAIN in self._parts:
                 directory.ended(self.nodes[name].project)
                 directory.close(forget=not self.nodes[name].leaving)
-        ended = FAILED if failure else INTERRUPTED if early else EARLY if failed else WELL
-        return RunVerdict(ended, lived, took, failure, tuple(lines))
+        ended = FAILED if failure else INTERRUPTED if early else EARLY if failed else TROUBLED if troubles else WELL
+        return RunVerdict(ended, lived, took, failure or next(iter(troubles), ""), tuple(lines))
 
     def _set_up(self) -> dict[str, Setup]:
         if self._parts and ROBOT_PART not in self._parts:

@@ -10,7 +10,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
-from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, WELL, RunVerdict
+from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.real import RealClock
@@ -56,13 +56,17 @@ class Performance:
         player = exhibition.node.player
         failure = player.failure if player else ""
         early = player is not None and not player.finished
+        troubles = [] if player else exhibition.node.troubles  # a story fails for those that it does not expect
+        how = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
+        how = INTERRUPTED if exhibition.node.interrupted and how != FAILED else how
         ended = "The story failed" if failure else "Ended before the story did" if early else "All well"
+        ended = "Ended with trouble" if troubles else ended
         real = isinstance(self._setup.clock, RealClock)
         pace = "" if real else f" in {self._took:.0f} s ({self._lived / max(self._took, 0.01):.1f} × real time)"
         print(f"\n{ended}: {clock_time(self._lived)} of {'simulated ' * bool(pace)}time{pace}.")
         if failure:
             print(f"  {failure}")
-        lines = [self.transcript.counted()]
+        lines = [*RunVerdict.listed(troubles), self.transcript.counted()]
         if self.transcript.distance is not None:
             lines.append(
                 f"the visitor's face ended {self.transcript.distance:.0f} px from the centre of the camera's image"
@@ -75,8 +79,8 @@ class Performance:
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
         if (story := exhibition.node.story) and not film:
             print(f"      `lumen run --story {story.name} --speed max --video {story.name}.mp4` makes a film of this.")
-        how = INTERRUPTED if exhibition.node.interrupted else EARLY if early else WELL
-        return RunVerdict(FAILED if failure else how, self._lived, self._took, failure, tuple(lines), film)
+        failure = failure or next(iter(troubles), "")
+        return RunVerdict(how, self._lived, self._took, failure, tuple(lines), film)
 
     def _look_back(self, exhibition: Exhibition) -> float | None:
         """How far from the centre of the image the face of the visitor is who leaves [px]."""

@@ -20,7 +20,6 @@ from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
 from lumen.interpreters.limits import overspeed
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
-from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
@@ -33,6 +32,7 @@ from lumen.loading.project import assemble, motion_parts
 from lumen.loading.schema import check_schema
 from lumen.ports import Perform, RobotCommand
 from lumen.runtime.loop import TICK_PERIOD
+from lumen.runtime.troubles import trouble_of_answer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -67,14 +67,15 @@ def run(options: argparse.Namespace) -> int:
     project = replace(project, imperfections=lacking)
     video = film_path(options.video, "simulation")
     with one_object(options.format) as say:
-        say(_played(project, motion, options.speed, video, film_size(options.size)))
-    return 0
+        played = _played(project, motion, options.speed, video, film_size(options.size))
+        say(played)
+    return int(bool(played["trouble"]))
 
 
 def _played(
     project: Project, motion: MotionDefinition, speed: str, video: Path | None, size: tuple[int, int]
 ) -> dict[str, Any]:
-    """How it went. Raises UsageError where the robot can't, or falls."""
+    """How it went. Raises UsageError where the robot can't."""
     player = _Player(project, speed, video, size)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
     late = _slowed(motion, project.body)
@@ -82,17 +83,27 @@ def _played(
         print(line, file=sys.stderr)
     try:
         with progress() as tell:
-            player.perform(Posture(motion.start or "Stand", 1.0), tell)
-            player.perform(Perform(motion), tell, motion.duration)
+            trouble = player.perform(Posture(motion.start or "Stand", 1.0), tell)
+            trouble = trouble or player.perform(Perform(motion), tell, motion.duration)
     finally:
         player.close()
     lean = player.robot.greatest_tilt
     film = str(video.absolute()) if video else None
-    print(f"finished, on its feet; its torso leaned {lean:.1f} deg at most")
+    on_feet = not player.robot.fallen
+    print(f"{'finished, on its feet' if on_feet else 'ended'}; its torso leaned {lean:.1f} deg at most")
+    if trouble:
+        print(trouble, file=sys.stderr)
     if film:
         print(f"wrote {film}")
     duration = round(motion.duration, 3)
-    return {"motion": motion.name, "duration": duration, "lean": round(lean, 2), "late": late, "film": film}
+    return {
+        "motion": motion.name,
+        "duration": duration,
+        "lean": round(lean, 2),
+        "late": late,
+        "film": film,
+        "trouble": trouble or None,
+    }
 
 
 class _Player:
@@ -107,8 +118,11 @@ class _Player:
         self.robot, self._clock = chosen.robot, chosen.clock
         self._film = Film(video, self.robot, "close", size=size) if video else None
 
-    def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> None:
-        """To its end, which is `duration` [s] ahead. Raises UsageError where the robot can't, with its reason."""
+    def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> str:
+        """Perform to the end, which is `duration` [s] ahead; return a fall or what joint missed its goal.
+
+        Raises UsageError if the robot can't, with its reason.
+        """
         self.robot.start("play", command)
         began = self._clock.now()
         while True:
@@ -117,10 +131,12 @@ class _Player:
             if self._film:
                 self._film.tick(self._clock.now())
             for event in self.robot.poll():
+                if trouble := trouble_of_answer(event):
+                    return trouble.what
                 if event.name == "done.command.play":
-                    return
-                if event.name in ("error.command.play", "fallen"):
-                    raise UsageError(_reason(event))
+                    return ""
+                if event.name == "error.command.play" and not self.robot.fallen:
+                    raise UsageError(str(event.data["reason"]))
 
     def close(self) -> None:
         if self._film:
@@ -136,10 +152,6 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
         f"{'' if joint in body.hands else 'rad'}/s, and {excess.limit:.3g} is its most"
         for joint, excess in worst.items()
     ]
-
-
-def _reason(event: Event) -> str:
-    return "the robot fell" if event.name == "fallen" else str(event.data["reason"])
 
 
 def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> MotionDefinition:

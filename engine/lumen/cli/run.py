@@ -33,7 +33,7 @@ from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
-from lumen.cli.run_verdict import FAILED, INTERRUPTED, WELL, RunVerdict
+from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
@@ -222,15 +222,17 @@ def _processes(
         lived = node.run(period)
     finally:
         node.close()
-    print(f"\n{'The story failed' if node.failed else 'Ended'}: {clock_time(lived)}.")
-    summary = tuple(node.summary())
+    troubles = [] if story else node.troubles
+    with_trouble = "Ended with trouble" if troubles else "Ended"
+    print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")
+    summary = (*RunVerdict.listed(troubles), *node.summary())
     for line in summary:
         print(f"  {line}")
     if BRAIN in parts:
         run_directory.ended(node.project)
         run_directory.close(forget=not node.leaving)
-    ended = INTERRUPTED if node.interrupted else FAILED if node.failed else WELL
-    return RunVerdict(ended, lived, summary=summary)
+    ended = INTERRUPTED if node.interrupted else FAILED if node.failed else TROUBLED if troubles else WELL
+    return RunVerdict(ended, lived, failure=next(iter(troubles), ""), summary=summary)
 
 
 @contextmanager

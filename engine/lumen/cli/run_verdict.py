@@ -1,12 +1,18 @@
 """How a run went, as `lumen run --format json` says it."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-WELL, FAILED, EARLY, INTERRUPTED = "well", "failed", "early", "interrupted"
+WELL, FAILED, TROUBLED, EARLY, INTERRUPTED = "well", "failed", "troubled", "early", "interrupted"
+MAX_TROUBLES = 5
+"""How many troubles the summary of a run lists."""
 
 
 class RunVerdict(NamedTuple):
-    """How it `ended`: well, failed, early (before its story did), interrupted; `lived` and `took` in [s]."""
+    """How it `ended`: well, failed, troubled, early (before its story did), interrupted; `lived` and `took` in [s].
+
+    A story judges what goes wrong and fails; without one the run is troubled, and `failure` is the first trouble.
+    """
 
     ended: str
     lived: float
@@ -17,7 +23,13 @@ class RunVerdict(NamedTuple):
 
     @property
     def code(self) -> int:
-        return int(self.ended in (FAILED, EARLY))
+        return int(self.ended in (FAILED, TROUBLED, EARLY))
+
+    @staticmethod
+    def listed(troubles: Sequence[str]) -> list[str]:
+        """Return the lines of a summary that say what went wrong."""
+        more = len(troubles) - MAX_TROUBLES
+        return [*troubles[:MAX_TROUBLES], *([f"… and {more} more such troubles"] if more > 0 else [])]
 
     def to_json(self, project: str, story: str | None) -> dict[str, Any]:
         took = None if self.took is None else round(self.took, 3)

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import HOWS
-from lumen.language.events import CLOCK_SET
+from lumen.language.events import CLOCK_SET, HELD
 
 MAX_TEXT = 300
 SAYS, DOES, STATE = "says", "does", "state"
@@ -26,6 +26,7 @@ class EntryPhrases:
     by: str = "{}, by {}"
     sent: str = "sent to {}"
     late: str = "time is up"
+    refused: str = "refused"
     mark: str = "mark"
     start: str = "the behaviour begins"
     reload: str = "other files run from here on"
@@ -48,7 +49,7 @@ ENGLISH = EntryPhrases()
 OTHERS = {
     "id": EntryPhrases(
         says="berkata “{}”", plays="memainkan {}", by="{}, oleh {}", sent="dikirim ke {}", late="waktu habis",
-        mark="tanda", start="perilaku dimulai", reload="mulai sini berkas lain yang berjalan",
+        refused="ditolak", mark="tanda", start="perilaku dimulai", reload="mulai sini berkas lain yang berjalan",
         rollback="berkas sebelumnya berjalan lagi", resume="melanjutkan dari akhir jalannya yang lalu",
         forget="seseorang dilupakan", dropped_timer="sebuah pewaktu dilepas", dropped_event="sebuah peristiwa dilepas",
         gap="sebagian dari yang terjadi hilang",
@@ -123,7 +124,7 @@ def _came(entry: Mapping[str, Any], words: EntryPhrases) -> str:
         case {"state": str(state)} if how == "goto":
             text = words.sent.format(state)
         case {"reason": str(reason)} if reason and name.startswith(ERROR):
-            text = f"{name}: {reason}"
+            text = f"{words.refused if reason.endswith(HELD) else name}: {reason}"
         case _:
             text = words.late if how == "timer" else name
     return text + _by(cause, words)

@@ -40,6 +40,15 @@ It is for who runs the exhibition, not for its behaviour, which hears no such ev
 RECORDED = "recorded"
 """What a robot raises when it has listened: the body of the route `recording`. It is for modules, and no behaviour."""
 
+FALLEN = "fallen"
+"""The event of a robot that has fallen."""
+
+HELD = "hold its head, or say `lumen resume`"
+"""How the reason ends for which a robot that is held still refuses to move."""
+
+MISSED = "missed"
+"""The field of `done.command.ID` that says which joints did not come to the angles of a motion."""
+
 ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
 """What is raised when the robot has come to one of the places, when it is no longer there, and where it can't tell.
 
@@ -56,7 +65,7 @@ Its data is when time 0 was by that clock, `epoch` [s since 1970, in UTC], and t
 ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),
     "released": _object(sensor={"type": "string"}),
-    "fallen": _object(),
+    FALLEN: _object(),
     "battery.low": _object(percentage={"type": "integer"}),
     "battery.full": _object(percentage={"type": "integer"}),
     "motors.hot": _object(joint={"type": "string"}, temperature={"type": "number"}),

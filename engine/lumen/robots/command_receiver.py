@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from lumen.errors import BusError, RobotError, RobotRefusedError
 from lumen.language.commands import Language, Rest, Say, Stop, Wake
-from lumen.language.events import Event
+from lumen.language.events import MISSED, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Live, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
@@ -136,7 +136,8 @@ class CommandReceiver:
     def answer(self, event: Event) -> bool:
         """Report where this is the end of a command of ours; whether it is."""
         kind, _, id = event.name.partition(".command.")
-        reason = event.data.get("reason", "") if isinstance(event.data, dict) else ""
+        data = event.data if isinstance(event.data, dict) else {}
+        reason = data.get("reason") or data.get(MISSED, "")
         return self._reports.answered(kind, id, str(reason))
 
     def use(self, project: Project) -> None:

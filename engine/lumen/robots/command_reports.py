@@ -94,13 +94,16 @@ class CommandReports:
             self.change(record, STARTED)
 
     def answered(self, kind: str, at: str, reason: str) -> bool:
-        """The robot said `done`, `error` or `cancelled`; whether it was of one of ours."""
+        """The robot said `done`, `error` or `cancelled`; whether it was of one of ours.
+
+        The reason of `done` is which joint missed its goal.
+        """
         record = self._running.pop(at, None)
         if record is None or kind not in _ANSWERS:
             return False
         if record.state == ACCEPTED and kind == "done":
             self.change(record, STARTED)
-        self.change(record, _ANSWERS[kind], reason if kind == "error" else "")
+        self.change(record, _ANSWERS[kind], "" if kind == "cancelled" else reason)
         return True
 
     def change(self, record: CommandRecord, state: str, reason: str = "") -> None:

@@ -8,11 +8,11 @@ the ownership and the answers, and is the same for every robot that executes com
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from lumen.errors import RobotError
 from lumen.language.commands import Move, Rest, Stop
-from lumen.language.events import Event
+from lumen.language.events import MISSED, Event
 from lumen.ports import RobotCommand
 from lumen.robots.command_table import row_of
 
@@ -29,6 +29,16 @@ class Activity(Protocol):
 
     def cancel(self) -> None:
         """End early: `advance` turns true as soon as the body is balanced, at most 1 s later."""
+        ...
+
+
+@runtime_checkable
+class Misses(Protocol):
+    """An activity that may end without all joints having come to their goals."""
+
+    @property
+    def missed(self) -> str:
+        """Which did not, in words; empty if all did."""
         ...
 
 
@@ -140,7 +150,9 @@ class Executor:
                 self._end("error", task, {"reason": str(error)})
             else:
                 if finished:
-                    self._end("cancelled" if task.cancelled and not task.displaced else "done", task)
+                    ended_early = task.cancelled and not task.displaced
+                    missed = task.activity.missed if isinstance(task.activity, Misses) and not ended_early else ""
+                    self._end("cancelled" if ended_early else "done", task, {MISSED: missed} if missed else None)
 
     def _admit(self, now: float) -> None:
         """Begin what can; a command that waits keeps its parts from those behind it."""

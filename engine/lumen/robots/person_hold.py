@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from typing import NamedTuple
 
 from lumen.language.commands import Look, Rest
-from lumen.language.events import Event
+from lumen.language.events import HELD, Event
 from lumen.ports import Aim, RobotCommand
 from lumen.robots.command_table import row_of
 
@@ -62,12 +62,8 @@ class PersonHold:
             self._rests = self._rests and isinstance(command, Look | Aim)
             return ""
         if self.stopped:
-            return f"{self.stopped.by} stopped the robot: hold its head, or say `lumen resume`"
-        return (
-            ""
-            if behavior or not self._rests
-            else "the behaviour lets the robot rest: hold its head, or say `lumen resume`"
-        )
+            return f"{self.stopped.by} stopped the robot: {HELD}"
+        return "" if behavior or not self._rests else f"the behaviour lets the robot rest: {HELD}"
 
     def _notice(self, event: Event) -> None:
         for call in self.noticed:

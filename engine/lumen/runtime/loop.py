@@ -26,6 +26,7 @@ from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
 from lumen.runtime.shared_board import SharedBoard
 from lumen.runtime.tracking import LocalTracking, TrackingService
+from lumen.runtime.troubles import Trouble, trouble_of_answer, troubles_of_step
 from lumen.runtime.wall_clock_watch import WallClockWatch
 
 TICK_PERIOD = 0.02
@@ -44,8 +45,14 @@ class Observer:
     def performing(self, command: Command, now: float) -> None:
         """A command is about to be performed."""
 
+    def refused(self, command: Start, reason: str) -> None:
+        """A command that the behaviour asks for is not performed: a person keeps the robot still."""
+
     def answered(self, event: Event) -> None:
         """The robot answered a command, or noticed something; the behaviour has not heard of it yet."""
+
+    def troubled(self, trouble: Trouble) -> None:
+        """Something happened after which a run has not gone well."""
 
 
 class BehaviorLoop:
@@ -66,7 +73,7 @@ class BehaviorLoop:
         self.observers: list[Observer] = []
         self.rescue: Rescue = lambda _: None
         self.wall_clock: WallClockWatch | None = None
-        self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
+        self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error), self._dropped)
         self.inbox, self.board = Inbox(bus), SharedBoard(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
         self.regulation = Regulation(project, bus)
@@ -231,6 +238,15 @@ class BehaviorLoop:
         self.performer.questions.stepped(step)
         for observer in self.observers:
             observer.stepped(step)
+        for trouble in troubles_of_step(self.project.machine, step):
+            self._trouble(trouble)
+
+    def _dropped(self, what: str) -> None:
+        self._trouble(Trouble("dropped", what))
+
+    def _trouble(self, trouble: Trouble) -> None:
+        for observer in self.observers:
+            observer.troubled(trouble)
 
     def _gather(self, now: float) -> list[Event]:
         ended, self.performer.events = self.performer.events, []
@@ -242,6 +258,8 @@ class BehaviorLoop:
                 continue
             for observer in self.observers:
                 observer.answered(event)
+            if trouble := trouble_of_answer(event):
+                self._trouble(trouble)
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
@@ -258,14 +276,23 @@ class BehaviorLoop:
     ) -> None:
         self.step = self.runtime.steps if step is None else step
         for command in commands:
-            for observer in self.observers:
-                observer.performing(command, now)
-            self._cues.performing(command)
-            self._note_rest(command)
+            self._tell_of(command, now)
             try:
                 self.performer.perform(project or self.project, command, now, self.step)
             except Exception as error:
                 self._recover(error, now)
+
+    def _tell_of(self, command: Command, now: float) -> None:
+        """Tell what is about to be performed, or why it is not."""
+        reason = self.performer.refusal(self.project, command)
+        if reason and isinstance(command, Start):
+            for observer in self.observers:
+                observer.refused(command, reason)
+            return
+        for observer in self.observers:
+            observer.performing(command, now)
+        self._cues.performing(command)
+        self._note_rest(command)
 
     def _lose(self, seconds: float) -> None:
         """We were away: the behaviour hears it, and not again when the robot says so, too."""

@@ -56,6 +56,15 @@ class Performer:
         self.questions = Questions(bus)
         self.refuse: Callable[[RobotCommand], str] = lambda _: ""
 
+    def refusal(self, project: Project, command: Command) -> str:
+        """Return the reason why the robot may not begin this one; empty if it may, or if no robot performs it."""
+        match command:
+            case Start(_, Play(name)):
+                return self.refuse(Perform(project.motions[name])) if name in project.motions else ""
+            case Start(_, wanted) if not isinstance(wanted, Play | Ask | Track | Language | GoTo):
+                return "" if lack_of(wanted, project.body) else self.refuse(wanted)
+        return ""
+
     def perform(self, project: Project, command: Command, now: float, step: int = 0) -> None:
         """Begin a command, which the step of that number asked for; what it publishes names it."""
         match command:

@@ -47,7 +47,8 @@ class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
 
     Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, the
-    event or timer is dropped, and logged: a message that a step can't bear must not end the exhibition.
+    event or timer is dropped and logged, and `dropped` is called with what and why: a message that a step can't bear
+    must not end the exhibition.
 
     `observe` is shown every step in the order taken, and `steps` counts them: the first of a run is 1. `epoch` is when
     time 0 was [s since 1970], `timezone` where the clock on the wall hangs. A `recorder` keeps what is needed to take
@@ -59,9 +60,10 @@ class Runtime:
         project: Project,
         observe: Callable[[Step], None] = lambda _: None,
         rescue: Rescue = lambda _: None,
+        dropped: Callable[[str], None] = lambda _: None,
     ) -> None:
         self.project = project
-        self._observe, self._rescue = observe, rescue
+        self._observe, self._rescue, self._dropped = observe, rescue, dropped
         self._snapshot: Snapshot | None = None
         self.recorder: InputRecorder | None = None
         self.approvals = Approvals()
@@ -184,6 +186,7 @@ class Runtime:
             else:
                 _log.error("the event `%s` is dropped: %s", event.name, error, exc_info=_ours(error))
                 self._record("dropped event", event=event.name)
+                self._dropped(f"the event `{event.name}` is dropped: {error}")
 
     def _timers(self, until: float, emitted: list[Emission]) -> None:
         try:
@@ -207,6 +210,7 @@ class Runtime:
         kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
         self._snapshot = self.snapshot._replace(timers=kept)
         self._record("dropped timer", event=first.event)
+        self._dropped(f"the timer `{first.event}` is dropped: {error}")
 
 
 def _timed(taken: Step) -> Step:

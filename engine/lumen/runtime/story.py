@@ -13,7 +13,7 @@ from lumen.language.approvals import Autonomy
 from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
 from lumen.language.commands import Ask, Cancel, Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
-from lumen.language.events import Event
+from lumen.language.events import FALLEN, Event
 from lumen.language.hours import Schedule
 from lumen.language.projects import Project
 from lumen.language.stories import (
@@ -37,8 +37,9 @@ from lumen.ports import Bus, Hall
 from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
 from lumen.runtime.story_answers import QUESTION_WITHIN, answered
-from lumen.runtime.story_observations import FALLEN, StoryObservations, UnmetExpectation, expects_fall, listed
+from lumen.runtime.story_observations import StoryObservations, UnmetExpectation, expects_error, expects_fall, listed
 from lumen.runtime.story_time import story_moment
+from lumen.runtime.troubles import Trouble
 from lumen.runtime.visitor import VisitorActor
 
 
@@ -115,7 +116,7 @@ class StoryPlayer(Observer):
         self._awaited: int | None = None
         machine = exhibition.project.behaviors[story.behavior or exhibition.project.behavior]
         self._monitors = monitors(machine, (*machine.properties, *story.properties))
-        self._falls = expects_fall(story, machine)
+        self._falls, self._errors = expects_fall(story, machine), expects_error(story, machine)
 
     @property
     def failure(self) -> str:
@@ -164,6 +165,11 @@ class StoryPlayer(Observer):
             motion = self._witness.playing.pop(event.name.removeprefix("done.command."), None)
             if motion:
                 self._witness.played.append(motion)
+
+    def troubled(self, trouble: Trouble) -> None:
+        expected = self._falls if trouble.kind == "fall" else self._errors if trouble.kind == "do" else False
+        if trouble.kind != "fall" and not expected:  # `answered` fails for a fall
+            self.fail(UnmetExpectation("", trouble.what))
 
     def tick(self, now: float) -> None:
         """Do every step that can be done by `now` [s]; what is done is heard before anything is expected of it."""

@@ -4,11 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from lumen.language.events import Event
+from lumen.language.events import FALLEN, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect, Happen, Story
-
-FALLEN = "fallen"
 
 
 class UnmetExpectation(NamedTuple):
@@ -87,6 +85,20 @@ def expects_fall(story: Story, machine: MachineDefinition) -> bool:
     return any(isinstance(a, Happen) and a.name == FALLEN for a in actions) or any(
         isinstance(a, Expect) and not answers.isdisjoint(a.states) for a in actions
     )
+
+
+def expects_error(story: Story, machine: MachineDefinition) -> bool:
+    """Whether a story is about an error of a `do`: it says with `robot` what fails, or expects a state that only an
+    error leads to.
+    """
+    transitions = [t for m in (machine, *machine.invoked.values()) for s in m.states.values() for t in s.transitions]
+    names = {path: state.name for m in (machine, *machine.invoked.values()) for path, state in m.states.items()}
+    failed, other = set[str](), set[str]()
+    for transition in transitions:
+        into = failed if transition.event.startswith("error.") else other
+        into.update(names[target] for target in transition.targets)
+    expected = {s for step in story.steps if isinstance(step.action, Expect) for s in step.action.states}
+    return bool(story.robot) or any(name.rpartition("/")[2] in failed - other for name in expected)
 
 
 def _holds(body: Any, wanted: Any) -> bool:

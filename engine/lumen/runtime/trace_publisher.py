@@ -17,6 +17,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.approvals import HeldEvent
 from lumen.runtime.loop import Observer
+from lumen.runtime.troubles import Trouble
 
 TRACE_ROUTE = "state"
 TRACE_TTL = 10.0
@@ -101,6 +102,10 @@ class TracePublisher(Observer):
             case Log():
                 pass
 
+    def refused(self, command: Start, reason: str) -> None:
+        said = {"verb": type(command.command).__name__.lower(), "id": command.id, "reason": reason}
+        self._tell({"refused": said, "step": self._emitting()})
+
     def answered(self, event: Event) -> None:
         kind, separator, id = event.name.partition(".command.")
         reason = str(event.data.get("reason", "")) if isinstance(event.data, dict) else ""
@@ -109,6 +114,9 @@ class TracePublisher(Observer):
         elif id[:1] in ("c", "d"):
             answer = {"id": id, "kind": kind}
             self._tell({"answer": {**answer, "reason": reason} if reason else answer})
+
+    def troubled(self, trouble: Trouble) -> None:
+        self._tell({"trouble": trouble._asdict()})
 
     def _tell(self, what: dict[str, Any]) -> None:
         project = self._project()

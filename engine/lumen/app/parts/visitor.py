@@ -17,6 +17,7 @@ from lumen.robots.remote import RemoteHall
 from lumen.runtime.presence import BRAIN, ROBOT_PART, VISITOR
 from lumen.runtime.story import StoryEnvironment, StoryPlayer
 from lumen.runtime.trace_subscriber import TraceSubscriber
+from lumen.runtime.troubles import Trouble
 from lumen.runtime.visitor import VisitorActor
 
 
@@ -110,6 +111,9 @@ class RemoteVisitorPart(VisitorPart):
 
     def answered(self, event: Event) -> None:
         self._narrator.answered(event)
+
+    def troubled(self, trouble: Trouble) -> None:
+        self._narrator.troubled(trouble)
 
     def summary(self) -> Iterator[str]:
         if self.player:

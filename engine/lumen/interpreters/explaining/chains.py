@@ -26,7 +26,7 @@ from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, 
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.commands import Command, Start
 from lumen.language.diagnostics import Place
-from lumen.language.events import Event
+from lumen.language.events import HELD, Event
 from lumen.language.machines import MachineDefinition, Transition
 
 LinkWalk: TypeAlias = Iterator["Link | partial[LinkWalk]"]
@@ -69,12 +69,13 @@ class Chain:
 
     def command(self, number: int, command: Command) -> LinkWalk:
         deed = self.history.deed(number, command)
+        text = of_command(command) + self._failure(number, _id(command))
         if deed is None:
-            yield self._link(number, "command", of_command(command), id=_id(command))
+            yield self._link(number, "command", text, id=_id(command))
             yield partial(self.trigger, number, "")
             return
         place = self._place(number, deed.machine, deed.where)
-        yield self._link(number, "command", of_command(command), place, _id(command))
+        yield self._link(number, "command", text, place, _id(command))
         yield self._activity(number, deed)
         yield partial(self.because, number, deed)
 
@@ -246,6 +247,15 @@ class Chain:
     ) -> Link:
         one = self.history.steps[number]
         return Link(kind, text, one.step.snapshot.epoch + one.at, place, id, values or {}, number)
+
+    def _failure(self, number: int, id: str) -> str:
+        """How a command ended that was not performed, as the end of a text; empty if it was, or is under way."""
+        for one in self.history.steps[number + 1 :] if id else ():
+            answer = answer_of(one.step.event) if one.step.event and not one.step.event.sendid else None
+            if answer and answer.id == id:
+                refused = "refused" if answer.reason.endswith(HELD) else "failed"
+                return f" ({refused}: {answer.reason})" if answer.kind == "error" else ""
+        return ""
 
     def _place(self, number: int, machine: MachineDefinition, where: Any) -> Place | None:
         return self.history.steps[number].place(machine, where)

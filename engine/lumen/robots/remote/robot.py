@@ -12,7 +12,7 @@ from typing import Any
 from lumen.errors import BusError
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
-from lumen.language.events import CUE, ROBOT_EVENTS, Event
+from lumen.language.events import CUE, MISSED, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Live, Message, Perform, Reading, RobotCommand, Sense
 from lumen.robots.command_codec import encode_command
@@ -242,6 +242,8 @@ class RemoteRobot:
     def _end(self, whole: str, kind: str, reason: str = "") -> None:
         pending = self._pending.pop(whole)
         data = {"reason": reason} if kind in ("error", "lost") else None
+        if kind == "done" and reason:
+            data = {MISSED: reason}
         self._events.append(Event(f"{kind}.command.{pending.id}", data, self._clock()))
 
     def _chase(self) -> None:

@@ -41,6 +41,7 @@ class Motors:
         self._allowed = self._effort
         self.goal: JointVector = world.angles.copy()
         self.command: JointVector = self.goal.copy()
+        self._short: JointVector = np.zeros(len(self.names))
         self._sway = np.zeros(len(self.names))
         self._held: dict[int, float] = {}
         self._sent = deque([self.command], maxlen=LATENCY + 1 if lacking.latency else 1)
@@ -76,6 +77,19 @@ class Motors:
         """The goals of these joints."""
         return {name: float(self.goal[self.index[name]]) for name in names}
 
+    def unit(self, name: str) -> str:
+        """`rad ` for a joint that turns, empty for a hand."""
+        return "" if name in self._world.body.hands else "rad "
+
+    def lag(self, name: str) -> float:
+        """How far what is sent to that joint's servo lay from where it was wanted, in the last period [rad]."""
+        return self._short.item(self.index[name])
+
+    def held_back(self, name: str) -> float:
+        """How far that joint is from where its servo was sent [rad]: something is in its way, or it is too weak."""
+        i = self.index[name]
+        return abs(self._world.angles.item(i) - self.command.item(i))
+
     def sway(self, offsets: Mapping[str, float]) -> None:
         """Add that [rad] to the goals of these joints in the next period, and in that alone."""
         for name, angle in offsets.items():
@@ -105,6 +119,7 @@ class Motors:
         for joint, angle in self._held.items():
             wanted[joint] = angle
         self.command = self.envelope.step(self.command, wanted + trim, dt)
+        self._short = np.abs(wanted + trim - self.command)
         self._sway[:] = 0.0
         self._held = {}
         self._sent.append(self.command)

@@ -18,6 +18,9 @@ APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
 
 _START_POSTURE_TOLERANCE = 0.05
 
+LATE, BLOCKED = 0.05, 0.2
+"""How far from a key a joint may be sent, and how far from there it may be at a motion's end [rad; hands 0..1]."""
+
 
 class MotionPlayback:
     """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
@@ -43,6 +46,15 @@ class MotionPlayback:
         self._trajectory: Trajectory | None = None
         self._approach = JointTransition(motors, home, now, APPROACH_TIME) if self._away() else None
         self._recovery: JointTransition | None = None
+        self._keys = sorted((key.time, joint) for joint, keys in motion.tracks.items() for key in keys)
+        self._missed: dict[str, tuple[float, float]] = {}
+
+    @property
+    def missed(self) -> str:
+        """Which joints did not come to their keys, by how much at worst and when; empty if all did."""
+        far = sorted(self._missed.items(), key=lambda item: -item[1][0])
+        parts = (f"`{joint}` was {by:.2g} {self._motors.unit(joint)}away at {at:.2f} s" for joint, (by, at) in far)
+        return f"in `{self._motion.name}` a joint missed its goal: {', '.join(parts)}" if far else ""
 
     @property
     def reached(self) -> float:
@@ -79,11 +91,24 @@ class MotionPlayback:
         while self._cues and self._cues[0].time <= t:
             self._cue(self._cues.pop(0))
         self._prompter.advance(t, self._now)
+        self._note_keys(t)
         self._motors.aim(trajectory.sample(t))
         if t < self._motion.duration:
             return False
+        for joint in self._motion.tracks:
+            self._note(joint, self._motors.held_back(joint), BLOCKED, t)
         self._lights.hold(())
         return True
+
+    def _note_keys(self, t: float) -> None:
+        """Note the joints whose keys have passed, and that are not there yet: they can't move faster."""
+        while self._keys and self._keys[0][0] <= t:
+            _, joint = self._keys.pop(0)
+            self._note(joint, self._motors.lag(joint), LATE, t)
+
+    def _note(self, joint: str, away: float, most: float, t: float) -> None:
+        if away > max(most, self._missed.get(joint, (0.0, 0.0))[0]):
+            self._missed[joint] = away, t
 
     def _cue(self, cue: Cue) -> None:
         if cue.kind == "leds" and isinstance(cue.value, Mapping):

@@ -1,0 +1,45 @@
+"""Troubles of a run: whatever became of it since, it did not go well."""
+
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.nesting import flattened_steps
+from lumen.language.events import FALLEN, HELD, MISSED, Event
+from lumen.language.machines import MachineDefinition
+
+TroubleKind = Literal["fall", "dropped", "do", "joint"]
+
+_ENDED = {"error.do.": "`do`", "error.invoke.": "`invoke`"}
+"""What an error ended, by how its name begins."""
+
+
+class Trouble(NamedTuple):
+    """A fall, a dropped event or timer, an error that ended a `do`, or a joint that missed its goal; in words."""
+
+    kind: TroubleKind
+    what: str
+
+
+def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[Trouble]:
+    """Yield the errors that ended a `do` or an `invoke` in this step, invoked behaviours included.
+
+    A command that is refused since a person keeps the robot still is what that person wants.
+    """
+    if not (step.raised or step.invoked):
+        return
+    for prefix, _, part in flattened_steps(machine, step):
+        for error in part.raised:
+            for begin, ended in _ENDED.items():
+                reason = error.data.get("reason") if isinstance(error.data, dict) else None
+                if error.name.startswith(begin) and not str(reason).endswith(HELD):
+                    name = prefix + error.name.removeprefix(begin)
+                    yield Trouble("do", f"an error ended the {ended} of `{name}`" + (f": {reason}" if reason else ""))
+
+
+def trouble_of_answer(event: Event) -> Trouble | None:
+    """Return the trouble that a robot's answer, or what it noticed, reports."""
+    if event.name == FALLEN:
+        return Trouble("fall", "the robot fell")
+    missed = event.data.get(MISSED) if isinstance(event.data, dict) else None
+    return Trouble("joint", str(missed)) if missed else None

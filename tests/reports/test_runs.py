@@ -1,0 +1,216 @@
+"""A run never ends with "All well" after a fall, a dropped event, an error of a `do`, or a joint that is not there."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.rehearsal import RehearsalTrace, rehearse
+from lumen.app.setup import set_up
+from lumen.buses.memory import MemoryBus
+from lumen.cli.main import main
+from lumen.console.entry_words import OTHERS, text_of
+from lumen.language.events import HELD
+from lumen.ports import Message
+from lumen.robots.command_reports import CommandRecord, CommandReports
+from lumen.runtime.trace_publisher import TracePublisher
+from lumen.runtime.trace_subscriber import TraceSubscriber
+from lumen.runtime.troubles import Trouble
+from tests import exhibits
+from tests.tables import for_each
+from tests.waiting import HANG, until
+
+INPUTS = Path(__file__).parent / "inputs" / "runs"
+TOUCH = "title: A hand\nsteps:\n" + "  - touch: MiddleTactil\n  - wait: 1s\n" * 5
+WAIT = "title: Nobody\nsteps:\n  - wait: 20s\n"
+QUICK = "initial: over\nstates: {over: {type: final}}\n"
+FAILS = """\
+context: {n: 0}
+initial: a
+states:
+  a: {do: {say: "{{ 1 / context.n }}"}, onDone: b, onError: b}
+  b: {on: {touched: a}}
+  c: {on: {touched: a}}
+"""
+HASTY = "keyframes: [{at: 450ms, joints: {HeadYaw: 1.9}}]\n"
+"""There is time enough from where the head is in `Stand`."""
+HASTY_PLAYED = """\
+initial: a
+states:
+  a: {do: [{look: {yaw: -1.9, pitch: 0}}, {play: hasty}], onDone: b}
+  b: {on: {touched: a}}
+"""
+FAILING_TIMER = """\
+context: {n: 0}
+initial: a
+states:
+  a: {after: {5s: b}}
+  b: {always: {guard: context.n == 0, target: c}}
+  c: {always: {guard: context.n == 0, target: b}}
+"""
+
+
+def exhibition(folder: Path, behavior: str, story: str, **files: str) -> str:
+    """A minimal project with this behaviour, this story as `visitor`, and further files of `behaviors/` and motions."""
+    root = folder / "show"
+    assert main(["new", str(root), "--minimal"]) == 0
+    (root / "behaviors" / "hello.yaml").write_text(behavior, "utf-8")
+    (root / "behaviors" / "stories" / "visitor.yaml").write_text(story, "utf-8")
+    for name, text in files.items():
+        where = root / ("motions" if text.startswith("keyframes:") else "behaviors")
+        where.mkdir(exist_ok=True)
+        (where / f"{name}.yaml").write_text(text, "utf-8")
+    return str(root)
+
+
+def read(name: str) -> str:
+    return (INPUTS / name).read_text("utf-8")
+
+
+def run(root: str, *arguments: str, robot: str = "recording") -> int:
+    return main(["run", root, "--speed", "max", "--robot", robot, *arguments])
+
+
+@for_each("name", ["endless-guarded.yaml", "endless-invoke.yaml"])
+def test_a_story_in_which_an_event_is_dropped_fails(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = exhibition(tmp_path, read(name), TOUCH, quick=QUICK)
+    assert run(root, "--story", "visitor") == 1
+    told = capsys.readouterr().out
+    assert "The story failed" in told
+    assert "the event `touched` is dropped: `hello` never comes to rest" in told
+    assert rehearse(lumen.load(root), lumen.load(root).stories["visitor"]).failed
+
+
+def test_a_run_in_which_a_timer_is_dropped_ends_with_trouble(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = exhibition(tmp_path, FAILING_TIMER, WAIT)
+    assert run(root, "--for", "10s", "--format", "json") == 1
+    verdict = json.loads(next(line for line in capsys.readouterr().out.splitlines() if line.startswith("{")))
+    assert verdict["ended"] == "troubled"
+    assert verdict["failure"].startswith("the timer `after.5s.")
+    assert run(root, "--story", "visitor") == 1
+    assert "the timer `after.5s." in capsys.readouterr().out
+
+
+@for_each(
+    ("behavior", "story", "code"),
+    [
+        (FAILS, "steps: [{wait: 10s}]", 1),
+        (FAILS, "steps: [{expect: {state: b}}]", 1),  # `b` follows a `do` that went well, too
+        (FAILS.replace("onError: b", "onError: c"), "steps: [{expect: {state: c}}]", 0),
+        (FAILS.replace("onError: b", "onError: c"), "steps: [{wait: 10s}]", 1),
+        (FAILS.replace(", onError: b", ""), "steps: [{wait: 10s}]", 1),
+        (FAILS, "robot: {say: fails}\nsteps: [{expect: {state: b}}]", 0),
+    ],
+)
+def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
+    behavior: str, story: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = exhibition(tmp_path, behavior, f"title: Broken\n{story}\n")
+    assert run(root, "--story", "visitor") == code
+    told = capsys.readouterr().out
+    assert ("All well" in told) == (code == 0)
+    assert ("an error ended the `do` of `a`: " in told) == (code == 1)
+    project = lumen.load(root)
+    assert (rehearse(project, project.stories["visitor"]).failed is not None) == (code == 1)
+
+
+def test_an_error_in_an_invoked_behaviour_is_named_with_its_way(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    behavior = "initial: m\nstates: {m: {invoke: {behavior: inner, id: quiz}}}\n"
+    root = exhibition(tmp_path, behavior, WAIT, inner=FAILS)
+    assert run(root, "--story", "visitor") == 1
+    assert "an error ended the `do` of `quiz/a`: " in capsys.readouterr().out
+
+
+@pytest.mark.physics
+def test_a_fall_is_no_all_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root = exhibition(tmp_path, read("walk-over-the-edge.yaml"), WAIT)
+    assert run(root, "--story", "visitor", robot="simulation") == 1
+    assert "expected the robot on its feet, but it fell" in capsys.readouterr().out
+    assert run(root, "--for", "15s", robot="simulation") == 1
+    told = capsys.readouterr().out
+    assert "Ended with trouble: 0:15" in told
+    assert "  the robot fell\n  an error ended the `do` of `a`: the robot fell\n" in told
+    assert "All well" not in told
+
+
+@pytest.mark.physics
+def test_a_joint_that_missed_its_goal_is_no_all_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root = exhibition(tmp_path, HASTY_PLAYED, "title: Haste\nsteps: [{expect: {state: b}}]\n", hasty=HASTY)
+    assert run(root, "--story", "visitor", robot="simulation") == 1
+    assert "in `hasty` a joint missed its goal: `HeadYaw` was " in capsys.readouterr().out
+    too_fast = tmp_path / "nod.motion"
+    too_fast.write_text("#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,Pose,2.0\n00:00:300,Pose,-2.0\n", "utf-8")
+    assert main(["play", str(too_fast), "--project", root]) == 1
+    assert "in `nod` a joint missed its goal: `HeadYaw` was " in capsys.readouterr().err
+    assert main(["play", "wave", "--project", root]) == 0
+
+
+def test_what_a_robot_elsewhere_missed_comes_with_its_report() -> None:
+    told: list[dict[str, Any]] = []
+    reports = CommandReports(told.append, lambda _message, _body: None)
+    reports.accept(CommandRecord(Message("", None), "b.c1", at="m1"))
+    reports.answered("done", "m1", "`HeadYaw` was 1.7 rad away")
+    assert told[-1] == {"id": "b.c1", "state": "finished", "method": "", "reason": "`HeadYaw` was 1.7 rad away"}
+
+
+def test_a_story_in_a_process_of_its_own_hears_of_troubles() -> None:
+    bus, project = MemoryBus(), exhibits.project()
+    heard: list[Trouble] = []
+    subscriber = TraceSubscriber(project, bus, lambda _event: None)
+    subscriber.watchers.append(SimpleNamespace(troubled=heard.append))
+    trouble = Trouble("dropped", "the event `touched` is dropped: it never comes to rest")
+    TracePublisher(bus, lambda: project, lambda: 1.0).troubled(trouble)
+
+    def told() -> bool:
+        subscriber.tick(1.0)
+        return bool(heard)
+
+    until(told, HANG)
+    assert heard == [trouble]
+
+
+WAKES = "initial: a\nentry: {wake: true}\nstates: {a: {do: [{posture: Stand}], on: {stop: b}}, b: {}}\n"
+
+
+def test_what_a_stopped_robot_refuses_is_told_as_refused(tmp_path: Path) -> None:
+    """After a stop by a person and a start anew, nothing is told as performed that is not."""
+    project = lumen.load(exhibition(tmp_path, WAKES, WAIT))
+    setup = set_up("recording", project, "max")
+    trace = RehearsalTrace(setup.clock.now, lambda: project.machine, None)
+    show = Exhibition(project, setup, narrator=trace)
+    told: list[dict[str, Any]] = []
+    show.node.bus.subscribe(project.key_of("state"), lambda message: told.append(message.body))
+    with show:
+        show.node.robot.server.hold.stop("Ada")
+        show.start()
+        for _ in range(5):
+            show.tick()
+        lines = [(who, text) for _, who, text in trace.lines]
+        reason = "Ada stopped the robot: hold its head, or say `lumen resume`"
+        assert ("refused", f"wake: {reason}") in lines
+        assert ("refused", f"take the posture Stand: {reason}") in lines
+        assert not [text for who, text in lines if who == "robot"]
+        assert ("state", "b  (stop)") in lines
+        assert trace.troubles == []
+        chain = show.why("c1")["chain"]
+        assert chain[0]["text"] == f"wakes (refused: {reason})"
+        until(lambda: [body for body in told if "b" in body.get("entered", ())], HANG)
+    assert [body["refused"]["verb"] for body in told if "refused" in body] == ["wake", "posture"]
+    assert not [body for body in told if "command" in body]
+
+
+def test_the_console_tells_a_refusal_as_one() -> None:
+    entry = {"heard": "error.command.c1", "data": {"reason": f"Ada stopped the robot: {HELD}"}}
+    assert text_of(entry) == f"refused: Ada stopped the robot: {HELD}"
+    assert text_of(entry, OTHERS["id"]).startswith("ditolak: Ada")
+    assert text_of({**entry, "data": {"reason": "the robot fell"}}) == "error.command.c1: the robot fell"
