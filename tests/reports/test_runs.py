@@ -209,6 +209,18 @@ def test_what_a_stopped_robot_refuses_is_told_as_refused(tmp_path: Path) -> None
     assert not [body for body in told if "command" in body]
 
 
+def test_what_a_person_ends_is_no_trouble(tmp_path: Path) -> None:
+    project = lumen.load(exhibition(tmp_path, WAKES, WAIT))
+    show = Exhibition(project, set_up("recording", project, "max"))
+    with show:
+        show.start()
+        show.tick()
+        show.stop()
+        show.run(1.0)
+        assert "b" in show.configuration
+        assert show.node.troubles == []
+
+
 def test_the_console_tells_a_refusal_as_one() -> None:
     entry = {"heard": "error.command.c1", "data": {"reason": f"Ada stopped the robot: {HELD}"}}
     assert text_of(entry) == f"refused: Ada stopped the robot: {HELD}"

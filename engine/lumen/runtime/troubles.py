@@ -24,7 +24,7 @@ class Trouble(NamedTuple):
 def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[Trouble]:
     """Yield the errors that ended a `do` or an `invoke` in this step, invoked behaviours included.
 
-    A command that is refused since a person keeps the robot still is what that person wants.
+    What was cancelled, or refused since a person keeps the robot still, ended as somebody wanted.
     """
     if not (step.raised or step.invoked):
         return
@@ -32,9 +32,13 @@ def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[Trouble
         for error in part.raised:
             for begin, ended in _ENDED.items():
                 reason = error.data.get("reason") if isinstance(error.data, dict) else None
-                if error.name.startswith(begin) and not str(reason).endswith(HELD):
+                if error.name.startswith(begin) and not _wanted(str(reason)):
                     name = prefix + error.name.removeprefix(begin)
                     yield Trouble("do", f"an error ended the {ended} of `{name}`" + (f": {reason}" if reason else ""))
+
+
+def _wanted(reason: str) -> bool:
+    return reason == "cancelled" or reason.endswith(HELD)
 
 
 def trouble_of_answer(event: Event) -> Trouble | None:

@@ -69,7 +69,7 @@ class Chain:
 
     def command(self, number: int, command: Command) -> LinkWalk:
         deed = self.history.deed(number, command)
-        text = of_command(command) + self._failure(number, _id(command))
+        text = of_command(command) + self._refusal(number, _id(command))
         if deed is None:
             yield self._link(number, "command", text, id=_id(command))
             yield partial(self.trigger, number, "")
@@ -248,13 +248,12 @@ class Chain:
         one = self.history.steps[number]
         return Link(kind, text, one.step.snapshot.epoch + one.at, place, id, values or {}, number)
 
-    def _failure(self, number: int, id: str) -> str:
-        """How a command ended that was not performed, as the end of a text; empty if it was, or is under way."""
+    def _refusal(self, number: int, id: str) -> str:
+        """Why a command was refused, as the end of a text; empty if the robot began it."""
         for one in self.history.steps[number + 1 :] if id else ():
             answer = answer_of(one.step.event) if one.step.event and not one.step.event.sendid else None
             if answer and answer.id == id:
-                refused = "refused" if answer.reason.endswith(HELD) else "failed"
-                return f" ({refused}: {answer.reason})" if answer.kind == "error" else ""
+                return f" (refused: {answer.reason})" if answer.reason.endswith(HELD) else ""
         return ""
 
     def _place(self, number: int, machine: MachineDefinition, where: Any) -> Place | None:
