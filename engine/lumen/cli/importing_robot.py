@@ -1,5 +1,6 @@
 """`lumen import` of a robot: URDF or MJCF as a body file of ours, and URDF as the MJCF that goes with it."""
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -30,7 +31,9 @@ def robot_body(
     if output is not None and urdf:
         beside, told = _converted(path, content, output, title)
         found += told
-    elif output is not None and path.resolve() != (output.parent / mjcf).resolve():
+    if not urdf:
+        found += _refused(path)
+    if output is not None and not urdf and path.resolve() != (output.parent / mjcf).resolve():
         message = f"the body names {mjcf} beside it, and the model is {path}"
         hint = f"put it there as {output.parent / mjcf}, with the files that it names"
         found.append(Diagnostic(LOST, message, Place(str(path)), hint, Severity.WARNING))
@@ -74,6 +77,19 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
     text = robot.mjcf.replace("<compiler ", f'<compiler meshdir="{title}" ', 1) if robot.meshes else robot.mjcf
     beside = {folder / f"{title}.xml": text.encode()}
     return beside | {folder / title / name: mesh for name, mesh in robot.meshes.items()}, lost
+
+
+def _refused(path: Path) -> list[Diagnostic]:
+    """What MuJoCo has against an MJCF, which stays as it is; nothing if MuJoCo is not installed."""
+    try:
+        from lumen.robots.simulation import installed  # noqa: F401
+        from lumen.robots.simulation.urdf_conversion import mjcf_fault
+    except MissingExtraError:
+        return []
+    fault = mjcf_fault(path)
+    line = re.search(r"\bline (\d+)", fault)
+    place = Place(str(path), int(line.group(1)) if line else 1, 1)
+    return [Diagnostic(LOST, f"MuJoCo can't build it: {fault}", place, "correct the model")] if fault else []
 
 
 def _without(mesh: XmlElement, reason: str) -> Diagnostic:

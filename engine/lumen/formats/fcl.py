@@ -43,10 +43,13 @@ KNOWN: FormatTable = {
     "VAR_OUTPUT": _DECLARED,
     "FUZZIFY": Known(frozenset(("TERM", "RANGE"))),
     "DEFUZZIFY": Known(frozenset(("TERM", "RANGE", "METHOD", "DEFAULT", "ACCU"))),
-    "RULEBLOCK": Known(frozenset(("RULE", "AND", "OR", "ACT", "ACCU"))),
+    "RULEBLOCK": Known(
+        frozenset(("RULE", "AND", "OR", "ACT", "ACCU")),
+        meaningless={"RULE name": "rules count in their order", "RULEBLOCK name": "of a single block"},
+    ),
     "FUNCTION_BLOCK": Known(
         frozenset(("VAR_INPUT", "VAR_OUTPUT", "FUZZIFY", "DEFUZZIFY", "RULEBLOCK")),
-        meaningless={"name": "the file's name is the controller's"},
+        meaningless={"FUNCTION_BLOCK name": "the file's name is the controller's"},
     ),
 }
 """What of a function block is carried over, by the section."""
@@ -189,6 +192,9 @@ class _FclReader:
                 self.findings.lost(self.at(statement), "this can't be read", "a declaration reads: a, b : REAL;")
                 continue
             names = [name.strip() for name in match["names"].split(",")]
+            for twice in {name for _, name, _ in self.declarations}.intersection(names):
+                message = f"`{twice}` is declared twice: the variables of both are read as one"
+                self.findings.changed(self.at(statement), message, "give the other one a name of its own")
             self.declarations += [(section.kind, name, statement) for name in names]
             if match["range"]:
                 self.ranges.update((name, (match["range"], statement)) for name in names)
@@ -216,12 +222,15 @@ class _FclReader:
         """What a rule block says of AND, OR and ACT; what it says of ACCU is kept for the outputs."""
         found: dict[str, Any] = {}
         partners: dict[str, str] = {}
-        accu = ""
+        accu, seen = "", set[str]()
         for statement in section.statements:
             match = _SETTING.fullmatch(statement.text)
             key, word = (match[1].upper(), match[2].lower()) if match else ("", "")
             if key not in _OPERATORS:
                 continue
+            if key in seen:
+                self.findings.lost(self.at(statement), f"`{key}` comes twice: the last one counts")
+            seen.add(key)
             side, other = ("conjunction", "disjunction") if key == "AND" else ("disjunction", "conjunction")
             if key in ("AND", "OR") and (pair := (ANDS if key == "AND" else ORS).get(word)):
                 if side in partners and pair[0] != partners[side]:

@@ -82,7 +82,10 @@ KNOWN: FormatTable = {
     ),
     "[Input]": _VARIABLE,
     "[Output]": _VARIABLE,
-    "[Rules]": Known(read=frozenset(("rule", "hedge", "not", "weight"))),
+    "[Rules]": Known(
+        read=frozenset(("rule", "hedge", "not", "weight", "AND or OR")),
+        meaningless={"AND or OR of a single condition": "nothing is joined"},
+    ),
 }
 """What of a system of MATLAB or Octave is carried over, by the section; `MF…` stands for `MF1`, `MF2`, …"""
 
@@ -166,6 +169,8 @@ class _FisReader:
         for side in self.order:
             for section in self.numbered([section for section in sections if section.kind == side]):
                 self.variable(section, said)
+        for twice in [section for section in sections if section.kind == "rules"][1:]:
+            self.findings.changed(twice.place, "a second [Rules]: its rules follow those of the first")
         lines = [line for section in sections if section.kind == "rules" for line in section.lines]
         rules = [self.rule(line) for line in lines]
         if heads:

@@ -26,6 +26,7 @@ KNOWN: FormatTable = {
     "RuleBlock": Known(
         read=frozenset(("enabled", "conjunction", "disjunction", "implication", "activation", "rule")),
         lost={"description": "write a comment"},
+        meaningless={"RuleBlock": "the name of a single block, or of one without rules"},
     ),
 }
 """What of an engine is carried over, by the part."""

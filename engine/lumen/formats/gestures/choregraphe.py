@@ -45,6 +45,12 @@ KNOWN: FormatTable = {
         read=frozenset(("enable", "fps", "start_frame", "end_frame", "<ActuatorList>", "<BehaviorLayer>")),
         meaningless={"size": "how long the ruler is drawn: a motion ends at its last key"},
     ),
+    "<Timeline> without curves": Known(meaningless={"enable": "nothing of it is played"}),
+    "<ActuatorCurve> without keys": Known(meaningless={"…": "a muted curve without a key moves nothing"}),
+    "<Diagram> without boxes": Known(meaningless={"…": "nothing begins there"}),
+    "<Tangent> before a straight way": Known(meaningless={"…": "no curve leads to the next key"}),
+    "<script> without text": Known(meaningless={"…": "it does nothing"}),
+    "<script>": Known(frozenset(("<content>",)), meaningless={"language": "a script that does something is listed"}),
     "<BehaviorLayer>": Known(frozenset(("<BehaviorKeyframe>",)), meaningless={"name": _DRAWING}),
     "<BehaviorKeyframe>": Known(
         frozenset(("<Diagram>",)), meaningless={"name": _DRAWING, "index": "when boxes begin that are left out"}

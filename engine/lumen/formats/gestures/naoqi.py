@@ -357,8 +357,8 @@ class _Reading:
                 self.findings.lost(self._place(node), f"a key of `{joint}` has no time or no angle")
                 continue
             kind, into = _handle(handles[0]) if handles else (LINEAR, (0.0, 0.0))
-            out = _handle(handles[1])[1] if len(handles) > 1 else (0.0, 0.0)
-            if kind not in (BEZIER, LINEAR):
+            left, out = _handle(handles[1]) if len(handles) > 1 else (kind, (0.0, 0.0))
+            if not {kind, left} <= {BEZIER, LINEAR}:
                 self.findings.changed(
                     self._place(node), f"`{joint}` comes to {time:g} s in a way that is not known here"
                 )

@@ -73,8 +73,12 @@ CALLS = Known(
         **dict.fromkeys(("killAll", "killMove", "waitUntilMoveIsFinished", "setFallManagerEnabled"), _STILL),
     },
 )  # fmt: skip
-KNOWN: FormatTable = {"call": CALLS}
-"""What of a script is carried over: calls by name, whoever is called; `get…` stands for all that begin so."""
+KNOWN: FormatTable = {
+    "call": CALLS,
+    "handle": Known(frozenset(("type", "time", "angle")), meaningless={"after the last key": "no movement follows"}),
+}
+"""What of a script is carried over: calls by name, whoever is called (`get…` stands for all that begin so), and the
+handles of a key, `[3, -0.1, 0]`."""
 
 
 def is_reading(name: str) -> bool:

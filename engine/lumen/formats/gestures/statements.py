@@ -59,7 +59,10 @@ def _within(around: Branch, branch: Branch) -> Branch:
 def _is_main(test: ast.expr) -> bool:
     """Whether an `if` is the one around what a file does when it is run, or no question at all."""
     match test:
-        case ast.Compare(left=ast.Name(id="__name__")) | ast.Constant(value=True | 1):
+        case (
+            ast.Compare(left=ast.Name(id="__name__"), ops=[ast.Eq()], comparators=[ast.Constant(value="__main__")])
+            | ast.Constant(value=True | 1)
+        ):
             return True
     return False
 

@@ -43,6 +43,7 @@ KNOWN: FormatTable = {
         lost={"<safety_controller>": "write its narrower limits into `<limit>`"},
         meaningless={"<calibration>": "joints of ours know their zero"},
     ),
+    "<joint> that is fixed": Known(meaningless={"name": "its two links are one body", "xyz": "nothing turns"}),
     "<origin>": Known(frozenset(("xyz", "rpy"))),
     "<parent>": _LINK,
     "<child>": _LINK,

@@ -164,9 +164,21 @@ ALTERNATIVES: Mapping[str, tuple[tuple[str, ...], ...]] = {
 
 REQUIRED: Mapping[str, str] = {"data": "id", "param": "name"}
 
-TABLE: FormatTable = {
-    **{f"attributes of `<{tag}>`": known for tag, known in ATTRIBUTES.items()},
-    **{f"elements in `<{tag}>`": known for tag, known in ELEMENTS.items()},
+
+def _place(tag: str) -> Known:
+    """The attributes of an element, and in angle brackets the elements in it."""
+    own, within = ATTRIBUTES.get(tag, Known()), ELEMENTS.get(tag, Known())
+    return Known(
+        own.read | {f"<{name}>" for name in within.read},
+        {**own.lost, **{f"<{name}>": why for name, why in within.lost.items()}},
+        own.meaningless,
+    )
+
+
+KNOWN: FormatTable = {
+    **{f"<{tag}>": _place(tag) for tag in ATTRIBUTES},
+    "timer of an `after`": Known(meaningless={"…": "to begin or to end it twice is to do so once"}),
+    "any element": Known(meaningless={f"<{name}>": why for name, why in MEANINGLESS_ELEMENTS.items()}),
 }
 
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from lumen.formats.behavior_data import TransitionData, single
 from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader
+from lumen.formats.xstate.constants import constant_data
 from lumen.formats.xstate.known import losses
 from lumen.formats.xstate.state_tree import XStateNode
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
@@ -34,7 +35,7 @@ class XStateInvokeReader:
         for number, where, row in self._rows(state):
             for key, message, hint in losses("invoke", row):
                 self.parts.lost((*where, key), message, hint)
-            if invoked := self._invoked(own, row):
+            if invoked := self._invoked(own, where, row):
                 invokes.append({**invoked, **self._ends(state, where, row)})
             elif (steps := self._steps(row)) is not None and "do" not in data:
                 data["do"] = steps
@@ -76,14 +77,19 @@ class XStateInvokeReader:
         given = row.get("input")
         return self.parts.do(given.get("steps")) if row.get("src") == DO_ACTOR and isinstance(given, dict) else None
 
-    def _invoked(self, own: Mapping[str, Any], row: Mapping[str, Any]) -> dict[str, Any] | None:
+    def _invoked(self, own: Mapping[str, Any], where: NodePath, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """The behaviour that Lumen wrote as an actor; None where this is another one."""
         inputs, id, behavior = own.get("invoke"), row.get("id"), row.get("src")
         if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
             return None
         data = {"behavior": behavior} | ({"id": id} if id != behavior else {})
         data |= {"input": inputs[id]} if inputs[id] else {}
-        return data if self.parts.fits({"invoke": data}) else None
+        if not self.parts.fits({"invoke": data}):
+            return None
+        if row.get("input", {}) != constant_data(inputs[id] or {}):
+            message = "`input` is not what `meta.lumen.invoke` says, which counts"
+            self.parts.changed((*where, "input") if "input" in row else where, message, "change both")
+        return data
 
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
         """Each item of `invoke` with its number and its place; version 4 allows a name alone."""

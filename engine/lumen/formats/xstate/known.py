@@ -20,7 +20,7 @@ _OLD = {
     "target": "only a state of `type: history` has it",
 }
 
-TABLE: FormatTable = {
+KNOWN: FormatTable = {
     "machine": Known(
         _OF_STATE | {"context", "key"},
         _OLD
@@ -98,7 +98,7 @@ _OBJECTS_OF_AUTHORS = frozenset(("context", "meta", "params", "input", "data", "
 
 def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
     """Of the keys of such an object each that is not carried over: the key, the message, and a hint."""
-    known, whose = TABLE[place], f"of {'an' if place[0] in 'aeix' else 'a'} {place}"
+    known, whose = KNOWN[place], f"of {'an' if place[0] in 'aeix' else 'a'} {place}"
     for name, hint in known.losses(names):
         if name in known.lost:
             yield name, f"`{name}` {whose}: {hint}", ""

@@ -7,6 +7,7 @@ from lumen.formats.behavior_data import ActionData, TransitionData, quoted, sing
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.foreign_states import passing_key
 from lumen.formats.xstate.action_reader import XStateActionReader
+from lumen.formats.xstate.constants import constant_data
 from lumen.formats.xstate.descriptors import bare, is_descriptor, longest_first
 from lumen.formats.xstate.invoke_reader import XStateInvokeReader
 from lumen.formats.xstate.json_source import parse_json
@@ -206,6 +207,9 @@ class _XStateReader:
             return {}
         own = _lumen(state)
         if "output" in own and self.parts.fits({"type": "final", "output": own["output"]}):
+            if state.source[key] != constant_data(own["output"]):
+                message = f"`{key}` is not what `meta.lumen.output` says, which counts"
+                self.parts.changed((*state.where, key), message, "change both")
             return {"output": own["output"]}
         return {"output": quoted(state.source[key])}
 

@@ -1,7 +1,7 @@
 """A machine as an XState v5 configuration: JSON for `createMachine`."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from lumen.formats.behavior_data import (
@@ -15,11 +15,10 @@ from lumen.formats.behavior_data import (
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.heard_rows import LOST_ELSEWHERE, as_guard, key_of
 from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD, HEARS_GUARD
+from lumen.formats.xstate.constants import constant
 from lumen.formats.xstate.descriptors import EventDescriptors
-from lumen.interpreters.expressions import ExpressionError, parse_expression
 from lumen.interpreters.expressions.readings import as_written
-from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import ComputedValue, Expression, PlacedAction, Template
+from lumen.language.actions import Expression, PlacedAction, Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Answer, Hears, Invoke, MachineDefinition, State, StateKind, Transition
 
@@ -126,7 +125,7 @@ class _XStateWriter:
         if meta := dict(self._meta(state)):
             data["meta"] = {"lumen": meta}
         if state.output is not None:
-            data["output"] = _constant(state.output)
+            data["output"] = constant(state.output)
         return data
 
     def _rows(self, state: State) -> dict[str, list[Any]]:
@@ -166,7 +165,7 @@ class _XStateWriter:
         self.report.changed(f"`invoke` of `{invoke.behavior}` names an actor", invoke.where, hint)
         data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}
         if invoke.input:
-            data["input"] = {key: _constant(value) for key, value in invoke.input.items()}
+            data["input"] = {key: constant(value) for key, value in invoke.input.items()}
         for key, kind in (("onDone", "done"), ("onError", "error")):
             if found := rows.pop(f"!{kind}.invoke.{invoke.id}", []):
                 data[key] = found
@@ -261,19 +260,3 @@ class _XStateWriter:
 
 def _answer(row: Answer) -> dict[str, Any]:
     return {"phrases": plain_phrases(row.phrases), "value": row.value}
-
-
-def _constant(value: ComputedValue) -> Any:
-    """A value with the texts in it that are written out; expressions stay what they are."""
-    match value:
-        case Expression(source):
-            try:
-                tree = parse_expression(source)
-            except ExpressionError:
-                return source
-            return tree.value if isinstance(tree, Literal) else as_written(source)
-        case tuple():
-            return [_constant(item) for item in value]
-        case Mapping():
-            return {key: _constant(item) for key, item in value.items()}
-    return value

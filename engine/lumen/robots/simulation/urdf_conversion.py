@@ -56,6 +56,15 @@ def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
     return ConvertedRobot(text, meshes, lost)
 
 
+def mjcf_fault(path: Path) -> str:
+    """Why MuJoCo can't build the robot of an MJCF file; empty if it can."""
+    try:
+        mujoco.MjSpec.from_file(str(path)).compile()
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:
+        return " ".join(str(error).split())[:200]
+    return ""
+
+
 def _sort_geoms(spec: mujoco.MjSpec) -> None:
     """Let shapes that are seen and shapes that touch be in the groups of ours; what stands in a hall stops these."""
     for body in spec.bodies:

@@ -1,0 +1,41 @@
+"""Computed values as other tools of XState see them: texts that are written out are texts, expressions stay."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from lumen.interpreters.expressions import ExpressionError, parse_expression
+from lumen.interpreters.expressions.readings import as_written
+from lumen.interpreters.expressions.tree import Literal
+from lumen.language.actions import ComputedValue, Expression
+
+
+def constant(value: ComputedValue) -> Any:
+    """A value with the texts in it that are written out; expressions stay what they are."""
+    match value:
+        case Expression(source):
+            return _text(source)
+        case tuple():
+            return [constant(item) for item in value]
+        case Mapping():
+            return {key: constant(item) for key, item in value.items()}
+    return value
+
+
+def constant_data(data: Any) -> Any:
+    """The same of a value as a behaviour file has it, in which each text is an expression."""
+    match data:
+        case str():
+            return _text(data)
+        case Mapping():
+            return {key: constant_data(item) for key, item in data.items()}
+        case Sequence():
+            return [constant_data(item) for item in data]
+    return data
+
+
+def _text(source: str) -> Any:
+    try:
+        tree = parse_expression(source)
+    except ExpressionError:
+        return source
+    return tree.value if isinstance(tree, Literal) else as_written(source)

@@ -1,0 +1,23 @@
+"""The tables of what each format's importer reads, lists, or passes over."""
+
+from scripts.format_tables import PAGE, written
+
+from lumen.formats.tables import TABLES
+from tests.tables import for_each
+
+
+def test_the_docs_have_the_tables() -> None:
+    page = PAGE.read_text("utf-8")
+    assert page == written(page), "run `python scripts/format_tables.py`"
+
+
+@for_each("format", TABLES)
+def test_a_name_is_either_read_or_listed_or_without_meaning(format: str) -> None:
+    for place, known in TABLES[format].items():
+        parts = [set(known.read), set(known.lost), set(known.meaningless)]
+        assert sum(map(len, parts)) == len(set().union(*parts)), place
+
+
+@for_each("format", TABLES)
+def test_each_reason_is_given(format: str) -> None:
+    assert all(why for known in TABLES[format].values() for why in (*known.lost.values(), *known.meaningless.values()))
