@@ -2,6 +2,9 @@
 
 Attack N is the same wherever and whenever it is made: `--only N` makes it alone. After each batch an exhibition has to
 tick, to obey a stop, to speak and to answer who runs it; its memory, threads and handles may not grow.
+
+`python -m tests.attack --imports 2000` changes files of other tools, a name or a value at a time, and imports them: the
+result or the findings have to differ, unless the table of the format says that what was changed has no meaning.
 """
 
 import argparse
@@ -10,9 +13,11 @@ import os
 import platform
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from tests.attack.running import Survey, grown, survey
+from tests.attack.silence import attack_imports, show
 from tests.rabbitmq import RabbitMQ
 
 
@@ -50,6 +55,20 @@ def report(numbers: Iterable[int], url: str) -> list[str]:
     return troubles
 
 
+def report_imports(numbers: Iterable[int], folders: Sequence[Path]) -> list[str]:
+    """Print what came of those changes; what was lost silently."""
+    logging.getLogger("lumen").setLevel(logging.CRITICAL)
+    began = time.process_time()
+    found = attack_imports(numbers, folders)
+    for ending, count in sorted(found.tried.items()):
+        print(f".{ending:<7}{count:>7,}")
+    count = sum(found.tried.values())
+    outcomes = ", ".join(f"{count:,} {what}" for what, count in found.outcomes.most_common())
+    seconds = time.process_time() - began
+    print(f"\n{count:,} changes ({outcomes}), {len(found.troubles)} troubles, {seconds:.0f} s of processor time")
+    return [f"change {trouble.number}, {trouble.sample}: {trouble.text}" for trouble in found.troubles]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(
         prog="python -m tests.attack", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -57,7 +76,19 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=1_000, help="how many attacks (default: 1,000)")
     parser.add_argument("--seed", type=int, default=0, help="the number of the first one (default: 0)")
     parser.add_argument("--only", type=int, metavar="N", help="make attack N alone")
+    parser.add_argument("--imports", type=int, metavar="N", help="make N changes to files for `lumen import` instead")
+    parser.add_argument(
+        "--samples", type=Path, action="append", default=[], metavar="DIR", help="with --imports: more files to change"
+    )
     options = parser.parse_args()
+    if options.imports is not None:
+        if options.only is not None:
+            print(show(options.only, options.samples))
+        numbers = range(options.seed, options.seed + options.imports) if options.only is None else [options.only]
+        troubles = report_imports(numbers, options.samples)
+        for trouble in troubles:
+            print(f"\n# {trouble}")
+        return int(bool(troubles))
     logging.getLogger("lumen").setLevel(logging.CRITICAL)  # of our own bus, which hears the same
     broker = RabbitMQ()
     broker.start()

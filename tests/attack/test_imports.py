@@ -1,0 +1,53 @@
+"""Nothing of a file of another tool is lost silently: each small change to it is in the result, or is reported."""
+
+from random import Random
+
+import pytest
+
+from lumen.formats.gestures import webots
+from lumen.formats.tables import TABLES
+from tests.attack.changes import CHANGERS, changed, normal
+from tests.attack.files import FOREIGN
+from tests.attack.silence import Importer, attack_imports, passes_silently, samples
+from tests.tables import for_each
+
+
+@for_each("ending", sorted(FOREIGN))
+def test_a_seed_says_what_is_changed(ending: str) -> None:
+    text = normal(ending, FOREIGN[ending])
+    first, again = (changed(Random(3), ending, text) for _ in range(2))
+    assert first == again
+    assert first is not None
+    assert first.text != text
+
+
+def test_each_change_is_in_the_result_or_reported() -> None:
+    found = attack_imports(range(100))
+    assert not found.troubles
+    assert set(found.tried) == set(CHANGERS)
+    assert set(found.outcomes) == {"in the result", "listed", "refused"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("batch", range(4))
+def test_each_of_two_thousand_changes_is_in_the_result_or_reported(batch: int) -> None:
+    assert not attack_imports(range(500 * batch, 500 * batch + 500)).troubles
+
+
+def test_an_importer_that_drops_a_value_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(webots, "number", lambda word: None if word == "*" else 0.0)
+    assert any("silent" in trouble.text for trouble in attack_imports(range(60), endings={"motion"}).troubles)
+
+
+def test_what_has_no_meaning_may_change() -> None:
+    importer = Importer()
+    text = normal("scxml", FOREIGN["scxml"])
+    other = text.replace('version="1.0"', 'version="1.1"')
+    seeds = (changed(Random(seed), "scxml", text) for seed in range(2_000))
+    change = next(one for one in seeds if one and ("<scxml>", "version") in one.touched)
+    assert "version" in TABLES["SCXML"]["<scxml>"].meaningless
+    assert not passes_silently("scxml", change, importer.outcome("scxml", text), importer.outcome("scxml", other))
+
+
+def test_every_format_has_samples() -> None:
+    assert {sample.ending for sample in samples()} == set(CHANGERS)
