@@ -29,7 +29,7 @@ COUNTER = """
 """
 ROUTE = "  load: {key: lumen.load, direction: in, event: load}\n"
 BREAKS: tuple[tuple[str, str, str], ...] = (
-    (TOUR, "onDone: any_question", "onDone: any_questoin"),
+    (TOUR, 'onDone: "#offer"', 'onDone: "#ofer"'),
     (TOUR, "id: tour\n", "id: tour\n\tx: 1\n"),
     (TOUR, "{play: sing}", "{play: sign}"),
     (MAIN, "languages: [en, id]", "languages: [en, id"),
@@ -133,7 +133,9 @@ class Colleague:
         assert self._process.stdin
         assert self._process.stdout
         print("edit", file=self._process.stdin, flush=True)
-        hash, said, count = self._process.stdout.readline().split()
+        if not (answer := self._process.stdout.readline()):
+            raise RuntimeError(f"the writer ended with {self._process.wait(10)}")
+        hash, said, count = answer.split()
         if said == "good":
             self.good.add(hash)
         return hash, said == "good", int(count)

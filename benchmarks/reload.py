@@ -202,16 +202,25 @@ class Soak:
     _applied = ""
 
     def edit(self) -> None:
-        """On the writer's thread: one edit after the other."""
-        for number in range(1, self.outcome.edits + 1):
-            seen = len(self._told)
-            hash, good, files = self.writer.edit()
-            saved, single = time.monotonic(), good and files == 1
-            self.outcome.broken += not good
-            self.wait(hash, saved, seen, self.outcome.single if single else self.outcome.verdicts)
-            if number == max(1, int(WARM * self.outcome.edits)):
-                self.count(0)
-        self._done.set()
+        """On the writer's thread: one edit after the other, until one fails."""
+        try:
+            for number in range(1, self.outcome.edits + 1):
+                self.edit_once(number)
+        except Exception as error:
+            self.outcome.wrong.append(f"the writer failed: {error!r}")
+            raise
+        finally:
+            self._done.set()
+
+    def edit_once(self, number: int) -> None:
+        """Edit, and wait for the verdict."""
+        seen = len(self._told)
+        hash, good, files = self.writer.edit()
+        saved, single = time.monotonic(), good and files == 1
+        self.outcome.broken += not good
+        self.wait(hash, saved, seen, self.outcome.single if single else self.outcome.verdicts)
+        if number == max(1, int(WARM * self.outcome.edits)):
+            self.count(0)
 
     def wait(self, hash: str, saved: float, seen: int, verdicts: list[float]) -> None:
         """Until there is a verdict on these files, and what was good is active; how long that took joins `verdicts`."""
