@@ -57,7 +57,7 @@ rest: setup
 	@$(PYTEST) -m "not soak" --suite rest --expect-cpu $(REST)
 
 soak: setup check
-	@$(PYTEST) -m soak -p tests.soaking
+	@$(PYTEST) -m soak --timeout 0 -p tests.soaking
 
 broker: .venv/test
 	@echo rabbitmq-server | sh scripts/packages.sh /dev/stdin

@@ -134,7 +134,10 @@ def command(root: Path, name: str) -> str:
 
 
 class Progress:
-    """Prints how far a run is, on one line of a terminal, or else every tenth of the run, instead of a dot per test."""
+    """Prints how far a run is, on one line of a terminal, or else every tenth of the run, instead of a dot per test.
+
+    The name of a test that fails is printed at once: a run may last, or be stopped.
+    """
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
@@ -192,8 +195,10 @@ class Progress:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if report.failed:
+        if report.failed and report.nodeid not in self._failed:
             self._failed.add(report.nodeid)
+            if self._runs:
+                self._write(f"      failed: {dict(report.user_properties).get(NAME, report.nodeid)}")
 
     def pytest_runtest_logfinish(self) -> None:
         self._done += 1

@@ -57,6 +57,10 @@ def run(folder: Path, text: str, *more: str) -> list[str]:
 def test_a_failure_begins_with_what_was_expected(tmp_path: Path, workers: tuple[str, ...]) -> None:
     lines = run(tmp_path, FAILING, *workers)
     again = f"Again: {sys.executable} -m pytest test_it.py::test_a_robot_that_hangs_is_reported"
+    ended = lines.index(next(line for line in lines if "= FAILURES =" in line or "= ERRORS =" in line))
+    at_once = {line.strip() for line in lines[:ended] if "failed:" in line}
+    names = ("test_a_robot_that_hangs_is_reported", "test_hours[week_day]", "test_a_hall_is_lit")
+    assert at_once == {f"failed: test_it.py::{name}" for name in names}
     expected = lines.index("Expected: a robot that hangs is reported.")
     assert lines[expected + 1 : expected + 4] == ["Found: nothing was reported", "assert 1 == 2", again]
     assert expected < lines.index('>       assert 1 == 2, "nothing was reported"')
