@@ -55,40 +55,33 @@ def main() -> int:
             asked = [name for capability, name in AROUND.items() if typist.can(capability)]
             print(f"beside each key: {', '.join(asked)}")
             for near, word, said in (
-                ("onDone: offer_3", "onDone: ofer", "`ofer`"),
-                ('guard: "context.name_tries < 2"', 'guard: "context.nametries < 2"', "`nametries`"),
+                ('onDone: "#offer_3"', 'onDone: "#ofer"', "`ofer`"),
+                ("guard: context.name_tries < 2", "guard: context.nametries < 2", "`nametries`"),
             ):
                 took = [typist.findings(near, word, said) for _ in range(TURNS)]
                 print(f"{'findings, ' + word:42s} {shown(took)}")
             print(f"{'findings, a quote is closed':42s} {shown([typist.closed() for _ in range(TURNS)])}")
-            for near, word in (("onDone: offer_3", "onDone: off"), ("{play: dance}", "{play: da")):
+            for near, word in (('onDone: "#offer_3"', 'onDone: "#off'), ("{play: dance}", "{play: da")):
                 took, counts = zip(*(typist.completion(near, word) for _ in range(TURNS)), strict=True)
                 print(f"{'completion, ' + word:42s} {shown(list(took))}   {max(counts):,} proposals")
     return 0
 
 
 def grown(text: str, lines: int) -> str:
-    """The tour with further visits, one behind the other, until it has that many lines; the last may end early."""
-    begin, end = text.index("          # 3. Asked"), text.index("      # Something is wrong with the robot")
-    states = re.split(r"(?m)^(?= {10}# \d+\.)", text[begin:end])[1:]
-    missing, more, visit = lines - text.count("\n"), [], 0
-    while missing > 0:
-        visit, kept = visit + 1, []
-        while missing > 0 and len(kept) < len(states):
-            kept.append(states[len(kept)])
-            missing -= kept[-1].count("\n")
-        more.append(_visit("".join(kept), visit, last=missing <= 0))
-    return text[:end].replace('{12s: "#idle"}', "{12s: ask_name_1}") + "".join(more) + text[end:]
+    """The tour with further regions like that of the guide, until it has about that many lines."""
+    guide = re.search(r"(?ms)^  guide:\n.*?(?=^  \w+:\n)", text)
+    assert guide
+    region = guide.group()
+    copies = (lines - text.count("\n")) // region.count("\n")
+    return text[: guide.end()] + "".join(_copied(region, n) for n in range(1, 1 + copies)) + text[guide.end() :]
 
 
-def _visit(block: str, n: int, *, last: bool) -> str:
-    for name in re.findall(r"(?m)^ {10}(\w+):$", block):
-        for before in ("target: ", "onDone: ", "onError: ", "id: ", r"after: \{\w+: ", " {14}- "):
-            block = re.sub(rf"({before}){name}\b(?!_\d)", rf"\g<1>{name}_{n}", block)
-        block = re.sub(rf"^( {{10}}){name}:$", rf"\g<1>{name}_{n}:", block, flags=re.MULTILINE)
-    if last:
-        return block.replace(": goodbye}", ': "#idle"}')
-    return block.replace('{12s: "#idle"}', f"{{12s: ask_name_{n + 1}}}")
+def _copied(region: str, n: int) -> str:
+    """A region under another name, whose states have ids of their own."""
+    region = region.replace("  guide:", f"  guide_{n}:", 1).replace(", key: e}", "}")
+    ids = "|".join(re.findall(r"(?m)(?:^ +|\{)id: (\w+)(?:$|, )", region))
+    region = re.sub(rf"(?m)((?:^ +|\{{)id: )({ids})(?=$|, )", rf"\g<1>\g<2>_{n}", region)
+    return re.sub(rf'"#({ids})"', rf'"#\g<1>_{n}"', region)
 
 
 class Took(NamedTuple):

@@ -102,10 +102,10 @@ def test_files_are_taken_refused_and_named(copy: Path) -> None:
         assert [change.kind for change in report.changes] == ["text"]
         assert report.diagnostics == ()
         before = exhibition.project
-        file.write_text(text.replace("initial: idle", "initial: idel"), "utf-8")
+        file.write_text(text.replace("visitor.left: goodbye", "visitor.left: godbye"), "utf-8")
         report = exhibition.reload()
         assert report.verdict == "refused"
-        assert any("idel" in diagnostic.message for diagnostic in report.diagnostics)
+        assert any("godbye" in diagnostic.message for diagnostic in report.diagnostics)
         exhibition.run(seconds=1)
         assert exhibition.project is before
 

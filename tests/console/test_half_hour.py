@@ -20,6 +20,7 @@ WAIT = 180.0
 LOOK = 0.25
 """How often somebody looks [s]."""
 ROUNDS = 20
+LEFT = "visitor.left: goodbye"
 """Of all scenes, in half an hour."""
 NONSENSE = ("blub <b>blab</b>", "\u202e\u0000", "?" * 200, "{{ visitor }}", "'; drop table visits; --")
 BROKEN = (None, 7, [], {"result": 12}, {"x": "left"}, {"result": "a" * 100_000})
@@ -108,12 +109,12 @@ def broken_visitors(house: House, operator: Operator) -> None:
 def a_bad_edit(house: House, operator: Operator) -> None:
     tour = house.folder / "behaviors" / "tour.yaml"
     good = tour.read_text("utf-8")
-    assert "initial: greet" in good
-    tour.write_text(good.replace("initial: greet", "initial: gret"), "utf-8")
-    line = good[: good.index("initial: greet")].count("\n") + 1
+    assert LEFT in good
+    tour.write_text(good.replace(LEFT, LEFT.replace("goodbye", "godbye")), "utf-8")
+    line = good[: good.index(LEFT)].count("\n") + 1
     operator.sees("refused", f"behaviors/tour.yaml:{line}", "The robot goes on with the files before")
     operator.looks_at("/files")
-    operator.sees("has no state `gret`", "did you mean `greet`?", "The robot goes on with the files before")
+    operator.sees("there is no state `godbye`", "did you mean `goodbye`?", "The robot goes on with the files before")
     tour.write_text(good, "utf-8")
     operator.sees("No findings.", "The saved files are those that run")
     operator.looks_at()

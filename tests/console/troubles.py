@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from tests.console.house import CONSOLE, ROBOT, WHOLE, House
 
-SORRY = "en: I am sorry, I did not understand that."
-PARDON = "en: Come again, please?"
+SORRY = 'en: "I am sorry, I did not understand that."'
+PARDON = 'en: "Come again, please?"'
 LONGEST = 2.5
 """How long a trouble lasts at most, besides what it takes to mend it [s]."""
 

@@ -83,7 +83,7 @@ def lived(exhibition: lumen.Exhibition, state: str) -> None:
 
 
 def text_changed(root: Path) -> None:
-    edited(root, TOUR, ("en: I am sorry, I did not understand that.", "en: Come again, please?"))
+    edited(root, TOUR, ('en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'))
 
 
 def state_renamed(root: Path) -> None:
