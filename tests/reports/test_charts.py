@@ -10,7 +10,8 @@ from lumen.formats.conversion_findings import ForeignFileError, dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.scxml.known import ATTRIBUTES, ELEMENTS
 from lumen.formats.xstate import read_xstate
-from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.diagnostics import Diagnostic, has_errors, nearest
+from lumen.rules import check_files
 from lumen.statechart import Interpreter, Machine
 from tests.tables import for_each
 
@@ -389,3 +390,36 @@ def test_no_change_of_a_key_is_silent(name: str, meaningless: set[str]) -> None:
     machine = json.loads((INPUTS / name).read_bytes())
     before = read(machine)
     assert {path for path, changed in changed_json(machine) if read(changed) == before} == meaningless
+
+
+SETTINGS = b"name: Charts\nbehavior: hello\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n"
+
+
+def lint(hello: str, **others: str) -> list[str]:
+    """The findings of a small project with that behaviour, and more behaviours by their names."""
+    files = {"lumen.yaml": SETTINGS, "behaviors/hello.yaml": hello.encode()}
+    files |= {f"behaviors/{name}.yaml": text.encode() for name, text in others.items()}
+    found = check_files(INPUTS, files)[1]
+    return [f"{d.place.line}:{d.place.column} {d.code}: {d.message} ({d.hint})" for d in found]
+
+
+def of(name: str) -> str:
+    return (INPUTS / name).read_text("utf-8")
+
+
+def test_no_event_is_proposed_that_is_no_better_than_none() -> None:
+    found = lint(of("event-hint.yaml"))
+    assert len(found) == 6
+    hint = "(declare it under `events:`, or give a route of lumen.yaml this `event`)"
+    assert all(line.endswith(hint) for line in found)
+
+
+@for_each(
+    ("word", "names", "meant"),
+    [
+        ("deactivate", ["done.state"], ""), ("delete", ["left"], ""), ("greating", ["greeting"], "greeting"),
+        ("waveing", ["wave"], "wave"), ("tuoched", ["touched"], "touched"), ("visitor_left", ["left"], "left"),
+    ],
+)  # fmt: skip
+def test_a_hint_is_a_name_with_few_letters_changed(word: str, names: list[str], meant: str) -> None:
+    assert nearest(word, names) == meant

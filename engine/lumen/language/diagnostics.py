@@ -22,6 +22,9 @@ MAX_RELATED = 5
 MAX_COMPARED_NAMES = 200
 """Names that a misspelt one is compared with, letter by letter."""
 
+MAX_CHANGED_LETTERS = 0.5
+"""The share of a name's letters by which a misspelt one may differ."""
+
 NodePath = tuple[str | int, ...]
 """Where something stands in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
 
@@ -182,13 +185,26 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
     if meant != word and (equal := next((name for name in sorted(names) if typed(name) == meant), "")):
         return equal
     lowered = {name.lower(): name for name in sorted(_alike(str(word), names))}
-    near = get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)
-    if near:
-        return lowered[near[0]]
+    written = str(word).lower()
+    for near in get_close_matches(written, lowered, n=3, cutoff=0.6):
+        if _is_slip(written, near):
+            return lowered[near]
     if anagram := next((n for n in lowered.values() if sorted(n) == sorted(str(word))), ""):
         return anagram
     parts = [part for part in re.split(r"[\W_]+", str(word).lower()) if len(part) > 3]
     return next((lowered[part] for part in parts if part in lowered), "")
+
+
+def _is_slip(word: str, meant: str) -> bool:
+    """Whether one is the other with few letters changed: many that are in the same order are chance."""
+    if word.startswith(meant) or meant.startswith(word):
+        return True
+    row = list(range(len(meant) + 1))  # the edit distance of Levenshtein
+    for i, letter in enumerate(word):
+        before, row[0] = row[0], i + 1
+        for j, other in enumerate(meant):
+            before, row[j + 1] = row[j + 1], min(row[j + 1] + 1, row[j] + 1, before + (letter != other))
+    return row[-1] <= max(2, MAX_CHANGED_LETTERS * max(len(word), len(meant)))
 
 
 def _alike(word: str, names: set[str]) -> set[str]:
