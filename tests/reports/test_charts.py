@@ -407,6 +407,35 @@ def of(name: str) -> str:
     return (INPUTS / name).read_text("utf-8")
 
 
+def test_a_star_above_the_end_is_found() -> None:
+    assert lint(of("star-before-done.yaml")) == [
+        "7:13 shadowed-transition: this is never taken: the transition in line 5 always is, before it"
+        " (write `onDone` above `on`, or name the events instead of `*`)"
+    ]
+
+
+@for_each(
+    ("state", "found"),
+    [
+        ('{on: {"*": b}, do: {say: Hi}, onDone: c}', True),
+        ('{do: {say: Hi}, onDone: c, on: {"*": b}}', False),
+        ('{on: {done: b}, do: {say: Hi}, onDone: c}', True),
+        ('{on: {error.*: b}, do: {say: Hi}, onDone: c}', False),
+        ('{on: {error.*: b}, do: {say: Hi}, onDone: c, onError: c}', True),
+        ('{on: {"*": b}, initial: x, states: {x: {type: final}}, onDone: c}', True),
+        ('{on: {"*": b}, invoke: {behavior: quick, onDone: c}}', True),
+        ('{on: {"*": {guard: "event.name != \'done.do.a\'", target: b}}, do: {say: Hi}, onDone: c}', False),
+        ('{on: {"*": b}, do: {say: Hi}, after: {5s: c}}', False),  # a timer is selected by no name
+        ('{on: {after.5s.a: b}, after: {5s: c}}', False),
+        ('{initial: invoke, states: {invoke: {on: {"*": "#c"}, do: {say: Hi}, onDone: x}, x: {after: {5s: "#c"}}}}', True),
+    ],
+)  # fmt: skip
+def test_an_end_below_what_takes_it(state: str, found: bool) -> None:
+    chart = f"initial: a\nstates:\n  a: {state}\n  b: {{after: {{5s: a}}}}\n  c: {{id: c, after: {{5s: a}}}}\n"
+    codes = [line.split()[1] for line in lint(chart, quick=of("quick.yaml"))]
+    assert ("shadowed-transition:" in codes) == found, codes
+
+
 def test_no_event_is_proposed_that_is_no_better_than_none() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6

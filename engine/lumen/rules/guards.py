@@ -24,7 +24,6 @@ SHADOWED_TRANSITION = Code(
     "shadowed-transition", "statecharts", WARNING, "a transition is never taken, because one before it always is"
 )
 
-
 MAX_COMPARED_CANDIDATES = 60
 """Candidates of a state that are compared with one another."""
 
@@ -103,10 +102,15 @@ def _turn(transition: Transition) -> int:
 def covers(earlier: Transition, later: Transition) -> bool:
     """Whether every event that the later one waits for comes to the earlier one first.
 
-    Among rows of `hears` the words of their phrases decide, except between candidates of one row.
+    Among rows of `hears` the words of their phrases decide, except between candidates of one row. The end of a `do`, of
+    states within and of an invoked behaviour is an event too, which `*` and `done` take; the end of a timer is not.
     """
+    if earlier.timed != later.timed:
+        return False
     if earlier.hears:
         return later.hears is not None and earlier.hears.key == later.hears.key
+    if later.exact and earlier.event and not earlier.exact:
+        return hears(earlier.event, later.event)
     if earlier.exact or later.exact or not (earlier.event and later.event):
         return earlier.event == later.event
     return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")
@@ -123,6 +127,9 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         hint = "give that one a `guard`, or swap them"
         if later.hears and not earlier.hears:
             hint = "give that one a `guard`, or make it the row `else`"
+        elif later.exact and not earlier.exact:
+            key = later.where[len(machine.states[later.source].where)]
+            hint = f"write `{key}` above `on`, or name the events instead of `{earlier.event}`"
         cause = f"{report.document.file} shadowed by {earlier.where}"
         report(SHADOWED_TRANSITION, later.where, message, hint, related=related, cause=cause)
         return True
