@@ -6,11 +6,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from lumen.errors import LumenError
 from lumen.formats.conversion_findings import ForeignFileError, dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.scxml.known import ATTRIBUTES, ELEMENTS
 from lumen.formats.xstate import read_xstate
 from lumen.language.diagnostics import Diagnostic, has_errors, nearest
+from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from lumen.statechart import Interpreter, Machine
 from tests.tables import for_each
@@ -434,6 +438,54 @@ def test_an_end_below_what_takes_it(state: str, found: bool) -> None:
     chart = f"initial: a\nstates:\n  a: {state}\n  b: {{after: {{5s: a}}}}\n  c: {{id: c, after: {{5s: a}}}}\n"
     codes = [line.split()[1] for line in lint(chart, quick=of("quick.yaml"))]
     assert ("shadowed-transition:" in codes) == found, codes
+
+
+@for_each(
+    ("name", "message"),
+    [
+        ("endless-guarded.yaml", "6:59 always-loop: this never comes to rest while `context.balance > 300` is false"),
+        ("endless-invoke.yaml", "4:44 endless-chain: this never comes to rest: `done.invoke.quick` of `work`"),
+    ],
+)
+def test_an_endless_chain_is_found(name: str, message: str) -> None:
+    (found,) = lint(of(name), **({"quick": of("quick.yaml")} if "invoke" in name else {}))
+    assert found.startswith(message)
+
+
+@for_each(
+    ("states", "way"),
+    [
+        ("a: {entry: {raise: go}, on: {go: b, touched: c}}, b: {entry: {raise: back}, on: {back: a}}",
+         "`go` of `a`, `back` of `b`"),
+        ("a: {do: {log: x}, onDone: b, on: {touched: c}}, b: {after: {0s: a}}",
+         "`done.do.a` of `a`, `after: 0s` of `b`"),
+        ("a: {do: {send: go}, on: {go: a, touched: c}}", "`go` of `a`"),
+        ("a: {initial: x, states: {x: {type: final}}, onDone: a, on: {touched: c}}", "`done.state.a` of `a`"),
+        ("a: {on: {touched: {actions: {raise: again}}, again: {actions: {raise: again}}, face: c}}", "`again` of `a`"),
+        ("a: {do: {log: x}, onDone: [{guard: state.seconds < 4, target: a}, c]}", ""),
+        ("a: {do: {say: x}, onDone: b}, b: {do: {log: x}, onDone: a, on: {touched: c}}", ""),
+        ("a: {entry: {raise: go}, on: {go: b}}, b: {on: {go: a, touched: c}}", ""),
+        ("a: {entry: {send: {event: go, delay: 1s}}, on: {go: a, touched: c}}", ""),
+    ],
+)  # fmt: skip
+def test_endless_chains_of_every_make(states: str, way: str) -> None:
+    chart = f"initial: c\nstates: {{c: {{on: {{touched: a}}}}, {states}}}\n"
+    found = [line for line in lint(chart) if "endless-chain" in line]
+    assert [f"never comes to rest: {way} (" in line for line in found] == ([True] if way else [])
+
+
+def test_the_error_of_an_endless_chain_names_what_went_round() -> None:
+    quick = {"initial": "a", "states": {"a": {"type": "final"}}}
+    for name, way in (
+        ("endless-invoke.yaml", "what goes round: `done.invoke.quick` of `work`"),
+        ("endless-guarded.yaml", "what goes round: `always` of `two`"),
+    ):
+        document, _ = parse(name, of(name).encode())
+        assert document is not None
+        it = Interpreter(Machine.from_dict(document.data, behaviors={"quick": quick}))
+        it.start()
+        with pytest.raises(LumenError, match=re.escape(way)):
+            it.send("touched")
 
 
 def test_no_event_is_proposed_that_is_no_better_than_none() -> None:

@@ -9,6 +9,7 @@ from lumen.language.machines import MachineDefinition, State, StateKind, Transit
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.transitions import ENDLESS_ALWAYS
+from lumen.rules.endless_chains import ENDLESS_CHAIN
 from lumen.rules.statecharts import ALWAYS_LOOP, reachable
 from lumen.rules.walk import action_sites
 
@@ -29,7 +30,7 @@ TROUBLES = ("fallen", "stop", "battery.low", "motors.hot", "brain.lost", "robot.
 GraphNode = tuple[str, str]
 """`in` a state, or on the way `to` one (which then begins), or `any` state below one; and its path."""
 
-_RESTLESS = (ENDLESS_ALWAYS, ALWAYS_LOOP)
+_RESTLESS = (ENDLESS_ALWAYS, ALWAYS_LOOP, ENDLESS_CHAIN)
 
 
 def check(draft: ProjectDraft) -> None:

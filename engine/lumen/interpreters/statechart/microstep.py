@@ -14,8 +14,11 @@ from lumen.interpreters.statechart.schedule_timers import begin_schedules
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
-from lumen.language.machines import StateKind
+from lumen.language.machines import StateKind, Transition
 from lumen.language.nanoseconds import nanoseconds
+
+MAX_SHOWN_TRANSITIONS = 6
+"""Transitions of an endless round that its error names."""
 
 MAX_MICROSTEPS = 1000
 """How many microsteps, or internal events, a macrostep may take."""
@@ -102,8 +105,16 @@ def count_microstep(context: ExecutionContext) -> None:
         states = ", ".join(f"`{name}`" for name in sorted({*context.entered[-20:], *context.configuration.names}))
         raise LumenError(
             f"`{context.machine.chart.definition.id}` never comes to rest: after {MAX_MICROSTEPS:,} microsteps it still"
-            f" goes through {states}; look at their `always` and `raise`"
+            f" goes through {states}; what goes round: {_round(context.transitions)}"
         )
+
+
+def _round(transitions: tuple[Transition, ...]) -> str:
+    """The last transitions back to the one that comes again, each as what selects it and its state."""
+    last = next((i for i in range(2, len(transitions) + 1) if transitions[-i] is transitions[-1]), 1)
+    taken = transitions[len(transitions) - min(last, MAX_SHOWN_TRANSITIONS + 1) + 1 :]
+    ways = [f"`{t.event or 'always'}` of {f'`{t.source}`' if t.source else 'the behaviour'}" for t in taken]
+    return ", then ".join(ways) or "events that nothing waits for"
 
 
 def _holds(context: ExecutionContext, transition: CompiledTransition, guard: CompiledGuard) -> bool:
