@@ -488,6 +488,27 @@ def test_the_error_of_an_endless_chain_names_what_went_round() -> None:
             it.send("touched")
 
 
+def test_a_target_in_another_region_is_found() -> None:
+    (found,) = lint(of("other-region.yaml"))
+    assert found.startswith("6:103 crosses-regions: `demo` is in another region, so all of `hello` is left and begins")
+    assert "raise an event that the region of `demo` waits for" in found
+
+
+@for_each(
+    ("way", "found"),
+    [
+        ('l: {initial: a, states: {a: {on: {touched: b}}, b: {after: {5s: a}}}}', False),
+        ('l: {initial: a, states: {a: {on: {touched: {target: ["#b", "#r2"]}}}, b: {id: b, after: {5s: a}}}}', False),
+        ('l: {initial: a, states: {a: {on: {touched: "#r2"}}}}', True),
+        ('l: {initial: a, on: {touched: "#r2"}, states: {a: {}}}', True),
+    ],
+)  # fmt: skip
+def test_which_targets_leave_other_regions(way: str, found: bool) -> None:
+    right = "r: {initial: r1, states: {r1: {after: {5s: r2}}, r2: {id: r2, after: {5s: r1}}}}"
+    codes = [line.split()[1] for line in lint(f"type: parallel\nstates:\n  {way}\n  {right}\n")]
+    assert ("crosses-regions:" in codes) == found, codes
+
+
 def test_no_event_is_proposed_that_is_no_better_than_none() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6
