@@ -509,6 +509,13 @@ def test_which_targets_leave_other_regions(way: str, found: bool) -> None:
     assert ("crosses-regions:" in codes) == found, codes
 
 
+def test_reenter_without_a_target_is_found() -> None:
+    assert lint(of("reenter-nothing.yaml")) == [
+        "7:21 no-effect: `reenter` has no effect without a `target`: the state is not left"
+        " (write `target: .` to begin `speak` anew, or delete `reenter`)"
+    ]
+
+
 def test_no_event_is_proposed_that_is_no_better_than_none() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6

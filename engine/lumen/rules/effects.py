@@ -7,6 +7,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.sounds import sound_duration
+from lumen.rules.dead_ends import within
 from lumen.rules.lookups import first, value_at
 from lumen.rules.walk import action_sites
 
@@ -20,6 +21,7 @@ def check(draft: ProjectDraft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _reload(machine, report)
+        _ways(machine, report)
         for site in action_sites(machine):
             if isinstance(site.step.action, PlaySound) and draft.root is not None:
                 path = first(report, (*site.step.where, "sound", "file"), (*site.step.where, "sound"))
@@ -42,6 +44,25 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
             message = "`onReload` has no effect in a state without states: nothing within it can be gone"
             hint = "let the state around it have it"
             report(NO_EFFECT, (*state.where, "onReload"), message, hint, key=True)
+
+
+def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
+    """Report `reenter` where nothing is left that would not be left anyway, and `onError` where nothing can fail."""
+    for state in machine.states.values():
+        for transition in state.transitions:
+            path = (*transition.where, "reenter")
+            if transition.reenter and not transition.targets and not report.broken(transition.where):
+                message = "`reenter` has no effect without a `target`: the state is not left"
+                hint = f"write `target: .` to begin `{state.name or 'the behaviour'}` anew, or delete `reenter`"
+                report(NO_EFFECT, path, message, hint, key=True)
+            elif transition.reenter and not any(within(target, state.path) for target in transition.targets):
+                message = f"`reenter` has no effect here: a target outside of `{state.name}` leaves it anyway"
+                report(NO_EFFECT, path, message, "delete it", key=True)
+        written = value_at(report, state.where) or {}
+        if "onError" in written and "do" not in written and not report.broken((*state.where, "do")):
+            message = "`onError` has no effect in a state without a `do`: nothing can fail"
+            hint = "put it into the state whose `do` may fail, or write `on: {error.*: …}`"
+            report(NO_EFFECT, (*state.where, "onError"), message, hint, key=True)
 
 
 def _sounds(motion: MotionDefinition, report: DocumentReport, draft: ProjectDraft) -> None:
