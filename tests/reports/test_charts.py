@@ -134,6 +134,17 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><invoke type="scxml" src="b.scxml" autoforward="yes"/></state>',
          "`autoforward` of `<invoke>` can't be `yes`"),
         ('<state id="a" initial="b"/><state id="b"/>', "`initial` of `a`, which has no states within"),
+        ('<state id="a"><initial><transition target="a"/></initial></state>', "`initial` of `a`, which has no states"),
+        ('<state id="a"><state id="b"><transition event="e" target="b c"/></state><state id="c"/></state>',
+         "`b` and `c` can't be active together"),
+        ('<state id="a"><history id="h"/><transition event="e" target="h"/></state>', "there is no state `h` to go to"),
+        ('<state id="a"><history id="h"><transition target="i"/></history><history id="i"/><state id="b"/></state>',
+         "a history can't lead to a history"),
+        ('<qt:group><state id="a"/></qt:group><state id="b"/>', "`<state>` in `<group>` is not read"),
+        ('<state id="a"><invoke id="q" src="q.scxml"/><invoke id="q" src="r.scxml"/></state>',
+         "`<invoke>`: a second one has the id `q`"),
+        ('<state id="a"><invoke src="q.scxml"><finalize><log expr="1"/></finalize></invoke></state>',
+         "`<finalize>` has no counterpart"),
     ],
 )  # fmt: skip
 def test_what_is_not_read_is_listed(text: str, found: str) -> None:
@@ -144,6 +155,35 @@ def test_what_is_not_read_is_listed(text: str, found: str) -> None:
 def test_a_second_line_of_a_tag_has_its_own_place() -> None:
     _, found = body('\n<state id="ä"><transition\n  event="e"\n  évents = "x>y" target="ä"/></state>')
     assert [message.partition(" ")[0] for message in found] == ["4:3"]
+
+
+def test_a_chart_that_is_invoked_twice_has_two_ids() -> None:
+    text = (
+        '<state id="a"><invoke src="q.scxml"/><invoke id="q" src="q.scxml"/></state>'
+        '<parallel id="p"><state id="b"><invoke src="r.scxml"/></state><state id="c"><invoke src="r.scxml"/></state>'
+        '</parallel><state id="d"><invoke src="r.scxml"/></state>'
+    )
+    data, _ = read_scxml("chart.scxml", f"{HEAD}{text}</scxml>".encode(), "chart")
+    states = data["states"]
+    assert states["a"]["invoke"] == [{"behavior": "q", "id": "q_2"}, {"behavior": "q"}]
+    regions = states["p"]["states"]
+    assert [regions["b"]["invoke"], regions["c"]["invoke"]] == [{"behavior": "r"}, {"behavior": "r", "id": "r_2"}]
+    assert states["d"]["invoke"] == {"behavior": "r"}  # never at the same time as the others
+
+
+@for_each(
+    ("attributes", "found"),
+    [
+        ('version="1.0" datamodel="ecmascript"', []),
+        ('version="2.0"', ["1:48 version `2.0` is read as 1.0 (there is one: write \"1.0\")"]),
+        ('datamodel="null"',
+         ["1:48 the data model `null` has no `<data>`: it is read as ECMAScript (write \"ecmascript\")"]),
+    ],
+)  # fmt: skip
+def test_what_the_whole_document_says_of_itself(attributes: str, found: list[str]) -> None:
+    text = f'<scxml xmlns="http://www.w3.org/2005/07/scxml" {attributes}>'
+    text += '<datamodel><data id="n" expr="1"/></datamodel><state id="a"/></scxml>'
+    assert messages(read_scxml("chart.scxml", text.encode(), "chart")[1]) == found
 
 
 def test_buttons_come_back_from_scxml() -> None:
@@ -282,6 +322,10 @@ def test_actions_of_xstate_itself(action: dict[str, Any], ours: dict[str, Any]) 
         ({"type": "xstate.assign", "assignment": {}}, "`xstate.assign`: its code is not in the file"),
         ({"type": "xstate.assign", "assignment": {"n": 1, "m": 1}}, "`m` is no key of the context"),
         ({"type": "xstate.send", "event": "E", "dely": 3}, "`dely` of an xstate.send has no counterpart"),
+        ({"type": "xstate.send", "params": {"event": "E", "dely": 3}}, "`dely` of an xstate.send has no counterpart"),
+        ({"type": "xstate.send", "event": "E", "params": {"event": "F"}},
+         "`event` in `params` of an xstate.send is left out"),
+        ({"type": "xstate.send", "event": "E", "params": "soon"}, "`params` of an xstate.send is no object"),
     ],
 )  # fmt: skip
 def test_what_an_action_of_xstate_lacks_is_listed(action: dict[str, Any], found: str) -> None:
@@ -310,6 +354,17 @@ def test_what_an_action_of_xstate_lacks_is_listed(action: dict[str, Any], found:
         ({"invoke": {"src": "x", "input": {"n": 1}}}, "`input` of an invoke"),
         ({"meta": {"lumen": {"resume": "soon"}}}, "`resume` of `meta.lumen` has no counterpart"),
         ({"description": ["x"]}, "`description` is no text"),
+        ({"invoke": {"src": "x", "id": 3}}, "`id` is no text"),
+        ({"invoke": [None]}, "this is no invocation"),
+        ({"invoke": {"src": {"type": "x", "pace": 3}}}, '`invoke` of `x {"pace": 3}`: its code is not in the file'),
+        ({"type": "final", "output": 1, "data": 2}, "`data` beside `output` is left out"),
+        ({"on": {" *": "b"}}, "the events ` *` are called `*` here"),
+        ({"on": {"E": {"target": ["a", "b"]}}}, "`a` and `b` can't be active together"),
+        ({"states": {"h": {"type": "history"}}, "on": {"E": ".h"}}, "there is no state `.h` to go to"),
+        ({"initial": "h", "states": {"h": {"history": True}, "x": {}}},
+         "a history leads to a history, as its parent begins"),
+        ({"initial": "x", "states": {"h": {"history": True}, "i": {"type": "history", "target": "h"}, "x": {}}},
+         "a history can't lead to a history"),
     ],
 )  # fmt: skip
 def test_what_is_not_read_of_a_machine_is_listed(state: dict[str, Any], found: str) -> None:

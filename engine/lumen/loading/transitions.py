@@ -1,8 +1,8 @@
 """Transitions of a behaviour: `on`, `always`, `after`, `at`, `onDone` and `onError`, their targets resolved."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import Template
@@ -175,30 +175,35 @@ class TransitionReader:
         return Approval(within, data.get("else", "stay"))
 
     def _together(self, states: list[OutlinedState], where: NodePath) -> bool:
-        if (rivals := _rivals(states)) is None:
+        if (pair := rivals(states, lambda state: str(state.kind))) is None:
             return True
-        message = f"`{rivals[0].path}` and `{rivals[1].path}` can't be active together"
+        message = f"`{pair[0].path}` and `{pair[1].path}` can't be active together"
         hint = "the targets of a list have to lie in different regions of a parallel state"
         self.report(CONFLICTING_TARGETS, where, message, hint=hint)
         return False
 
 
-def _rivals(states: list[OutlinedState]) -> tuple[OutlinedState, OutlinedState] | None:
+_Nested = TypeVar("_Nested")
+"""A state of ours, or of a foreign chart; it has a `parent`."""
+
+
+def rivals(states: Sequence[_Nested], kind: Callable[[Any], str]) -> tuple[_Nested, _Nested] | None:
     """Two states that can't be targets together, None where all can.
 
     From each one goes up: where two come to a state that is not parallel from different children, they are rivals. A
     history speaks for all that is in its parent.
     """
-    came: dict[int, tuple[OutlinedState, OutlinedState]] = {}
-    spoken = {id(state.parent): state for state in states if state.kind is StateKind.HISTORY and state.parent}
+    came: dict[int, tuple[Any, _Nested]] = {}
+    outer: Sequence[Any] = states
+    spoken = {id(state.parent): state for state in outer if kind(state) == StateKind.HISTORY and state.parent}
     for state in states:
-        child = state
+        child: Any = state
         while (parent := child.parent) is not None:
             history = spoken.get(id(parent), state)
             via, first = came.setdefault(id(parent), (child, state))
             if history is not state:
                 return history, state
-            if via is not child and parent.kind is not StateKind.PARALLEL:
+            if via is not child and kind(parent) != StateKind.PARALLEL:
                 return first, state
             child = parent
     return None

@@ -20,8 +20,6 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
         raise LeftOutError("a chart that is computed or stands inside is not carried over", "put it into its own file")
     if "idlocation" in element.attributes:
         raise LeftOutError("`idlocation` has no counterpart", "give it an `id`")
-    if any(child.children for child in element.of("finalize")):
-        raise LeftOutError("`<finalize>` has no counterpart")
     name = PurePosixPath(source).stem
     if not _NAME.fullmatch(name):
         raise LeftOutError(f"`{source}` can't be the name of a behaviour", "rename the file")

@@ -12,9 +12,9 @@ _DEFAULT = "the way into a state is taken without event or condition"
 
 ATTRIBUTES: FormatTable = {
     "scxml": Known(
-        frozenset(("initial", "name", "datamodel", "binding")),
+        frozenset(("initial", "name", "datamodel", "binding", "version")),
         {"initialstate": "write `initial`", "profile": "write `datamodel`"},
-        {"version": "there is one version", "exmode": "says how strictly another interpreter reads the file"},
+        {"exmode": "says how strictly another interpreter reads the file"},
     ),
     "state": Known(
         frozenset(("id", "initial", "lumen:root", "lumen:key")),

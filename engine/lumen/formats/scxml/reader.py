@@ -14,9 +14,11 @@ from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_NAMESPACE
 from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
 from lumen.formats.scxml.transition_reader import ScxmlTransitionReader
 from lumen.formats.scxml.unread import UnreadParts
+from lumen.formats.unused_names import unused_name
 from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import RESUME_WORDS
+from lumen.loading.transitions import rivals
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -46,6 +48,8 @@ class _ScxmlReader:
         self.contents = ScxmlActionReader(self.context, self.findings)
         self.transitions = ScxmlTransitionReader(self.outline, self.contents, self.findings)
         self.passed: dict[ForeignState, dict[str, Any]] = {}
+        self.invoked: list[tuple[ForeignState, str]] = []
+        """The ids of what is invoked so far, each with its state."""
 
     def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
         root = self.outline.root
@@ -87,11 +91,10 @@ class _ScxmlReader:
         data.update(self._behaviour(node))
         if regular(node):
             data["states"] = {child.key: self._state(child) for child in node.children} | self._passed(node)
-        elif node.source.get("initial"):
+        elif node.source.get("initial") or any(node.source.of("initial")):
             message = f"`initial` of `{node.name}`, which has no states within"
-            self.findings.lost(node.source.attribute_place("initial"), message, "delete it")
-        if node.children and not regular(node):
-            self.findings.lost(node.source.place, f"`{node.name}` has a history and no other states", "delete it")
+            place = next((e.place for e in node.source.of("initial")), node.source.attribute_place("initial"))
+            self.findings.lost(place, message, "delete it")
         return data
 
     def _history(self, node: ForeignState) -> dict[str, Any]:
@@ -125,6 +128,9 @@ class _ScxmlReader:
         wrong = next((t for t in found if home is None or not t.lies_below(home)), None)
         if wrong is not None:
             self.findings.lost(transition.place, f"`{wrong.name}` does not lie in `{home.name if home else ''}`")
+            return {}
+        if key == "target" and any(target.source.tag == "history" for target in found):
+            self.findings.lost(transition.place, "a history can't lead to a history", "name a state")
             return {}
         actions = self.contents.block(transition.children)
         if actions and home is not None and home.source.tag != "parallel":
@@ -199,18 +205,34 @@ class _ScxmlReader:
         rows = []
         for element in node.source.of("invoke"):
             try:
-                rows.append(invocation(element, self.contents))
+                rows.append(self._named_apart(node, element, invocation(element, self.contents)))
             except (LeftOutError, ScriptError) as error:
                 id = element.get("id")
                 hint = f"what waits for `done.invoke.{id}` stays: invoke a behaviour by that id" if id else ""
                 self.findings.lost(element.place, f"`<invoke>`: {error}", hint)
                 continue
+            for part in (e for e in element.of("finalize") if e.children):
+                hint = "do it in a transition for the event"
+                self.findings.lost(part.place, "`<finalize>` has no counterpart", hint)
             message = f"`<invoke>` of `{element.get('src')}` becomes the behaviour `{rows[-1]['behavior']}`"
             hint = "import that file too"
             if element.get("autoforward") != "true":
                 hint += '; it hears all events from outside, as with `autoforward="true"`'
             self.findings.changed(element.place, message, hint)
         return rows
+
+    def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
+        """The row with an id that nothing has which runs at the same time; raises LeftOutError if the id is written."""
+        id = row.get("id", row["behavior"])
+        taken = {name for state, name in self.invoked if rivals([state, node], lambda s: str(s.source.tag)) is None}
+        if element.get("id") and id in taken:
+            raise LeftOutError(f"a second one has the id `{id}`")
+        if not element.get("id"):
+            taken |= {other.get("id") for other in self.scxml.walk() if other.tag == "invoke"}
+            if (free := unused_name(id, taken.__contains__, len(taken))) != id:
+                id = row["id"] = free
+        self.invoked.append((node, id))
+        return row
 
     def _several(self, blocks: list[XmlElement]) -> None:
         for block in blocks[:-1]:

@@ -54,6 +54,11 @@ class ScxmlStateTree:
             if node.id:
                 self.by_id[element.get("id")] = node
             self._fill(node, level + 1)
+        if parent.children and not regular(parent):
+            self.findings.lost(parent.source.place, f"`{parent.name}` has a history and no other states", "delete it")
+            for child in parent.children:
+                self.by_id.pop(child.source.get("id"), None)
+            parent.children.clear()
 
     def _fits(self, element: XmlElement, level: int) -> bool:
         id, place = element.get("id"), element.place

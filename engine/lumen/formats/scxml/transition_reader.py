@@ -18,6 +18,7 @@ from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
 from lumen.formats.xml_elements import XmlElement
 from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.diagnostics import Place
+from lumen.loading.transitions import rivals
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")
 
@@ -138,6 +139,10 @@ class ScxmlTransitionReader:
                 self.findings.lost(element.place, f"there is no state `{id}` to go to")
                 return None
             found.append(node)
+        if pair := rivals(found, lambda node: str(node.source.tag)):
+            message = f"`{pair[0].name}` and `{pair[1].name}` can't be active together"
+            self.findings.lost(element.place, message, "name states of different regions of a `<parallel>`")
+            return None
         return found
 
     def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:

@@ -20,6 +20,7 @@ from lumen.formats.xml_elements import XmlElement
 _NOTHING = Known()
 _TEXTS = OPEN | {"script"}
 _READ_DATA_MODELS = ("", "ecmascript", "null")
+_OF_DATA = frozenset(("data", "assign", "script"))
 _SCHEMA_LOCATION = "{http://www.w3.org/2001/XMLSchema-instance}schemaLocation"
 
 
@@ -48,6 +49,10 @@ class UnreadParts:
             times = f", {len(elements)} times" if len(elements) > 1 else ""
             message = f"`<{name}>` of the namespace `{namespace}` means nothing here{times}"
             self.findings.changed(elements[0].place, message, "notes and layouts of an editor are not carried over")
+            for part in (part for element in elements for part in element.walk() if part.tag in ATTRIBUTES):
+                self.findings.lost(
+                    part.place, f"`<{part.tag}>` in `<{name}>` is not read", f"write it outside of `<{name}>`"
+                )
 
     def _element(self, element: XmlElement) -> None:
         self._attributes(element)
@@ -133,7 +138,13 @@ class UnreadParts:
                 self.findings.lost(element.place, f"`<{shown}>` has {parts}: one of them is left out", "delete one")
 
     def _data_model(self, scxml: XmlElement) -> None:
-        kind = scxml.get("datamodel")
+        kind, version = scxml.get("datamodel"), scxml.get("version")
+        if version not in ("", "1.0"):
+            message = f"version `{version}` is read as 1.0"
+            self.findings.changed(scxml.attribute_place("version"), message, 'there is one: write "1.0"')
+        if kind.lower() == "null" and (part := next((e for e in scxml.walk() if e.tag in _OF_DATA), None)):
+            message = f"the data model `null` has no `<{part.tag}>`: it is read as ECMAScript"
+            self.findings.changed(scxml.attribute_place("datamodel"), message, 'write "ecmascript"')
         if kind.lower() not in _READ_DATA_MODELS:
             message = f"the data model `{kind}` is read as ECMAScript"
             self.findings.changed(scxml.attribute_place("datamodel"), message, "look at each condition and value")

@@ -68,14 +68,27 @@ class XStateActionReader:
             return own
         if kind in _BUILT_IN and isinstance(data, dict):
             body = {**(params if isinstance(params, dict) else {}), **data}  # tools write either form
-            self._unread("xstate.send" if kind == "xstate.sendTo" else kind, data, where)
+            place = "xstate.send" if kind == "xstate.sendTo" else kind
+            self._unread(place, data, where)
+            self._params(place, data, where)
             try:
                 return self._built_in(kind, body, where)
             except _AbsentError as error:
                 self.lost(where, f"`{kind}`: {error}", "a line in the log stands for it")
         else:
             self.lost(where, f"the code of the action `{kind}` is not in the file", "a line in the log stands for it")
-        return _logged(_shown(kind, data))
+        return _logged(shown_name(kind, data))
+
+    def _params(self, place: str, data: Mapping[str, Any], where: NodePath) -> None:
+        """Report what is not carried over of the other form of an action of XState's own."""
+        params, where = data.get("params"), (*where, "params")
+        if params is not None and not isinstance(params, dict):
+            self.lost(where, f"`params` of an {place} is no object", "delete it")
+            return
+        self._unread(place, params, where)
+        for key in params or ():
+            if key in ("type", "params") or key in data:
+                self.lost((*where, key), f"`{key}` in `params` of an {place} is left out", "delete it")
 
     def _unread(self, place: str, data: Any, where: NodePath) -> None:
         for key, message, hint in losses(place, data if isinstance(data, dict) else ()):
@@ -193,7 +206,7 @@ class XStateActionReader:
         return None
 
     def _placeholder(self, kind: str, data: Any, where: NodePath) -> str:
-        named = _shown(kind, data)
+        named = shown_name(kind, data)
         key = self._guards.get(named)
         if key is None:
             stem = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", kind)) or "_"
@@ -236,8 +249,8 @@ def _logged(text: str) -> ActionData:
     return {"log": re.sub(r"\{(?=\{)", "{{ '{' }}", text)}
 
 
-def _shown(kind: str, data: Any) -> str:
-    """The name of an action or a guard with its parameters, which version 4 has beside it."""
+def shown_name(kind: str, data: Any) -> str:
+    """The name of an action, a guard or an actor with its parameters, which version 4 has beside it."""
     params = data.get("params") if isinstance(data, dict) else None
     rest = data.items() if isinstance(data, dict) else ()
     beside = {key: value for key, value in rest if key not in ("type", "params")}

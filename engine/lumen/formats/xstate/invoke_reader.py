@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.formats.behavior_data import TransitionData, single
-from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader
+from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader, shown_name
 from lumen.formats.xstate.constants import constant_data
 from lumen.formats.xstate.known import losses
 from lumen.formats.xstate.state_tree import XStateNode
@@ -35,6 +35,8 @@ class XStateInvokeReader:
         for number, where, row in self._rows(state):
             for key, message, hint in losses("invoke", row):
                 self.parts.lost((*where, key), message, hint)
+            if not isinstance(row.get("id", ""), str):
+                self.parts.lost((*where, "id"), "`id` is no text", "put it in quotes")
             if invoked := self._invoked(own, where, row):
                 invokes.append({**invoked, **self._ends(state, where, row)})
             elif (steps := self._steps(row)) is not None and "do" not in data:
@@ -60,7 +62,7 @@ class XStateInvokeReader:
                 waits.setdefault(f"{family}.{id}", []).extend(self.transitions.under(state, (*where, key), row[key]))
         source = row.get("src")
         named = source.get("type") if isinstance(source, dict) else source
-        shown = f" of `{named}`" if isinstance(named, str) else ""
+        shown = f" of `{shown_name(named, source)}`" if isinstance(named, str) else ""
         hint = f"invoke a behaviour as `{id}`" + (", whose end is waited for" if waits else "")
         self.parts.lost(where, f"`invoke`{shown}: its code is not in the file", hint)
         if "onSnapshot" in row:
@@ -100,5 +102,5 @@ class XStateInvokeReader:
                 yield number, place, row
             elif isinstance(row, str):
                 yield number, place, {"src": row}
-            elif row is not None:
+            elif row is not None or isinstance(data, list):
                 self.parts.lost(place, "this is no invocation")

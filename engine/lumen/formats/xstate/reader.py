@@ -8,7 +8,7 @@ from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.foreign_states import passing_key
 from lumen.formats.xstate.action_reader import XStateActionReader
 from lumen.formats.xstate.constants import constant_data
-from lumen.formats.xstate.descriptors import bare, is_descriptor, longest_first
+from lumen.formats.xstate.descriptors import bare, is_descriptor, longest_first, own_event
 from lumen.formats.xstate.invoke_reader import XStateInvokeReader
 from lumen.formats.xstate.json_source import parse_json
 from lumen.formats.xstate.known import STATE_KINDS, is_version_4, losses
@@ -137,6 +137,8 @@ class _XStateReader:
                 self.parts.lost(where, f"`history` can't be `{value}`", 'write "shallow" or "deep"')
             elif key in ("id", "description") and not isinstance(value, str):
                 self.parts.lost(where, f"`{key}` is no text", "put it in quotes")
+            elif key == "data" and kind == "final" and "output" in source:
+                self.parts.lost(where, "`data` beside `output` is left out", "delete one of them")
         for key, value in _lumen(state).items():
             if not self._is_own(state, key, value):
                 self.parts.lost((*state.where, "meta", "lumen", key), f"`{key}` of `meta.lumen` has no counterpart")
@@ -161,7 +163,9 @@ class _XStateReader:
         if "target" in state.source:
             found = self.transitions.targets(state, state.source["target"], (*state.where, "target"))
             home = state.parent
-            if found and all(target.lies_below(home) for target in found if home is not None):
+            if found and any(target.kind == "history" for target in found):
+                self.parts.lost((*state.where, "target"), "a history can't lead to a history", "name a state")
+            elif found and all(target.lies_below(home) for target in found if home is not None):
                 data["target"] = self.transitions.named(state, found)
             elif found:
                 self.parts.lost((*state.where, "target"), "a history leads to a state beside its own parent")
@@ -172,7 +176,10 @@ class _XStateReader:
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
         if home.kind == "compound":
-            return {"target": self.first[home]}
+            if not any(c.key == self.first[home] and c not in home.regular for c in home.children):
+                return {"target": self.first[home]}
+            self.parts.lost(state.where, "a history leads to a history, as its parent begins", "give it a `target`")
+            return {"target": self.transitions.named(state, home.regular[:1])}
         return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
@@ -243,6 +250,8 @@ class _XStateReader:
             descriptor = self.parts.names.event(event)
             if event == "":
                 continue  # version 4's `always`
+            if "*" in event and not own_event(event) and descriptor != event:
+                self.parts.changed(where, f"the events `{event}` are called `{descriptor}` here")
             if not is_descriptor(descriptor):
                 self.parts.lost(where, f"`{event}` is no event", "write names with dots between")
                 continue

@@ -100,6 +100,8 @@ class XStateStateTree:
             self.findings.lost(
                 self.source.place(parent.where), "a state has a history and no other states", "delete it"
             )
+            for child in parent.named.values():
+                self.by_id.pop(child.source.get("id", ""), None)
             parent.children.clear()
             parent.named.clear()
 

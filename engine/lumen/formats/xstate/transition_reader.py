@@ -7,6 +7,7 @@ from lumen.formats.xstate.action_reader import HEARS_GUARD, XStateActionReader
 from lumen.formats.xstate.known import BOOLEANS, losses
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
+from lumen.loading.transitions import rivals
 
 
 class XStateTransitionReader:
@@ -90,7 +91,11 @@ class XStateTransitionReader:
         """Version 4's `in` as a condition; None, and reported, if it names no state by its id."""
         found = self.outline.resolve(self.outline.root, data) if isinstance(data, str) and data[:1] == "#" else None
         if found is None:
-            self.parts.lost(where, f"`in`: there is no state `{data}`", 'write "#" and the id of the state')
+            self.parts.lost(
+                where,
+                f"`in`: there is no state `{data}`",
+                'write "#" and the id of the state; the transition is left out',
+            )
             return None
         return f"In('{found.name or self.outline.title}')"
 
@@ -103,6 +108,10 @@ class XStateTransitionReader:
                 self.parts.lost(where, f"there is no state `{text}` to go to", "the transition is left out")
                 return None
             found.append(target)
+        if pair := rivals(found, lambda node: str(node.kind)):
+            message = f"`{pair[0].name}` and `{pair[1].name}` can't be active together"
+            self.parts.lost(where, message, "the transition is left out")
+            return None
         return found
 
     def named(self, state: XStateNode, targets: list[XStateNode]) -> Any:
