@@ -10,7 +10,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.transitions import ENDLESS_ALWAYS
 from lumen.rules.endless_chains import ENDLESS_CHAIN
-from lumen.rules.statecharts import ALWAYS_LOOP, reachable
+from lumen.rules.statecharts import ALWAYS_LOOP, reachable, within
 from lumen.rules.walk import action_sites
 
 DEAD_END = Code("dead-end", "statecharts", WARNING, "no transition leads out of a state")
@@ -105,11 +105,6 @@ class _Graph:
         while parent is not None:
             yield parent
             parent = self.machine.states[parent].parent
-
-
-def within(path: str, other: str) -> bool:
-    """Whether a state is the other one, or lies in it."""
-    return path == other or not other or path.startswith(f"{other}.")
 
 
 def spread(begin: Iterable[GraphNode], moves: dict[GraphNode, list[GraphNode]]) -> set[GraphNode]:

@@ -7,8 +7,8 @@ from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.sounds import sound_duration
-from lumen.rules.dead_ends import within
 from lumen.rules.lookups import first, value_at
+from lumen.rules.statecharts import within
 from lumen.rules.walk import action_sites
 
 NO_EFFECT = Code("no-effect", "statecharts", WARNING, "a key has no effect here")

@@ -1,16 +1,21 @@
 """States that lead back to themselves without a guard and without time: by events, `do`, `invoke`, `after: 0s`."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from lumen.interpreters.expressions.tree import Identifier, walk
 from lumen.language.actions import (
+    PARENT,
     Assign,
     CancelSend,
+    If,
     LogText,
+    Parallel,
     PlacedAction,
     PublishBody,
     Raise,
     Send,
+    Wait,
     nested,
 )
 from lumen.language.diagnostics import WARNING, Code
@@ -18,218 +23,383 @@ from lumen.language.machines import MachineDefinition, State, StateKind, Transit
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import hears
-from lumen.rules.statecharts import ALWAYS_LOOP
+from lumen.rules.logic import tree
+from lumen.rules.statecharts import ALWAYS_LOOP, within
 
 ENDLESS_CHAIN = Code(
     "endless-chain", "statecharts", WARNING, "states lead back to themselves for ever, without a guard and without time"
 )
 
-MAX_STEPS = 40
-"""Transitions of a chain that are followed."""
+MAX_STEPS = 1000
+"""Events and transitions of a chain that are followed, as many as the engine takes without a rest."""
+
+MAX_WORK = 30_000
+"""States that are looked at for the chains of one behaviour; what is left then is not followed."""
+
+MAX_SHOWN_TRANSITIONS = 6
+"""Transitions of a chain that its message names."""
 
 MAX_INVOKED = 4
 """Behaviours within behaviours that are followed."""
 
-_INSTANT = (Assign, CancelSend, LogText, PublishBody, Raise, Send)
+_INSTANT = (Assign, CancelSend, If, LogText, Parallel, PublishBody, Raise, Send, Wait)
+
+_Taken = tuple[Transition, str]
+"""A transition and the event that selected it; empty for `always`."""
 
 
 class _UncertainError(Exception):
-    """What comes next depends on a guard, on time, or on more than one state."""
+    """What comes next depends on a guard, on a list, or on states that nobody can know."""
+
+
+@dataclass
+class _Survey:
+    """What all chains of a machine share: the order of its states, the situations that were seen, and the work done."""
+
+    machine: MachineDefinition
+    order: Mapping[str, int]
+    """The place of each path in the document."""
+    seen: set[tuple[object, ...]] = field(default_factory=set)
+    work: int = 0
+    _selecting: dict[str, list[Transition]] = field(default_factory=dict)
+
+    def selecting(self, region: str) -> list[Transition]:
+        """The transitions of all states in a region that an event selects."""
+        if region not in self._selecting:
+            states = (state for path, state in self.machine.states.items() if within(path, region))
+            self._selecting[region] = [t for state in states for t in state.transitions if t.event and not t.timed]
+        return self._selecting[region]
 
 
 @dataclass
 class _Chain:
-    """A machine of one active state at a time, followed for as long as nothing is left to chance."""
+    """A machine that is followed for as long as no time passes and nothing is left to chance.
 
-    machine: MachineDefinition
-    state: State
+    `active` are the paths of the active states, `begun` those whose `do` and `invoke` have begun; `unknown` are regions
+    beside the active states in which any state may be active.
+    """
+
+    survey: _Survey
     depth: int = MAX_INVOKED
+    active: set[str] = field(default_factory=set)
+    begun: set[str] = field(default_factory=set)
+    unknown: set[str] = field(default_factory=set)
     internal: tuple[str, ...] = ()
     external: tuple[str, ...] = ()
-    taken: list[tuple[Transition, str]] = field(default_factory=list)
-    """The transitions so far, each with the event that selected it; empty for `always`."""
+    timers: list[Transition] = field(default_factory=list)
+    taken: list[_Taken] = field(default_factory=list)
+    asked: list[tuple[int, str]] = field(default_factory=list)
+    """Guards of `always` that are taken for false, as they are shown, each with how many were taken before."""
+    assigned: int = -1
+    """How many were taken before the last change of the context."""
+    over: bool = False
 
-    def enter(self, path: str, entered: bool = True) -> None:
-        """Go to a state and what it begins in, and note the events of that."""
-        state = self.machine.states[path]
-        while state.kind is StateKind.COMPOUND and len(state.initial) == 1:
-            self._plain(state)
-            state = self.machine.states[state.initial[0]]
-        if state.kind not in (StateKind.ATOMIC, StateKind.FINAL):
-            raise _UncertainError
-        self.state = state
-        for ancestor in self._around(state):
-            self._plain(ancestor)
-        if entered:
+    @property
+    def machine(self) -> MachineDefinition:
+        return self.survey.machine
+
+    def situation(self) -> tuple[object, ...]:
+        """All that decides what comes next."""
+        timers = tuple(id(timer) for timer in self.timers)
+        return frozenset(self.active), frozenset(self.begun), self.internal, self.external, timers
+
+    def stand_in(self, path: str) -> None:
+        """Let the state and those around it be active, as if they had been for a while; it begins what is within."""
+        while path:
+            state = self.machine.states[path]
+            self.active.add(path)
+            path = state.parent or ""
+            if self.machine.states[path].kind is StateKind.PARALLEL:
+                self.unknown.update(r for r in _regions(self.machine, path) if r not in self.active)
+        self.active.add("")
+        self.begun |= self.active
+
+    def enter(self, targets: Iterable[str], domain: str | None) -> None:
+        """Enter these states, those around them up to the domain, and what begins with them."""
+        states, found = self.machine.states, set[str]()
+
+        def add(path: str | None, top: str | None) -> None:
+            while path is not None and path != top and path not in found:
+                found.add(path)
+                path = states[path].parent
+
+        for target in targets:
+            add(target, domain)
+        before = -1
+        while before < len(found):
+            before = len(found)
+            for path in tuple(found):
+                state = states[path]
+                if state.kind is StateKind.PARALLEL:
+                    found.update(_regions(self.machine, path))
+                elif state.kind is StateKind.COMPOUND and found.isdisjoint(state.children):
+                    for first in state.initial:
+                        add(first, path)
+        for state in self._in_order(found):
+            if state.kind is StateKind.HISTORY or state.for_each:
+                raise _UncertainError
+            self.active.add(state.path)
             self._note(state.entry)
-            self._ends()
+            names = {t.event: t for t in reversed(state.transitions) if t.timed and t.delay == 0}
+            self.timers += reversed(names.values())
+            if state.kind is StateKind.FINAL:
+                self._end(state)
 
     def step(self) -> bool:
-        """Take the next transition; False if it rests."""
-        state = self.state
-        if (found := self._first("")) is not None:
-            self._take(found, "")
-            return True
-        if self.internal:
-            event, *rest = self.internal
-            self.internal = tuple(rest)
-        elif self.external:
-            event, *rest = self.external
-            self.external = tuple(rest)
-        else:
-            zero = next((t for t in state.transitions if t.delay == 0), None)
-            if zero is None or zero.guard:
+        """Take what is enabled, or the next event; False if it rests, or is over."""
+        if self.over:
+            return False
+        self.survey.work += len(self.active)
+        event, found = "", self._selected("")
+        if not found:
+            if not self.internal:
+                self._begin()
+            if self.internal:
+                event, *rest = self.internal
+                self.internal = tuple(rest)
+            elif self.external:
+                event, *rest = self.external
+                self.external = tuple(rest)
+            elif self.timers:
+                timer = self.timers.pop(0)
+                self.take([timer] if self._holds(timer) else [], timer.event)
+                return True
+            else:
                 return False
-            self._take(zero, zero.event)
-            return True
-        if (found := self._first(event)) is not None:
-            self._take(found, event)
+            found = self._selected(event)
+        self.take(found, event)
         return True
 
-    def _take(self, transition: Transition, event: str) -> None:
-        self.taken.append((transition, event))
-        if len(transition.targets) > 1:
+    def take(self, transitions: Sequence[Transition], event: str) -> None:
+        """Take these at once."""
+        self.taken += [(transition, event) for transition in transitions]
+        moves = [(t, _domain(self.machine, t)) for t in transitions if t.targets]
+        for i, (_, domain) in enumerate(moves):
+            if any(within(domain, other) or within(other, domain) for _, other in moves[:i]):
+                raise _UncertainError
+        for _, domain in moves:
+            self._leave(domain)
+        for transition in transitions:
+            self._note(transition.actions)
+        for transition, domain in moves:
+            self.enter(transition.targets, domain)
+
+    def _leave(self, domain: str) -> None:
+        leaving = [s for s in self._in_order(self.active) if s.path != domain and within(s.path, domain)]
+        for state in reversed(leaving):
+            self._note(state.exit)
+            self.active.discard(state.path)
+            self.begun.discard(state.path)
+            self.timers = [timer for timer in self.timers if timer.source != state.path]
+        for region in [region for region in self.unknown if within(region, domain)]:
+            if any(within(path, region) and _speaks(state.exit) for path, state in self.machine.states.items()):
+                raise _UncertainError
+            self.unknown.discard(region)
+
+    def _begin(self) -> None:
+        """Begin each `do` up to what takes time in it, and what is invoked."""
+        for state in [s for s in self._in_order(self.active) if s.path not in self.begun]:
+            self.begun.add(state.path)
+            instant = 0
+            while instant < len(state.do) and all(_is_instant(step) for step in nested((state.do[instant],))):
+                instant += 1
+            self._note(state.do[:instant])
+            if state.do and instant == len(state.do):
+                self.internal += (f"done.do.{state.name}",)
+            for invoke in state.invoke:
+                other = self.machine.invoked.get(invoke.behavior)
+                if other is None or any(_speaks((*s.entry, *s.do, *s.exit), PARENT) for s in other.states.values()):
+                    raise _UncertainError
+                if _is_over_at_once(other, self.depth - 1):
+                    self.internal += (f"done.invoke.{invoke.id}",)
+
+    def _end(self, state: State) -> None:
+        """Note which states end with a final one."""
+        parent = self.machine.states[state.parent or ""]
+        if not parent.path:
+            self.over = True
+            return
+        self.internal += (f"done.state.{parent.name}",)
+        around = self.machine.states[parent.parent or ""]
+        if around.kind is StateKind.PARALLEL:
+            regions = _regions(self.machine, around.path)
+            if not self.unknown.isdisjoint(regions):
+                raise _UncertainError
+            if all(self._is_final(region) for region in regions):
+                self.over = not around.path
+                self.internal += (f"done.state.{around.name}",)
+
+    def _is_final(self, region: str) -> bool:
+        state = self.machine.states[region]
+        if state.kind is StateKind.PARALLEL:
+            return all(map(self._is_final, _regions(self.machine, region)))
+        return any(c in self.active and self.machine.states[c].kind is StateKind.FINAL for c in state.children)
+
+    def _selected(self, event: str) -> list[Transition]:
+        """The first transition of each innermost state that the event selects."""
+        states, found = self.machine.states, list[Transition]()
+        if event and any(_selects(t, event) for region in self.unknown for t in self.survey.selecting(region)):
             raise _UncertainError
-        if transition.targets:
-            self._note(self.state.exit)
-        self._note(transition.actions)
-        if transition.targets:
-            self.enter(transition.targets[0])
+        for leaf in self._in_order(self.active):
+            if self.active.isdisjoint(leaf.children) and self.unknown.isdisjoint(leaf.children):
+                path: str | None = leaf.path
+                while path is not None:
+                    rows = (t for t in states[path].transitions if _selects(t, event))
+                    if (first := next(filter(self._holds, rows), None)) is not None:
+                        found += [first] if not any(first is other for other in found) else []
+                        break
+                    path = states[path].parent
+        return found
 
-    def _ends(self) -> None:
-        """Note what ends as soon as the state is entered."""
-        state = self.state
-        if state.kind is StateKind.FINAL:
-            parent = self.machine.states[state.parent or ""]
-            if not parent.path:
-                raise _UncertainError  # the behaviour is over
-            self.internal += (f"done.state.{parent.name}",)
-        if state.do and all(isinstance(step.action, _INSTANT) for step in nested(state.do)):
-            self._note(state.do)
-            self.internal += (f"done.do.{state.name}",)
-        for invoke in state.invoke:
-            other = self.machine.invoked.get(invoke.behavior)
-            if other is not None and _is_over_at_once(other, self.depth - 1):
-                self.internal += (f"done.invoke.{invoke.id}",)
-
-    def _first(self, event: str) -> Transition | None:
-        """The transition that is taken on an event; raises _UncertainError if a guard decides."""
-        for state in (self.state, *self._around(self.state)):
-            for transition in state.transitions:
-                if _selects(transition, event):
-                    if transition.guard or transition.hears or transition.approve:
-                        raise _UncertainError
-                    return transition
-        return None
+    def _holds(self, transition: Transition) -> bool:
+        """Whether a selected transition is taken; a guard of `always` that only the context decides may be false."""
+        if transition.hears or transition.approve:
+            raise _UncertainError
+        if transition.guard is None:
+            return True
+        names = {node.name for node, _ in walk(tree(transition.guard.source)) if isinstance(node, Identifier)}
+        if transition.event or names != {"context"} or "In(" in transition.guard.source:
+            raise _UncertainError
+        self.asked.append((len(self.taken), transition.guard.shown))
+        return False
 
     def _note(self, block: Sequence[PlacedAction]) -> None:
+        """Note the events of a block, and whether it changes the context."""
+        if any(isinstance(step.action, Assign) for step in nested(tuple(block))):
+            self.assigned = len(self.taken)
         for step in block:
             match step.action:
                 case Raise(event):
                     self.internal += (event,)
                 case Send(event, delay=0.0, to=""):
                     self.external += (event,)
-                case action if any(isinstance(s.action, Raise | Send) for s in nested((step,))) and not isinstance(
-                    action, Send
-                ):
+                case Send():
+                    pass
+                case _ if _speaks((step,)):
                     raise _UncertainError
 
-    def _around(self, state: State) -> Iterator[State]:
-        while state.parent is not None:
-            state = self.machine.states[state.parent]
-            yield state
-
-    def _plain(self, state: State) -> None:
-        """Refuse a state around that does something when it is left or entered, or has more than one state active."""
-        busy = any(isinstance(s.action, Raise | Send) for s in nested((*state.entry, *state.exit)))
-        if state.kind is not StateKind.COMPOUND or state.for_each or state.invoke or (busy and state.path):
-            raise _UncertainError
+    def _in_order(self, paths: Iterable[str]) -> list[State]:
+        return [self.machine.states[path] for path in sorted(paths, key=self.survey.order.__getitem__)]
 
 
 def check(draft: ProjectDraft) -> None:
     """Report chains that never come to rest."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        for state in machine.states.values():
-            _repeats(state, report)
         told: set[int] = set()
         for chain in _beginnings(machine):
             if (around := _round(chain)) and told.isdisjoint(id(t) for t, _ in around):
                 told.update(id(t) for t, _ in around)
-                if any(event for _, event in around):  # `always` alone is another rule's
-                    _report(machine, around, report)
-
-
-def _repeats(state: State, report: DocumentReport) -> None:
-    """An `always` that leads nowhere and changes nothing is taken again as long as those before it are not."""
-    rows = [t for t in state.transitions if not t.event]
-    for i, transition in enumerate(rows):
-        asked = [t.guard.shown for t in rows[:i] if t.guard]
-        changes = any(isinstance(step.action, Assign) for step in nested(transition.actions))
-        if asked and not transition.targets and not transition.guard and not changes:
-            conditions = " and ".join(f"`{text}`" for text in asked)
-            false = f"{conditions} {'are' if len(asked) > 1 else 'is'} false"
-            message = (
-                f"this never comes to rest while {false}: its `actions` are done again and again, before any event"
-            )
-            hint = "give it a `target`, or do them in `entry`"
-            report(ALWAYS_LOOP, transition.where, message, hint)
+                _report(machine, around, _asked(chain, len(around)), report)
 
 
 def _beginnings(machine: MachineDefinition) -> Iterator[_Chain]:
-    """Each state as it is entered, and each transition, as they follow an event of somebody else."""
+    """Each state as it is entered, and what each transition brings about, as they follow an event of somebody else."""
+    survey = _survey(machine)
     for state in machine.states.values():
-        chain = _Chain(machine, state)
+        chain = _Chain(survey)
         try:
-            chain.enter(state.path)
+            if state.parent is not None:
+                chain.stand_in(state.parent)
+            chain.enter((state.path,), state.parent)
         except _UncertainError:
             continue
         yield chain
     for state in machine.states.values():
         for transition in state.transitions:
-            if not any(isinstance(step.action, Raise | Send) for step in transition.actions):
-                continue
-            chain = _Chain(machine, state)
+            if not _speaks((*transition.actions, *(state.exit if transition.targets else ()))):
+                continue  # it leads to what the first loop begins with
+            chain = _Chain(survey)
             try:
-                chain.enter(state.path, entered=False)
-                chain._take(transition, transition.event)
+                if state.parent is not None:
+                    chain.stand_in(state.parent)
+                chain.enter((state.path,), state.parent)
+                chain.internal, chain.external, chain.timers, chain.begun = (), (), [], set(chain.active)
+                chain.take([transition], transition.event)
             except _UncertainError:
                 continue
             chain.taken.clear()
             yield chain
 
 
-def _round(chain: _Chain) -> list[tuple[Transition, str]]:
-    """The transitions that lead from a situation back to it; empty if it rests, or if nobody can tell."""
-    seen: dict[tuple[str, tuple[str, ...], tuple[str, ...]], int] = {}
+def _survey(machine: MachineDefinition) -> _Survey:
+    return _Survey(machine, {path: number for number, path in enumerate(machine.states)})
+
+
+def _round(chain: _Chain) -> list[_Taken]:
+    """The transitions that lead from a situation back to it, or on and on; empty if it rests, or if nobody can tell."""
+    seen: dict[tuple[object, ...], int] = {}
     try:
         for _ in range(MAX_STEPS):
-            now = (chain.state.path, chain.internal, chain.external)
+            now = chain.situation()
             if now in seen:
-                return chain.taken[seen[now] :]
+                return _settled(chain, chain.taken[seen[now] :])
+            if now in chain.survey.seen or chain.survey.work > MAX_WORK:
+                return []
+            chain.survey.seen.add(now)
             seen[now] = len(chain.taken)
             if not chain.step():
                 return []
     except _UncertainError:
         return []
-    return []
+    *before, last = chain.taken  # the events become more and more
+    back = next((i for i, (other, _) in enumerate(reversed(before)) if other is last[0]), 0)
+    return _settled(chain, chain.taken[-back - 1 :])
+
+
+def _settled(chain: _Chain, around: list[_Taken]) -> list[_Taken]:
+    """A round, unless it changes what a guard asks for, or is without an event or a guard: that is another rule's."""
+    asked = _asked(chain, len(around))
+    if asked and chain.assigned > len(chain.taken) - len(around):
+        return []
+    return around if asked or any(event for _, event in around) else []
+
+
+def _asked(chain: _Chain, number: int) -> list[str]:
+    """The guards that the last transitions depend on."""
+    return list(dict.fromkeys(shown for before, shown in chain.asked if before >= len(chain.taken) - number))
 
 
 def _is_over_at_once(machine: MachineDefinition, depth: int) -> bool:
     """Whether a behaviour ends as soon as it begins."""
-    first = machine.root
-    while first.kind is StateKind.COMPOUND and len(first.initial) == 1:
-        first = machine.states[first.initial[0]]
-    chain = _Chain(machine, first, depth)
+    chain = _Chain(_survey(machine), depth)
     try:
         if depth:
-            chain.enter("")
+            chain.enter(("",), None)
             for _ in range(MAX_STEPS):
                 if not chain.step():
-                    return False
+                    break
     except _UncertainError:
-        return chain.state.kind is StateKind.FINAL and chain.state.parent == ""
-    return False
+        return False
+    return chain.over and not chain.asked
+
+
+def _domain(machine: MachineDefinition, transition: Transition) -> str:
+    """The state that a transition does not leave: the innermost compound one around its source and its targets."""
+    path = transition.source
+    if transition.reenter:
+        path = machine.states[path].parent or ""
+    while path and not (
+        machine.states[path].kind is StateKind.COMPOUND
+        and all(target != path and within(target, path) for target in transition.targets)
+    ):
+        path = machine.states[path].parent or ""
+    return path
+
+
+def _regions(machine: MachineDefinition, path: str) -> list[str]:
+    return [c for c in machine.states[path].children if machine.states[c].kind is not StateKind.HISTORY]
+
+
+def _speaks(block: Sequence[PlacedAction], to: str = "") -> bool:
+    """Whether it raises or sends an event, to that recipient if one is named."""
+    actions = [step.action for step in nested(tuple(block))]
+    return any(isinstance(a, Send) and a.to == to if to else isinstance(a, Raise | Send) for a in actions)
+
+
+def _is_instant(step: PlacedAction) -> bool:
+    """Whether an action of a `do` takes no time by itself."""
+    return isinstance(step.action, _INSTANT) and (not isinstance(step.action, Wait) or step.action.seconds == 0)
 
 
 def _selects(transition: Transition, event: str) -> bool:
@@ -238,13 +408,23 @@ def _selects(transition: Transition, event: str) -> bool:
     return transition.event == event if transition.exact else hears(transition.event, event)
 
 
-def _report(machine: MachineDefinition, around: list[tuple[Transition, str]], report: DocumentReport) -> None:
+def _report(machine: MachineDefinition, around: list[_Taken], asked: list[str], report: DocumentReport) -> None:
     first = min(range(len(around)), key=lambda i: str(around[i][0].where))
     rows = around[first:] + around[:first]
-    ways = ", ".join(f"{_way(event)} of `{machine.states[t.source].name or machine.id}`" for t, event in rows)
+    ways = ", ".join(
+        f"{_way(event)} of `{machine.states[t.source].name or machine.id}`" for t, event in rows[:MAX_SHOWN_TRANSITIONS]
+    )
+    message, code = "this never comes to rest", ENDLESS_CHAIN
     hint = "let something that takes time come between, such as `after: {1s: …}`, or give one of them a `guard`"
+    if asked:
+        message += f" while {' and '.join(f'`{shown}`' for shown in asked)} {'are' if len(asked) > 1 else 'is'} false"
+        hint = "change on the way what the guard asks for, or let something that takes time come between"
+    if not any(event for _, event in rows):
+        code = ALWAYS_LOOP
+        if not any(t.targets for t, _ in rows):
+            hint = "give it a `target`, or do them in `entry`"
     related = [(t.where, "then here") for t, _ in rows[1:]]
-    report(ENDLESS_CHAIN, rows[0][0].where, f"this never comes to rest: {ways}", hint, related=related)
+    report(code, rows[0][0].where, f"{message}: {ways}", hint, related=related)
 
 
 def _way(event: str) -> str:

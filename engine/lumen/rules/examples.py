@@ -9,11 +9,11 @@ from lumen.language.diagnostics import WARNING, Code, NodePath, Related
 from lumen.language.machines import Hears, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.caught import row_phrases
-from lumen.rules.dead_ends import within
 from lumen.rules.events import hears
 from lumen.rules.heard_rows import HeardRows, SaidPhrase, SaidRow, hearing_behaviors, remembered, shown
 from lumen.rules.naming import looked_up
 from lumen.rules.speech import SHADOWED_ANSWER
+from lumen.rules.statecharts import within
 from lumen.rules.word_tables import home_of
 
 NEVER_HEARD = Code("never-heard", "hearing", WARNING, "no sentence takes a row of `hears`")

@@ -4,7 +4,7 @@ from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition, StateKind
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.dead_ends import within
+from lumen.rules.statecharts import within
 
 JUMP_INTO_FOR = Code("jump-into-for", "statecharts", ERROR, "a transition leads into a `for`, past its list")
 

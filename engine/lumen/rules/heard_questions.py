@@ -11,8 +11,8 @@ from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.language.machines import State, StateKind
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.buttons import together
-from lumen.rules.dead_ends import within
 from lumen.rules.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
+from lumen.rules.statecharts import within
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
 
 SHADOWED_QUESTION = Code(

@@ -16,9 +16,9 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import Same, memoize
 from lumen.loading.words import WORDS_FOLDER
-from lumen.rules.dead_ends import within
 from lumen.rules.events import descriptor_path
 from lumen.rules.naming import heard_rows
+from lumen.rules.statecharts import within
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
 
 MAX_EXAMPLES = 5_000

@@ -4,7 +4,7 @@ from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.dead_ends import within
+from lumen.rules.statecharts import within
 
 CROSSES_REGIONS = Code(
     "crosses-regions", "statecharts", WARNING,

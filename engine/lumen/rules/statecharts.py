@@ -37,6 +37,11 @@ def check(draft: ProjectDraft) -> None:
         _loops(machine, report)
 
 
+def within(path: str, other: str) -> bool:
+    """Whether a state is the other one, or lies in it."""
+    return path == other or not other or path.startswith(f"{other}.")
+
+
 def reachable(machine: MachineDefinition, begin: str = "") -> set[str]:
     """The paths of all states that some sequence of events could enter from `begin`, whatever guards say."""
     found: set[str] = set()
@@ -110,13 +115,15 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
     onward: dict[str, list[tuple[Transition, str]]] = {}
     for state in machine.states.values():
         if state.kind is StateKind.ATOMIC:
-            for transition in (t for t in state.transitions if not t.event and t.guard):
+            rows = [t for t in state.transitions if not t.event]
+            for transition in (t for t in rows if t.guard or t is rows[0]):
                 target = _settled(machine, transition)
                 if target and not _assigns(transition.actions):
                     onward.setdefault(state.path, []).append((transition, target))
     said: set[str] = set()
     for path in onward:
-        way = next(_rounds(machine, onward, path, path, ()), None)
+        ways = _rounds(machine, onward, path, path, ())
+        way = next((way for way in ways if any(t.guard for t in way)), None)
         if way and path not in said:
             said.update(t.source for t in way)
             asked = " and ".join(f"`{t.guard.shown}`" for t in way if t.guard)
