@@ -659,6 +659,43 @@ def test_reenter_without_a_target_is_found() -> None:
     ]
 
 
+@for_each(
+    ("state", "found"),
+    [
+        ("{always: b, do: {say: Hi}, after: {5s: b}}",
+         "3:18 no-effect: `do`, `after` have no effect: `always` leaves `a` at once"
+         " (give the `always` a `guard`, or delete it)"),
+        ("{always: [{guard: context.n > 1, target: a}, b], on: {touched: b}}",
+         "3:55 no-effect: `on` has no effect: `always` leaves `a` at once (give the `always` a `guard`, or delete it)"),
+        ("{always: {guard: context.n > 1, target: b}, on: {touched: b}}", ""),
+        ("{always: b, entry: {log: x}, exit: {log: x}}", ""),
+        ("{always: b, initial: x, states: {x: {on: {touched: b}}}, on: {touched: b}}", ""),
+    ],
+)  # fmt: skip
+def test_what_comes_too_late_is_found(state: str, found: str) -> None:
+    lines = lint(f"context: {{n: 0}}\nstates:\n  a: {state}\n  b: {{after: {{5s: a}}}}\n")
+    assert [line for line in lines if "no-effect" in line] == ([found] if found else [])
+
+
+@for_each(
+    ("within", "found"),
+    [
+        ('x: {on: {"*": y}}, y: {on: {"*": x}}', True),
+        ('x: {on: {"*": y}}, y: {on: {touched: x}}', False),
+        ('x: {on: {done: y}}, y: {initial: z, on: {done.invoke: x}, states: {z: {}}}', True),
+        ('x: {on: {"*": {guard: "event.name != \'e\'", target: y}}}, y: {on: {"*": x}}', False),
+        ('x: {on: {touched: y}}, y: {type: final}', False),
+    ],
+)  # fmt: skip
+def test_the_end_of_an_invocation_that_states_within_take(within: str, found: bool) -> None:
+    chart = (
+        f"initial: a\nstates:\n  a: {{invoke: {{behavior: quick, onDone: b}}, initial: x, states: {{{within}}}}}\n"
+        "  b: {after: {5s: a}}\n"
+    )
+    lines = [line for line in lint(chart, quick=of("quick.yaml")) if "shadowed-transition" in line]
+    assert [line.partition(" ")[0] for line in lines] == (["3:41"] if found else [])
+
+
 def test_no_event_is_proposed_that_is_no_better_than_none() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6

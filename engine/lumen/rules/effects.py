@@ -2,7 +2,7 @@
 
 from lumen.language.commands import PlaySound
 from lumen.language.diagnostics import WARNING, Code, NodePath
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -14,6 +14,10 @@ from lumen.rules.walk import action_sites
 NO_EFFECT = Code("no-effect", "statecharts", WARNING, "a key has no effect here")
 MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is not there, so that nothing is heard")
 BAD_SOUND = Code("bad-sound", "motions", WARNING, "a sound file can't be played")
+
+
+_AFTER_ENTRY = ("do", "invoke", "on", "hears", "after", "at", "onDone", "onError", "buttons")
+"""Keys of a state that mean something only while it is active."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -59,10 +63,26 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
                 message = f"`reenter` has no effect here: a target outside of `{state.name}` leaves it anyway"
                 report(NO_EFFECT, path, message, "delete it", key=True)
         written = value_at(report, state.where) or {}
+        if leaves := _leaves_at_once(state):
+            idle = [key for key in _AFTER_ENTRY if key in written]
+            if idle and not report.broken(leaves.where):
+                keys = ", ".join(f"`{key}`" for key in idle) + (" have" if len(idle) > 1 else " has")
+                message = f"{keys} no effect: `always` leaves `{state.name}` at once"
+                hint = "give the `always` a `guard`, or delete it"
+                report(NO_EFFECT, (*state.where, idle[0]), message, hint, key=True)
         if "onError" in written and "do" not in written and not report.broken((*state.where, "do")):
             message = "`onError` has no effect in a state without a `do`: nothing can fail"
             hint = "put it into the state whose `do` may fail, or write `on: {error.*: …}`"
             report(NO_EFFECT, (*state.where, "onError"), message, hint, key=True)
+
+
+def _leaves_at_once(state: State) -> Transition | None:
+    """The `always` by which a state is left as soon as it is entered, whatever guards say."""
+    if state.kind is not StateKind.ATOMIC or state.parent is None:
+        return None
+    return next(
+        (t for t in state.transitions if not t.event and not t.guard and t.targets not in ((), (state.path,))), None
+    )
 
 
 def _sounds(motion: MotionDefinition, report: DocumentReport, draft: ProjectDraft) -> None:

@@ -7,12 +7,13 @@ from lumen.interpreters.expressions.parser import MAX_REMEMBERED_TREES
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
-from lumen.language.machines import MachineDefinition, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
 from lumen.rules.events import hears
 from lumen.rules.logic import always, implies, never, tree
+from lumen.rules.statecharts import within
 from lumen.rules.walk import expression_sites
 from lumen.rules.word_tables import is_taken
 
@@ -45,6 +46,8 @@ def check(draft: ProjectDraft) -> None:
         for state in machine.states.values():
             if len(state.transitions) > 1:
                 _late(machine, state, report)
+            if state.children:
+                _taken_within(machine, state, report)
 
 
 def _told(report: DocumentReport, where: NodePath) -> bool:
@@ -90,6 +93,28 @@ def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> N
         if any(_takes_all(other, transition, machine, report) for other in earlier if covers(other, transition)):
             continue
         earlier.append(transition)
+
+
+def _taken_within(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
+    """Ends of what a state invokes that whatever is active within it takes first."""
+    inner = [s for s in machine.states.values() if s.path != state.path and within(s.path, state.path)]
+    leaves = [s for s in inner if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
+    for end in (t for t in state.transitions if t.where[len(state.where) :][:1] == ("invoke",)):
+        takers = [
+            next((t for s in inner if within(leaf.path, s.path) for t in s.transitions if _takes(t, end)), None)
+            for leaf in leaves[:MAX_COMPARED_CANDIDATES]
+        ]
+        first = takers[0] if takers else None
+        if first is not None and None not in takers and len(leaves) <= MAX_COMPARED_CANDIDATES:
+            message = f"this is never taken: what is active within `{state.name}` always takes the event, before it"
+            hint = f"name the events there instead of `{first.event}`"
+            related = [(first.where, "this is taken")]
+            report(SHADOWED_TRANSITION, end.where, message, hint, related=related)
+
+
+def _takes(transition: Transition, end: Transition) -> bool:
+    """Whether a transition takes the end of something, whatever guards say."""
+    return not (transition.guard or transition.hears or transition.approve) and covers(transition, end)
 
 
 def _turn(transition: Transition) -> int:
