@@ -582,10 +582,21 @@ def rests(chart: str) -> bool:
         ("a: {entry: {raise: go}, do: {log: x}, on: {go: b}}, b: {on: {done: a, touched: c}}", ""),
         ("a: {type: parallel, states: {p: {entry: {raise: go}}, q: {on: {go: .y}, initial: x, states: {x: {}, y: {}}}},"
          " on: {touched: c}}", ""),
+        ("a: {entry: {raise: out}, initial: x, states: {x: {after: {0s: x}}}, on: {out: c}}", ""),  # left before that
+        ("a: {do: {log: x}, onDone: c, on: {go: {actions: {raise: go}}}}", ""),  # no `go` comes before it is left
+        ("a: {after: {0s: c}, initial: x, states: {x: {on: {touched: {}, y: {actions: {raise: y}}}}}}",
+         ""),
+        ("a: {initial: x, always: b, states: {x: {}}}, b: {initial: y, always: a, states: {y: {}}}",
+         ""),  # `endless-always` says so
     ],
 )  # fmt: skip
 def test_endless_chains_of_every_make(states: str, way: str) -> None:
     assert [f"never comes to rest: {way} (" in line for line in endless(states)] == ([True] if way else [])
+
+
+def test_an_always_of_states_with_states_within_is_endless_too() -> None:
+    chart = "initial: a\nstates: {a: {always: b, states: {x: {}}}, b: {always: a, states: {y: {}}}}\n"
+    assert [line.split()[1] for line in lint(chart) if "never comes to rest" in line] == ["endless-always:"]
 
 
 def test_an_endless_chain_of_behaviours_within_behaviours_is_found() -> None:

@@ -22,6 +22,7 @@ from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.transitions import ENDLESS_ALWAYS
 from lumen.rules.events import hears
 from lumen.rules.logic import tree
 from lumen.rules.statecharts import ALWAYS_LOOP, within
@@ -32,6 +33,9 @@ ENDLESS_CHAIN = Code(
 
 MAX_STEPS = 1000
 """Events and transitions of a chain that are followed, as many as the engine takes without a rest."""
+
+MAX_STEPS_TO_REST = 20
+"""Events and transitions after which a state that was entered should rest."""
 
 MAX_WORK = 30_000
 """States that are looked at for the chains of one behaviour; what is left then is not followed."""
@@ -85,8 +89,8 @@ class _Chain:
     begun: set[str] = field(default_factory=set)
     unknown: set[str] = field(default_factory=set)
     internal: tuple[str, ...] = ()
-    external: tuple[str, ...] = ()
-    timers: list[Transition] = field(default_factory=list)
+    timers: list[Transition | str] = field(default_factory=list)
+    """Each `after: 0s` and each event that is sent, in their order: they come when no time has passed, yet later."""
     taken: list[_Taken] = field(default_factory=list)
     asked: list[tuple[int, str]] = field(default_factory=list)
     """Guards of `always` that are taken for false, as they are shown, each with how many were taken before."""
@@ -100,18 +104,16 @@ class _Chain:
 
     def situation(self) -> tuple[object, ...]:
         """All that decides what comes next."""
-        timers = tuple(id(timer) for timer in self.timers)
-        return frozenset(self.active), frozenset(self.begun), self.internal, self.external, timers
+        timers = tuple(timer if isinstance(timer, str) else id(timer) for timer in self.timers)
+        return frozenset(self.active), frozenset(self.begun), self.internal, timers
 
-    def stand_in(self, path: str) -> None:
-        """Let the state and those around it be active, as if they had been for a while; it begins what is within."""
-        while path:
-            state = self.machine.states[path]
-            self.active.add(path)
-            path = state.parent or ""
-            if self.machine.states[path].kind is StateKind.PARALLEL:
-                self.unknown.update(r for r in _regions(self.machine, path) if r not in self.active)
-        self.active.add("")
+    def stand_around(self, path: str) -> None:
+        """Let the states around that one be active, as if they had been for a while."""
+        while (outer := self.machine.states[path].parent) is not None:
+            if self.machine.states[outer].kind is StateKind.PARALLEL:
+                self.unknown.update(region for region in _regions(self.machine, outer) if region != path)
+            self.active.add(outer)
+            path = outer
         self.begun |= self.active
 
     def enter(self, targets: Iterable[str], domain: str | None) -> None:
@@ -139,9 +141,9 @@ class _Chain:
             if state.kind is StateKind.HISTORY or state.for_each:
                 raise _UncertainError
             self.active.add(state.path)
-            self._note(state.entry)
             names = {t.event: t for t in reversed(state.transitions) if t.timed and t.delay == 0}
             self.timers += reversed(names.values())
+            self._note(state.entry)
             if state.kind is StateKind.FINAL:
                 self._end(state)
 
@@ -150,33 +152,37 @@ class _Chain:
         if self.over:
             return False
         self.survey.work += len(self.active)
-        event, found = "", self._selected("")
+        event, found = "", self.selected("")
         if not found:
             if not self.internal:
                 self._begin()
             if self.internal:
                 event, *rest = self.internal
                 self.internal = tuple(rest)
-            elif self.external:
-                event, *rest = self.external
-                self.external = tuple(rest)
             elif self.timers:
                 timer = self.timers.pop(0)
-                self.take([timer] if self._holds(timer) else [], timer.event)
-                return True
+                if not isinstance(timer, str):
+                    self.take([timer] if self._holds(timer) else [], timer.event)
+                    return True
+                if any(self.machine.states[path].invoke for path in self.active):
+                    raise _UncertainError  # they hear it, too
+                event = timer
             else:
                 return False
-            found = self._selected(event)
+            found = self.selected(event)
         self.take(found, event)
         return True
 
     def take(self, transitions: Sequence[Transition], event: str) -> None:
-        """Take these at once."""
+        """Take these at once; of two that leave the same states the inner or the earlier one is taken."""
+        kept: list[Transition] = []
+        for transition in transitions:
+            rivals = [other for other in kept if self._conflict(transition, other)]
+            if all(transition.source != o.source and within(transition.source, o.source) for o in rivals):
+                kept = [*(other for other in kept if other not in rivals), transition]
+        transitions = kept
         self.taken += [(transition, event) for transition in transitions]
         moves = [(t, _domain(self.machine, t)) for t in transitions if t.targets]
-        for i, (_, domain) in enumerate(moves):
-            if any(within(domain, other) or within(other, domain) for _, other in moves[:i]):
-                raise _UncertainError
         for _, domain in moves:
             self._leave(domain)
         for transition in transitions:
@@ -184,13 +190,17 @@ class _Chain:
         for transition, domain in moves:
             self.enter(transition.targets, domain)
 
+    def _conflict(self, one: Transition, other: Transition) -> bool:
+        inner, outer = _domain(self.machine, one), _domain(self.machine, other)
+        return bool(one.targets and other.targets) and (within(inner, outer) or within(outer, inner))
+
     def _leave(self, domain: str) -> None:
         leaving = [s for s in self._in_order(self.active) if s.path != domain and within(s.path, domain)]
         for state in reversed(leaving):
             self._note(state.exit)
             self.active.discard(state.path)
             self.begun.discard(state.path)
-            self.timers = [timer for timer in self.timers if timer.source != state.path]
+            self.timers = [timer for timer in self.timers if isinstance(timer, str) or timer.source != state.path]
         for region in [region for region in self.unknown if within(region, domain)]:
             if any(within(path, region) and _speaks(state.exit) for path, state in self.machine.states.items()):
                 raise _UncertainError
@@ -200,42 +210,43 @@ class _Chain:
         """Begin each `do` up to what takes time in it, and what is invoked."""
         for state in [s for s in self._in_order(self.active) if s.path not in self.begun]:
             self.begun.add(state.path)
-            instant = 0
-            while instant < len(state.do) and all(_is_instant(step) for step in nested((state.do[instant],))):
-                instant += 1
-            self._note(state.do[:instant])
-            if state.do and instant == len(state.do):
-                self.internal += (f"done.do.{state.name}",)
             for invoke in state.invoke:
                 other = self.machine.invoked.get(invoke.behavior)
                 if other is None or any(_speaks((*s.entry, *s.do, *s.exit), PARENT) for s in other.states.values()):
                     raise _UncertainError
                 if _is_over_at_once(other, self.depth - 1):
                     self.internal += (f"done.invoke.{invoke.id}",)
+            instant = 0
+            while instant < len(state.do) and all(_is_instant(step) for step in nested((state.do[instant],))):
+                instant += 1
+            self._note(state.do[:instant])
+            if state.do and instant == len(state.do):
+                self.internal += (f"done.do.{state.name}",)
 
-    def _end(self, state: State) -> None:
-        """Note which states end with a final one."""
-        parent = self.machine.states[state.parent or ""]
-        if not parent.path:
-            self.over = True
-            return
-        self.internal += (f"done.state.{parent.name}",)
-        around = self.machine.states[parent.parent or ""]
-        if around.kind is StateKind.PARALLEL:
-            regions = _regions(self.machine, around.path)
-            if not self.unknown.isdisjoint(regions):
-                raise _UncertainError
-            if all(self._is_final(region) for region in regions):
-                self.over = not around.path
-                self.internal += (f"done.state.{around.name}",)
+    def _end(self, final: State) -> None:
+        """Note which states end with a final one: the compound one around it, and parallel ones as a whole."""
+        path = final.parent or ""
+        while self.machine.states[path].kind is not StateKind.PARALLEL or self._is_final(path):
+            state = self.machine.states[path]
+            if state.kind is StateKind.COMPOUND and path != final.parent:
+                return
+            if not path:
+                self.over = True
+                return
+            self.internal += (f"done.state.{state.name}",)
+            path = state.parent or ""
 
-    def _is_final(self, region: str) -> bool:
-        state = self.machine.states[region]
+    def _is_final(self, path: str) -> bool:
+        """Whether a state has come to its end; raises _UncertainError if a region of it is unknown."""
+        state = self.machine.states[path]
+        if path in self.unknown:
+            raise _UncertainError
         if state.kind is StateKind.PARALLEL:
-            return all(map(self._is_final, _regions(self.machine, region)))
-        return any(c in self.active and self.machine.states[c].kind is StateKind.FINAL for c in state.children)
+            return all(map(self._is_final, _regions(self.machine, path)))
+        final = (p for p in (*state.children, path) if self.machine.states[p].kind is StateKind.FINAL)
+        return any(p in self.active for p in final)
 
-    def _selected(self, event: str) -> list[Transition]:
+    def selected(self, event: str) -> list[Transition]:
         """The first transition of each innermost state that the event selects."""
         states, found = self.machine.states, list[Transition]()
         if event and any(_selects(t, event) for region in self.unknown for t in self.survey.selecting(region)):
@@ -272,7 +283,7 @@ class _Chain:
                 case Raise(event):
                     self.internal += (event,)
                 case Send(event, delay=0.0, to=""):
-                    self.external += (event,)
+                    self.timers.append(event)
                 case Send():
                     pass
                 case _ if _speaks((step,)):
@@ -294,32 +305,46 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _beginnings(machine: MachineDefinition) -> Iterator[_Chain]:
-    """Each state as it is entered, and what each transition brings about, as they follow an event of somebody else."""
+    """The machine as it begins, and what each transition of a state brings about in which it may rest."""
     survey = _survey(machine)
-    for state in machine.states.values():
-        chain = _Chain(survey)
-        try:
-            if state.parent is not None:
-                chain.stand_in(state.parent)
-            chain.enter((state.path,), state.parent)
-        except _UncertainError:
-            continue
-        yield chain
-    for state in machine.states.values():
-        for transition in state.transitions:
-            if not _speaks((*transition.actions, *(state.exit if transition.targets else ()))):
-                continue  # it leads to what the first loop begins with
+    stays: dict[str | None, bool] = {None: True}
+    for state in machine.states.values():  # each behind the one around it
+        stays[state.path] = stays[state.parent] and _stays(survey, state)
+        for transition in state.transitions if stays[state.path] else ():
+            if not transition.event or not (transition.targets or _speaks(transition.actions)):
+                continue
             chain = _Chain(survey)
             try:
-                if state.parent is not None:
-                    chain.stand_in(state.parent)
+                chain.stand_around(state.path)
                 chain.enter((state.path,), state.parent)
-                chain.internal, chain.external, chain.timers, chain.begun = (), (), [], set(chain.active)
+                chain.internal, chain.timers, chain.begun = (), [], set(chain.active)
                 chain.take([transition], transition.event)
             except _UncertainError:
                 continue
             chain.taken.clear()
             yield chain
+    chain = _Chain(survey)
+    try:
+        chain.enter(("",), None)
+    except _UncertainError:
+        return
+    yield chain
+
+
+def _stays(survey: _Survey, state: State) -> bool:
+    """Whether a state is still active at the next rest after it was entered, as far as anybody can tell."""
+    chain = _Chain(survey)
+    try:
+        chain.stand_around(state.path)
+        if any(t.delay == 0 and t.targets for path in chain.active for t in survey.machine.states[path].transitions):
+            return False  # a state around is left at once
+        chain.enter((state.path,), state.parent)
+        for _ in range(MAX_STEPS_TO_REST):
+            if not chain.step():
+                return state.path in chain.active
+    except _UncertainError:
+        return True
+    return False
 
 
 def _survey(machine: MachineDefinition) -> _Survey:
@@ -348,11 +373,13 @@ def _round(chain: _Chain) -> list[_Taken]:
 
 
 def _settled(chain: _Chain, around: list[_Taken]) -> list[_Taken]:
-    """A round, unless it changes what a guard asks for, or is without an event or a guard: that is another rule's."""
+    """A round, unless it changes what a guard asks for; another rule has `always` alone from atomic state to state."""
     asked = _asked(chain, len(around))
     if asked and chain.assigned > len(chain.taken) - len(around):
         return []
-    return around if asked or any(event for _, event in around) else []
+    states = chain.machine.states
+    own = asked or any(event or states[t.source].kind is not StateKind.ATOMIC for t, event in around)
+    return around if own else []
 
 
 def _asked(chain: _Chain, number: int) -> list[str]:
@@ -361,17 +388,15 @@ def _asked(chain: _Chain, number: int) -> list[str]:
 
 
 def _is_over_at_once(machine: MachineDefinition, depth: int) -> bool:
-    """Whether a behaviour ends as soon as it begins."""
+    """Whether a behaviour ends as soon as it begins; raises _UncertainError if that depends on anything."""
     chain = _Chain(_survey(machine), depth)
-    try:
-        if depth:
-            chain.enter(("",), None)
-            for _ in range(MAX_STEPS):
-                if not chain.step():
-                    break
-    except _UncertainError:
-        return False
-    return chain.over and not chain.asked
+    chain.enter(("",), None)
+    for _ in range(MAX_STEPS):
+        if chain.asked or chain.timers or not depth:
+            break
+        if not chain.step():
+            return chain.over
+    raise _UncertainError
 
 
 def _domain(machine: MachineDefinition, transition: Transition) -> str:
@@ -420,7 +445,7 @@ def _report(machine: MachineDefinition, around: list[_Taken], asked: list[str], 
         message += f" while {' and '.join(f'`{shown}`' for shown in asked)} {'are' if len(asked) > 1 else 'is'} false"
         hint = "change on the way what the guard asks for, or let something that takes time come between"
     if not any(event for _, event in rows):
-        code = ALWAYS_LOOP
+        code = ALWAYS_LOOP if asked else ENDLESS_ALWAYS
         if not any(t.targets for t, _ in rows):
             hint = "give it a `target`, or do them in `entry`"
     related = [(t.where, "then here") for t, _ in rows[1:]]
