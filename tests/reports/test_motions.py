@@ -24,6 +24,7 @@ from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from lumen.rules import check_files
 from tests.tables import for_each
 
 INPUTS = Path(__file__).parent / "inputs" / "motions"
@@ -452,3 +453,80 @@ def test_a_head_that_only_rolls_can_not_look() -> None:
     rolls = replace(BODY, roles=replace(BODY.roles, head={"roll": JointRole("HeadYaw")}))
     assert lack_of(Look(0.1, 0.0), rolls) is not None
     assert lack_of(Look(0.1, 0.0), BODY) is None
+
+
+PODIUM = (
+    '<mujoco><worldbody><site name="stage"/><geom type="box" size="{size} 0.01" pos="0 0 -.01"/></worldbody></mujoco>'
+)
+"""A hall whose ground has edges 0.55 m ahead and 0.75 m aside, if its size is `.55 .75`."""
+
+
+def strays(behavior: str, settings: str = "", size: str = "") -> list[str]:
+    """The place and the message of each walk off the ground that lint finds for NAO in the shipped hall, or another."""
+    main = "name: Edge\nbehavior: tour\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n"
+    files = {"lumen.yaml": f"{main}{settings or 'hall: hall.xml'}\n", "behaviors/tour.yaml": behavior}
+    if size:
+        box = f'<geom type="box" size="{size} 0.01" pos="0 0 -.01"/>'
+        files["models/hall.xml"] = f'<mujoco><worldbody><site name="stage"/>{box}</worldbody></mujoco>'
+    found = check_files(Path("edge"), {name: text.encode() for name, text in files.items()})[1]
+    return [f"{d.place}: {d.message}" for d in found if d.code == "walk-beyond-ground"]
+
+
+def test_a_walk_over_the_edge_is_found_without_a_stage() -> None:
+    text = (INPUTS / "walk-over-the-edge.yaml").read_text("utf-8")
+    where = "behaviors/tour.yaml:5:29: this walk leads to x 0.56, y 0.00 m from the start: there is no ground there"
+    assert strays(text) == [where]
+    assert strays(text.replace("x: 0.8", "x: 0.5")) == []
+    assert strays(text, "hall: hall.xml\nstage: {x: [-0.4, 0.4], y: [-0.6, 0.6]}") == [], "a stage keeps the feet on it"
+    assert strays(text, "units: {length: m}") == [], "without a hall the ground is unknown"
+    assert strays(text, size="1 1") == [], "this hall's ground is larger"
+    assert strays(text.replace("x: 0.8", "x: 1.2"), size="1 1") == [where.replace("0.56", "1.02")]
+
+
+def doing(*steps: str) -> str:
+    """A behaviour whose states each do one of these."""
+    states = "".join(f"  s{i}: {{do: {step}, onDone: s{i + 1}, onError: end}}\n" for i, step in enumerate(steps))
+    ends = f"  s{len(steps)}: {{}}\n  end: {{}}\non: {{fallen: .end}}\n"
+    return f"units: {{angle: deg}}\ninitial: s0\nstates:\n{states}{ends}"
+
+
+FORTH, BACK, TURN, ASIDE = "{walk: {x: 0.3}}", "{walk: {x: -0.3}}", "{walk: {theta: 90}}", "{walk: {x: 0.3, y: -0.1}}"
+IF = "{if: 'event.name == null', then: {walk: {x: 0.4}}, else: {walk: {x: 0.1}}}"
+ENTRY = "initial: a\nstates:\n  a: {entry: {walk: {x: 0.6}}, after: {9s: b}}\n  b: {do: {walk: {x: 0.6}}}\n"
+ACTIONS = "initial: a\nstates:\n  a: {on: {touched: {target: b, actions: {walk: {x: 0.6}}}}}\n  b: {}\n"
+
+
+@for_each(
+    ("behavior", "lines"),
+    [
+        (doing(FORTH, FORTH), ["5 0.56 0.00"]),
+        (doing(f"[{FORTH}, {FORTH}]"), ["4 0.56 0.00"]),
+        (doing(FORTH, BACK, FORTH), []),
+        (doing(TURN, FORTH, FORTH, FORTH), ["7 0.00 0.76"]),
+        (doing(TURN, TURN, FORTH, BACK, BACK, BACK), ["9 0.56 0.00"]),
+        (doing(TURN, ASIDE, ASIDE), []),
+        (doing(TURN, ASIDE, ASIDE, TURN, FORTH, FORTH, FORTH), ["10 -0.56 0.60"]),
+        (doing("{parallel: [{wait: 1s}, {walk: {x: 0.6}}]}"), ["4 0.56 0.00"]),
+        (doing(FORTH, IF, FORTH), ["5 0.56 0.00"]),
+        (doing(FORTH, "{walk: {vx: 0.1}}", FORTH), []),
+        (doing(FORTH).replace("  s1: {}", "  s1: {after: {1s: s0}}"), []),
+        (doing(FORTH, "{say: Hello}", FORTH).replace("onDone: s1,", "onDone: s1, after: {1s: s1},"), ["6 0.56 0.00"]),
+        (doing(FORTH, FORTH).replace("onDone: s1", "on: {touched: s1}"), []),
+        (ENTRY, ["3 0.56 0.00"]),
+        (ACTIONS, ["3 0.56 0.00"]),
+        ("type: parallel\nstates:\n  a: {do: {walk: {x: 0.4}}}\n  b: {do: {walk: {x: 0.6}}}\n", []),
+        ("type: parallel\nstates:\n  a: {do: {say: Hello}}\n  b: {do: {walk: {x: 0.6}}}\n", ["4 0.56 0.00"]),
+    ],
+)
+def test_walks_add_up_on_each_way(behavior: str, lines: list[str]) -> None:
+    found = [message.replace(",", "").split() for message in strays(behavior)]
+    assert [f"{words[0].split(':')[1]} {words[6]} {words[8]}" for words in found] == lines
+
+
+def test_a_place_without_ground_is_found_without_a_stage() -> None:
+    places = "hall: hall.xml\nplaces: {near: {x: 0.5, y: 0, heading: 180}, far: {x: 0.8, y: 0}}"
+    behavior = doing("{walk: {to: near}}", "{walk: {x: -0.1}}", "{walk: {to: far}}")
+    assert strays(behavior, places) == [
+        "behaviors/tour.yaml:5:13: this walk leads to x 0.56, y 0.00 m from the start: there is no ground there",
+        "lumen.yaml:6:46: there is no ground at `far` in hall.xml: the robot would fall",
+    ]

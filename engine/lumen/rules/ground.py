@@ -19,21 +19,33 @@ def check(draft: ProjectDraft) -> None:
     """Report a stage of which a part has nothing under it, in a hall that says where its ground is."""
     if draft.settings is None or draft.main is None or draft.settings.stage is None:
         return
-    file = f"models/{draft.settings.hall}"
-    content = draft.files.get(file) or draft.lent.get(file)
-    parts = ground(content) if content else ()
+    parts = ground_of(draft, draft.settings.hall)
     start = GroundPoint(0.0, 0.0)
-    if not _covered(parts, start):
+    if not covered(parts, start):
         return  # what is no box, as a field of heights, is not read
-    if astray := next((point for point in _points(draft.settings.stage) if not _covered(parts, point)), None):
-        under = next(part for part in parts if part.distance(start) == 0)
+    if astray := next((point for point in _points(draft.settings.stage) if not covered(parts, point)), None):
         message = f"at x {astray.x:.3g}, y {astray.y:.3g} m there is no ground in {draft.settings.hall}: it would fall"
-        hint = f"the ground it starts on goes {_reach(under)}: keep the stage within, or make that larger in the hall"
+        hint = f"the ground it starts on goes {reach(parts)}: keep the stage within, or make that larger in the hall"
         draft.main(STAGE_BEYOND_GROUND, ("stage",), message, hint, key=True)
 
 
-def _covered(parts: Iterable[Obstacle], point: GroundPoint) -> bool:
+def ground_of(draft: ProjectDraft, hall: str) -> tuple[Obstacle, ...]:
+    """What the robot can stand on in a hall of the project; nothing if that is unknown."""
+    content = draft.files.get(f"models/{hall}") or draft.lent.get(f"models/{hall}")
+    return ground(content) if content else ()
+
+
+def covered(parts: Iterable[Obstacle], point: GroundPoint) -> bool:
+    """Whether there is ground at a point."""
     return any(part.distance(point) < 1e-6 for part in parts)
+
+
+def reach(parts: Iterable[Obstacle]) -> str:
+    """How far the ground reaches that is under the start."""
+    part = next(part for part in parts if part.distance(GroundPoint(0.0, 0.0)) < 1e-6)
+    length, width = part.length + part.round, part.width + part.round
+    x, y = (part.x - length, part.x + length), (part.y - width, part.y + width)
+    return f"from {x[0]:.3g} to {x[1]:.3g} m in x and from {y[0]:.3g} to {y[1]:.3g} m in y"
 
 
 def _points(stage: Stage) -> list[GroundPoint]:
@@ -44,9 +56,3 @@ def _points(stage: Stage) -> list[GroundPoint]:
         for a in shares
         for b in shares
     ]
-
-
-def _reach(part: Obstacle) -> str:
-    length, width = part.length + part.round, part.width + part.round
-    x, y = (part.x - length, part.x + length), (part.y - width, part.y + width)
-    return f"from {x[0]:.3g} to {x[1]:.3g} m in x and from {y[0]:.3g} to {y[1]:.3g} m in y"

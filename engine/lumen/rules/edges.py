@@ -1,0 +1,179 @@
+"""Walks from where the robot starts against the ground of its hall: beyond the edge it falls."""
+
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from math import cos, hypot, sin
+from typing import NamedTuple
+
+from lumen.language.actions import If, Parallel, PlacedAction, nested
+from lumen.language.commands import GoTo, Move, Walk
+from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.language.hall_places import HallPlace
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.roles import BaseKind
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.ground import covered, ground_of, reach
+from lumen.rules.hall_obstacles import GroundPoint, Obstacle
+
+WALK_BEYOND_GROUND = Code(
+    "walk-beyond-ground", "robot", WARNING, "a walk leads beyond what the robot can stand on in its hall"
+)
+
+MAX_WAYS = 2_000
+"""Visits to states that are looked at: a behaviour may lead round in very many ways."""
+
+STEP = 0.02
+"""Distance between the points of a walk that are looked at [m]."""
+
+
+class Pose(NamedTuple):
+    """Where the robot stands [m], and how far it is turned to the left [rad], both since its start."""
+
+    x: float = 0.0
+    y: float = 0.0
+    turned: float = 0.0
+
+    def after(self, walk: Walk) -> "Pose":
+        c, s = cos(self.turned), sin(self.turned)
+        return Pose(self.x + walk.x * c - walk.y * s, self.y + walk.x * s + walk.y * c, self.turned + walk.theta)
+
+
+class Stray(NamedTuple):
+    """A walk, and the first point of it that has no ground."""
+
+    where: NodePath
+    point: GroundPoint
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report walks and places off the ground, if no `stage` keeps the feet on it."""
+    settings, body = draft.settings, draft.body
+    if settings is None or settings.stage is not None or len(settings.robots) > 1:
+        return  # several robots start at several places
+    if draft.main is None or body is None or body.roles.base.kind is BaseKind.FIXED:
+        return
+    parts = ground_of(draft, settings.hall)
+    if not covered(parts, GroundPoint(0.0, 0.0)):
+        return  # fields of heights and meshes are not read
+    hint = f"the ground goes {reach(parts)}: stay within it, or give lumen.yaml a `stage` that the feet never leave"
+    for name, place in settings.places.items():
+        if not covered(parts, GroundPoint(place.x, place.y)):
+            message = f"there is no ground at `{name}` in {settings.hall}: the robot would fall"
+            draft.main(WALK_BEYOND_GROUND, ("places", name), message, hint, key=True)
+    machine = draft.behaviors.get(settings.behavior)
+    strays = dict(_Ways(machine, parts, settings.places).strays()) if machine else {}
+    for where, point in strays.items():
+        x, y = round(point.x, 2) + 0.0, round(point.y, 2) + 0.0  # -0.0 becomes 0.0
+        message = f"this walk leads to x {x:.2f}, y {y:.2f} m from the start: there is no ground there"
+        draft.report("behaviors", settings.behavior)(WALK_BEYOND_GROUND, (*where, "walk"), message, hint, key=True)
+
+
+class _Ways:
+    """The ways on which a behaviour can lead the robot from its start, each walk once on a way.
+
+    Guards are taken to hold. A walk that may be broken off, or that another behaviour may order, makes it unknown where
+    the robot is: nothing is reported of what follows.
+    """
+
+    def __init__(self, machine: MachineDefinition, parts: Sequence[Obstacle], places: Mapping[str, HallPlace]) -> None:
+        self._machine, self._parts, self._places = machine, parts, places
+
+    def strays(self) -> Iterator[Stray]:
+        """Each walk that leaves the ground; a walk comes several times if several ways lead to it."""
+        waiting: list[tuple[str, Pose, frozenset[NodePath]]] = [("", Pose(), frozenset())]
+        seen = set(waiting)
+        while waiting and len(seen) < MAX_WAYS:
+            path, pose, before = waiting.pop()
+            state, made = self._machine.states[path], set(before)
+            after = yield from self._begun(state.entry, pose, made)
+            after = yield from self._block(state.do, after, made)
+            if after is None or (any(_moves(state.do)) and (state.children or state.invoke)):
+                continue
+            walks = any(_moves(state.do))
+            for transition in self._transitions(state):
+                if not walks or (transition.event.startswith("done.") and transition in state.transitions):
+                    then = yield from self._begun(transition.actions, after, made)
+                    waiting += self._new(transition.targets, then, made, seen)
+            if not state.invoke:
+                waiting += self._new(self._within(state), after, made, seen)
+
+    @staticmethod
+    def _new(
+        targets: Iterable[str],
+        pose: Pose | None,
+        made: set[NodePath],
+        seen: set[tuple[str, Pose, frozenset[NodePath]]],
+    ) -> list[tuple[str, Pose, frozenset[NodePath]]]:
+        following = [(target, pose, frozenset(made)) for target in targets] if pose is not None else []
+        fresh = [visit for visit in following if visit not in seen]
+        seen.update(fresh)
+        return fresh
+
+    def _begun(
+        self, steps: Sequence[PlacedAction], pose: Pose | None, made: set[NodePath]
+    ) -> Generator[Stray, None, Pose | None]:
+        """Actions that nothing waits for: after a walk it is unknown where the robot is."""
+        after = yield from self._block(steps, pose, made)
+        return None if any(_moves(steps)) else after
+
+    def _block(
+        self, steps: Iterable[PlacedAction], pose: Pose | None, made: set[NodePath]
+    ) -> Generator[Stray, None, Pose | None]:
+        """Where the robot is after some actions, None if that is unknown."""
+        for step in steps:
+            if pose is None:
+                return None
+            match step.action:
+                case Walk() as walk:
+                    pose = yield from self._walk(step.where, pose, pose.after(walk), made)
+                case GoTo(to) if (place := self._places.get(to)) and place.heading is not None:
+                    there = Pose(place.x, place.y, place.heading)
+                    pose = yield from self._walk(step.where, pose, there, made)
+                case If(then=then, otherwise=otherwise) if any(_moves((step,))):
+                    for branch in (then, otherwise):
+                        yield from self._block(branch, pose, made)
+                    return None
+                case Parallel(branches) if any(_moves((step,))):
+                    moving = [branch for branch in branches if any(_moves((branch,)))]
+                    pose = (yield from self._block(moving, pose, made)) if len(moving) == 1 else None
+                case _ if any(_moves((step,))):
+                    return None
+        return pose
+
+    def _walk(
+        self, where: NodePath, begin: Pose, end: Pose, made: set[NodePath]
+    ) -> Generator[Stray, None, Pose | None]:
+        count = max(1, min(round(hypot(end.x - begin.x, end.y - begin.y) / STEP), 10_000))
+        points = (
+            GroundPoint(begin.x + (end.x - begin.x) * i / count, begin.y + (end.y - begin.y) * i / count)
+            for i in range(1, count + 1)
+        )
+        if where in made:
+            return None
+        made.add(where)
+        if stray := next((point for point in points if not covered(self._parts, point)), None):
+            yield Stray(where, stray)
+            return None
+        return end
+
+    def _transitions(self, state: State) -> Iterator[Transition]:
+        at: str | None = state.path
+        while at is not None:
+            yield from self._machine.states[at].transitions
+            at = self._machine.states[at].parent
+
+    def _within(self, state: State) -> Iterable[str]:
+        """The states that are entered with a state; none if several of them walk at once."""
+        if state.kind is not StateKind.PARALLEL:
+            return state.initial
+        return state.children if sum(map(self._walks, state.children)) <= 1 else ()
+
+    def _walks(self, path: str) -> bool:
+        """Whether anything in a state may make the robot walk."""
+        inside = [s for name, s in self._machine.states.items() if name == path or name.startswith(f"{path}.")]
+        blocks = [block for s in inside for block in (s.entry, s.do, s.exit, *(t.actions for t in s.transitions))]
+        return any(s.invoke for s in inside) or any(any(_moves(block)) for block in blocks)
+
+
+def _moves(steps: Sequence[PlacedAction]) -> Iterator[bool]:
+    """For each action, those within others too, whether it makes the robot walk."""
+    return (isinstance(step.action, Walk | GoTo | Move) for step in nested(tuple(steps)))
