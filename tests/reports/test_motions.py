@@ -1,6 +1,7 @@
 """Motions and bodies of other people's bug reports: each keeps its numbers, and what is left out is listed."""
 
 from dataclasses import replace
+from math import degrees, radians
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,13 @@ from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.formats.robot_models import read_robot
-from lumen.language.commands import Look
+from lumen.interpreters.bounds import within_limits
+from lumen.interpreters.limits import beyond_limits, overspeed
+from lumen.language.commands import Look, Wake
 from lumen.language.diagnostics import Diagnostic
+from lumen.language.events import Event
 from lumen.language.mirrors import mirror_of
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.roles import JointRole
 from lumen.language.skills import lack_of
 from lumen.loading.bodies import build_body
@@ -24,7 +29,9 @@ from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from lumen.ports import Aim, Perform, RobotCommand, Sense
 from lumen.rules import check_files
+from lumen.statechart import VirtualClock
 from tests.tables import for_each
 
 INPUTS = Path(__file__).parent / "inputs" / "motions"
@@ -530,3 +537,108 @@ def test_a_place_without_ground_is_found_without_a_stage() -> None:
         "behaviors/tour.yaml:5:13: this walk leads to x 0.56, y 0.00 m from the start: there is no ground there",
         "lumen.yaml:6:46: there is no ground at `far` in hall.xml: the robot would fall",
     ]
+
+
+class OwnRobot:
+    """A robot of someone's own, without any check: it keeps what it is given, and is done at once."""
+
+    def __init__(self) -> None:
+        self.given: list[RobotCommand] = []
+        self.answers: list[Event] = []
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        self.given.append(command)
+        self.answers.append(Event(f"done.command.{id}", None, 0.0))
+
+    def cancel(self, id: str) -> None:
+        pass
+
+    def poll(self) -> list[Event]:
+        answers, self.answers = self.answers, []
+        return answers
+
+    def begun(self) -> list[str]:
+        return []
+
+    def read(self, sense: Sense) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+
+def limited(name: str) -> tuple[float, float]:
+    return BODY.joints[name].minimum, BODY.joints[name].maximum
+
+
+def test_a_robot_of_ones_own_is_never_told_to_look_beyond_its_limits(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / "lumen.yaml").write_text("name: Own\nbehavior: tour\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n")
+    (tmp_path / "behaviors/tour.yaml").write_text(
+        "units: {angle: deg}\ninitial: a\nstates:\n"
+        "  a: {do: [{look: {yaw: 121, pitch: 60}}, {look: {yaw: 30, pitch: 10}}, {look: {yaw: 121, pitch: 60}}]}\n"
+    )
+    robot = OwnRobot()
+    with lumen.open(tmp_path, robot=robot, clock=VirtualClock()) as exhibition:
+        exhibition.run(seconds=2)
+    first, middle, last = [command for command in robot.given if isinstance(command, Look)]
+    assert first.yaw == limited("HeadYaw")[1]
+    assert limited("HeadPitch")[0] <= first.pitch < radians(30), "where the head is turned, it can't nod as far"
+    assert middle == Look(radians(30), radians(10))
+    assert last == first
+    assert [r.message for r in caplog.records if "look" in r.message] == [
+        "`look` turns `HeadYaw` to 119.5 deg, not to 121.0 deg, which is beyond its limit",
+        f"`look` turns `HeadPitch` to {degrees(first.pitch):.1f} deg, not to 60.0 deg, which is beyond its limit",
+    ]
+
+
+def key(at: float, angle: float, **handles: Any) -> Keyframe:
+    return Keyframe(at, angle, Interpolation.BEZIER if handles else Interpolation.MINIMUM_JERK, **handles)
+
+
+@for_each(
+    "tracks",
+    [
+        {"HeadYaw": (key(1.0, 2.2), key(2.0, 0.0))},
+        {"HeadYaw": (key(1.0, 0.0), key(1.01, 1.0), key(2.0, 0.0)), "HeadPitch": (key(1.01, 0.1), key(2.0, 0.2))},
+        {"HeadYaw": (key(1.0, 2.0, handle_out=(0.3, 2.0)), key(2.0, 2.0, handle_in=(-0.3, 2.0)))},
+        {"HeadYaw": (key(1.0, 2.0),), "HeadPitch": (key(1.5, 0.5),)},
+        {"LHand": (key(1.0, 1.4), key(2.0, -3.0))},
+    ],
+)
+def test_a_motion_is_brought_within_the_limits_and_speeds(tracks: dict[str, tuple[Keyframe, ...]]) -> None:
+    motion = MotionDefinition("nod", 2.5, tracks, (Cue(1.01, "say", "now"),))
+    assert beyond_limits(motion, BODY) or overspeed(motion, BODY)
+    command, changes = within_limits(Perform(motion), BODY)
+    assert isinstance(command, Perform)
+    assert not beyond_limits(command.motion, BODY)
+    assert not overspeed(command.motion, BODY)
+    assert changes
+    keys = command.motion.tracks
+    assert [len(keys[joint]) >= len(tracks[joint]) for joint in tracks] == [True] * len(tracks)
+    assert command.motion.duration >= motion.duration
+    assert all(each[-1].time <= command.motion.duration for each in keys.values())
+
+
+def test_a_slowed_motion_stays_in_step_with_its_words() -> None:
+    tracks = {"HeadYaw": (key(1.0, 0.0), key(1.01, 1.0), key(2.0, 0.0)), "HeadPitch": (key(1.01, 0.1), key(2.0, 0.2))}
+    command, changes = within_limits(Perform(MotionDefinition("nod", 2.5, tracks, (Cue(1.01, "say", "now"),))), BODY)
+    assert isinstance(command, Perform)
+    yaw, pitch, cue = command.motion.tracks["HeadYaw"], command.motion.tracks["HeadPitch"], command.motion.cues[0]
+    assert yaw[0].time == 1.0
+    assert yaw[1].time == pitch[0].time == cue.time > 1.1
+    assert yaw[2].time - yaw[1].time == pytest.approx(0.99)
+    assert command.motion.duration - yaw[2].time == pytest.approx(0.5)
+    assert changes == ("`nod` takes longer: `HeadYaw` needs more time to its key at 1.01 s",)
+
+
+def test_what_is_within_the_limits_is_given_as_it_is() -> None:
+    tracks = {"HeadYaw": (key(1.0, 1.0), key(2.0, 0.0))}
+    for command in (Look(0.3, 0.1), Perform(MotionDefinition("nod", 2.5, tracks)), Aim({"HeadYaw": 1.0}, 0.5), Wake()):
+        assert within_limits(command, BODY) == (command, ())
+        assert within_limits(command, BODY).command is command
+    assert within_limits(Aim({"HeadYaw": 9.0, "nose": 9.0}, 3.0), BODY).command == Aim(
+        {"HeadYaw": limited("HeadYaw")[1], "nose": 9.0}, 1.0
+    )

@@ -10,6 +10,7 @@ from math import hypot, inf
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
+from lumen.interpreters.bounds import nearest_angles
 from lumen.language.commands import Channel, Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.gestures import NO_GESTURES, merged
@@ -78,9 +79,7 @@ def speech_duration(text: str) -> float:
 
 def aimed(p: CommandParameters, angles: Mapping[str, float]) -> Aim:
     """An aim inside the joints' limits, as NAOqi would clip it."""
-    limits = p.project.body.joints
-    inside = {n: min(max(a, limits[n].minimum), limits[n].maximum) for n, a in angles.items()}
-    return Aim(inside, p.fraction("speed", AIM_SPEED))
+    return Aim(nearest_angles(angles, p.project.body), p.fraction("speed", AIM_SPEED))
 
 
 def _posture(p: CommandParameters) -> Posture:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import hypot, inf, isfinite
 
 from lumen.errors import RobotFailedError, UsageError
+from lumen.interpreters.bounds import nearest_angles
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.language.causes import VISITOR, Cause
@@ -227,9 +228,7 @@ class RecordingRobot:
         joints = self.body.joints
         if any(name not in joints or not isfinite(angle) for name, angle in angles.items()):
             return
-        for name, angle in angles.items():
-            joint = joints[name]
-            self._angles[name] = min(max(angle, joint.minimum), joint.maximum)
+        self._angles.update(nearest_angles(angles, self.body))
 
 
 def _face_of(visitor: Visitor) -> Vector3:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
+from lumen.interpreters.bounds import within_limits
 from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
 from lumen.language.projects import Project
@@ -79,7 +80,8 @@ class LocalTracking:
         for name, tracker in self._trackers.items():
             target = seen.get(name) or tracker.idle(now)
             if target:
-                self._robot.start("", Aim(target, tracker.controller.tracking.speed))
+                aim = Aim(target, tracker.controller.tracking.speed)
+                self._robot.start("", within_limits(aim, self._project.body).command)
 
     def _listen(self) -> None:
         """Hear the poses and the routes of all controllers."""

@@ -6,6 +6,7 @@ from math import inf, isfinite
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
+from lumen.interpreters.bounds import nearest_angles
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
@@ -89,15 +90,12 @@ class NaoqiSkills:
 
     def inside(self, angles: Mapping[str, float]) -> dict[str, float]:
         """The nearest angles inside the joints' limits. Raises RobotError for what is no joint, or no angle."""
-        found = {}
         for name, angle in angles.items():
             if name not in self._body.joints:
                 raise BadCommandError(f"`{name}` is not a joint of this robot: {did_you_mean(name, self._body.joints)}")
             if not isfinite(angle):
                 raise BadCommandError(f"`{name}` can't be moved to {angle}")
-            joint = self._body.joints[name]
-            found[name] = float(min(max(angle, joint.minimum), joint.maximum))
-        return found
+        return nearest_angles({name: float(angle) for name, angle in angles.items()}, self._body)
 
     def _say(self, said: Say) -> CallSteps:
         text, language = said.text, said.language

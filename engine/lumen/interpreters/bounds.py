@@ -1,0 +1,155 @@
+"""Commands brought within the limits and speeds of a body, in one place for every robot that performs them."""
+
+from bisect import bisect_left
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from itertools import pairwise
+from math import degrees, isfinite
+from typing import NamedTuple
+
+from lumen.interpreters.limits import LIMIT_SLACK, Excess, beyond_limits, coupled_range, overspeed
+from lumen.language.commands import Look
+from lumen.language.motions import Keyframe, MotionDefinition
+from lumen.language.robots import Body
+from lumen.ports import Aim, Perform, RobotCommand
+
+MAX_FITS = 50
+"""How often a change may make another one necessary; each comes nearer to what the body can do."""
+
+SPEED_MARGIN = 1.005
+"""A part more than the time that a joint needs: rounding must not make it too fast again."""
+
+
+class BoundedCommand(NamedTuple):
+    """A command that a body can perform, and what was changed, for the log; the same command if nothing was."""
+
+    command: RobotCommand
+    changes: tuple[str, ...] = ()
+
+
+def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
+    """The nearest command that keeps the limits of the joints, coupled ones included, and their speeds.
+
+    Joints that the body lacks, and what is no number, are left to the robot, which refuses them.
+    """
+    match command:
+        case Look(yaw, pitch):
+            wanted = body.roles.head_joints(yaw, pitch)
+            angles = nearest_angles(wanted, body)
+            if angles == wanted:
+                return BoundedCommand(command)
+            near = body.roles.head_angles(angles)
+            turned = {path: near[i] for i, path in enumerate(("head.yaw", "head.pitch")) if body.roles.joint(path)}
+            look = Look(turned.get("head.yaw", yaw), turned.get("head.pitch", pitch))
+            return BoundedCommand(look, _changed("look", wanted, angles, body))
+        case Aim(wanted, speed):
+            angles, slower = nearest_angles(wanted, body), min(speed, 1.0)
+            if angles == wanted and slower == speed:
+                return BoundedCommand(command)
+            return BoundedCommand(Aim(angles, slower), _changed("aim", wanted, angles, body))
+        case Perform(motion):
+            inside, changes = _kept(motion, body)
+            return BoundedCommand(Perform(inside) if changes else command, changes)
+        case _:
+            return BoundedCommand(command)
+
+
+def nearest_angles(wanted: Mapping[str, float], body: Body) -> dict[str, float]:
+    """The nearest angles [rad] inside the limits of these joints, and inside the coupled ones among them."""
+    near = dict(wanted)
+    for name in near.keys() & body.joints.keys():
+        joint = body.joints[name]
+        if isfinite(near[name]):
+            near[name] = min(max(near[name], joint.minimum), joint.maximum)
+    for limit in body.coupled:
+        if limit.joint in near and limit.on in near:
+            low, high = coupled_range(limit, near[limit.on])
+            if isfinite(near[limit.joint]):
+                near[limit.joint] = min(max(near[limit.joint], low), high)
+    return near
+
+
+def _changed(verb: str, wanted: Mapping[str, float], near: Mapping[str, float], body: Body) -> tuple[str, ...]:
+    return tuple(
+        f"`{verb}` turns `{name}` to {_shown(name, near[name], body)}, not to {_shown(name, angle, body)}, which is"
+        " beyond its limit"
+        for name, angle in wanted.items()
+        if near[name] != angle
+    )
+
+
+def _shown(joint: str, angle: float, body: Body) -> str:
+    return f"{angle:.3g}" if joint in body.hands else f"{degrees(angle):.1f} deg"
+
+
+def _kept(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
+    """The motion inside the limits, and slowed where a joint needs more time; what was changed, once for each joint."""
+    if not all(isfinite(x) for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle)):
+        return motion, ()
+    changes: dict[str, str] = {}
+    for _ in range(MAX_FITS):
+        if not (far := beyond_limits(motion, body)):
+            break
+        for excess in far:
+            wanted, limit = (_shown(excess.joint, angle, body) for angle in (excess.value, excess.limit))
+            changes.setdefault(
+                f"far {excess.joint}",
+                f"`{motion.name}` turns `{excess.joint}` to {limit}, not to {wanted}, which is beyond its limit",
+            )
+            keys = _cut(motion.tracks[excess.joint], excess)
+            motion = replace(motion, tracks={**motion.tracks, excess.joint: keys})
+    for _ in range(MAX_FITS):
+        if not (fast := overspeed(motion, body)):
+            break
+        for excess in fast:
+            at = excess.key.time
+            change = f"`{motion.name}` takes longer: `{excess.joint}` needs more time to its key at {at:g} s"
+            changes.setdefault(f"fast {excess.joint}", change)
+        motion = slowed(motion, fast)
+    return motion, tuple(changes.values())
+
+
+def _cut(keys: tuple[Keyframe, ...], excess: Excess) -> tuple[Keyframe, ...]:
+    """The keys with the one of an excess at the limit, or, if only the way to it goes too far, without its handles."""
+    i = bisect_left([key.time for key in keys], excess.key.time)
+    if i == len(keys) or keys[i].time != excess.key.time:
+        beside = replace(keys[min(i, len(keys) - 1)], time=excess.key.time, angle=excess.limit)
+        return (*keys[:i], _level(beside), *keys[i:])
+    changed = list(keys)
+    if abs(keys[i].angle - excess.value) < LIMIT_SLACK:
+        changed[i] = replace(_level(keys[i]), angle=excess.limit)
+    else:
+        changed[i] = replace(keys[i], handle_in=(0.0, 0.0))
+        if i:
+            changed[i - 1] = replace(keys[i - 1], handle_out=(0.0, 0.0))
+    return tuple(changed)
+
+
+def _level(key: Keyframe) -> Keyframe:
+    return replace(key, handle_in=(0.0, 0.0), handle_out=(0.0, 0.0))
+
+
+def slowed(motion: MotionDefinition, fast: Iterable[Excess]) -> MotionDefinition:
+    """The motion with more time before the keys that come too soon, for all joints and cues: they stay in step."""
+    times = [0.0, *sorted({key.time for keys in motion.tracks.values() for key in keys})]
+    factors = [1.0] * len(times)
+    for excess in fast:
+        before = max((key.time for key in motion.tracks[excess.joint] if key.time < excess.key.time), default=0.0)
+        for i in range(bisect_left(times, before) + 1, bisect_left(times, excess.key.time) + 1):
+            factors[i] = max(factors[i], SPEED_MARGIN * excess.value / excess.limit)
+    new = [0.0]
+    for i, (begin, end) in enumerate(pairwise(times), start=1):
+        new.append(new[-1] + (end - begin) * factors[i])
+
+    def later(time: float) -> float:
+        i = min(max(bisect_left(times, time), 1), len(times) - 1)
+        return new[i] + (time - times[i]) * (factors[i] if time <= times[i] else 1.0)
+
+    def moved(key: Keyframe) -> Keyframe:
+        time = later(key.time)
+        into, out = ((later(key.time + dt) - time if dt else 0.0, da) for dt, da in (key.handle_in, key.handle_out))
+        return replace(key, time=time, handle_in=into, handle_out=out)
+
+    tracks = {joint: tuple(map(moved, keys)) for joint, keys in motion.tracks.items()}
+    cues = tuple(replace(cue, time=later(cue.time)) for cue in motion.cues)
+    return replace(motion, duration=later(motion.duration), tracks=tracks, cues=cues)

@@ -1,0 +1,21 @@
+"""Warnings that come again and again, logged once."""
+
+import logging
+from collections.abc import Iterable
+
+MAX_LINES = 1_000
+"""How many lines are remembered, and so logged, at most."""
+
+
+class OnceLog:
+    """Logs each line once."""
+
+    def __init__(self, log: logging.Logger) -> None:
+        self._log = log
+        self._lines: set[str] = set()
+
+    def __call__(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            if line not in self._lines and len(self._lines) < MAX_LINES:
+                self._lines.add(line)
+                self._log.warning("%s", line)
