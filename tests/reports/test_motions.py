@@ -642,3 +642,81 @@ def test_what_is_within_the_limits_is_given_as_it_is() -> None:
     assert within_limits(Aim({"HeadYaw": 9.0, "nose": 9.0}, 3.0), BODY).command == Aim(
         {"HeadYaw": limited("HeadYaw")[1], "nose": 9.0}, 1.0
     )
+
+
+def script(*lines: str, timeline: str = "") -> tuple[list[dict[str, Any]], list[Diagnostic]]:
+    """The keyframes of a script for NAOqi, and the findings."""
+    text = "\n".join(("motion = ALProxy('ALMotion')", "nod = [0.2, 0.0]", *lines))
+    data, found = read_gesture("loop.py", text.encode(), BODY, timeline=timeline)
+    return [{"at": frame["at"], **frame["joints"]} for frame in data["keyframes"]], found
+
+
+NOD = "    motion.angleInterpolation('HeadPitch', nod, [0.5, 1.0], True)"
+TWICE = [{"at": f"{at}s", "HeadPitch": angle} for at, angle in (("0.5", 11.4592), ("1", 0), ("1.5", 11.4592), ("2", 0))]
+
+
+@for_each(
+    "lines",
+    [
+        ("for i in range(2):", NOD),
+        ("for i in range(4, 0, -2):", NOD),
+        ("for name in ('HeadPitch', 'HeadPitch'):", NOD.replace("'HeadPitch'", "name")),
+        ("for i in range(len(nod)):", NOD),
+        ("def f():", NOD, "for i in [1]:", "    for j in range(2):", "        f()"),
+        ("for name, angles in [('HeadPitch', nod), ('HeadPitch', nod)]:", NOD.replace("nod", "angles")),
+        ("for at in nod:", "    pass", "for i in range(2):", NOD, "else:", "    pass"),
+    ],
+)
+def test_a_loop_over_what_is_written_out_repeats(lines: tuple[str, ...]) -> None:
+    assert script(*lines) == (TWICE, [])
+
+
+@for_each(
+    "head",
+    [
+        "while True:",
+        "for i in range(count):",
+        "for i in range(100000):",
+        "for i in range(10 ** 30):",
+        "for i in range(1, 9, 0):",
+        "for i in range(2):\n    if touched(): break",
+        "for name, angle in zip(names, angles):",
+    ],
+)
+def test_a_loop_that_may_end_at_any_time_is_listed(head: str) -> None:
+    keys, found = script("count = motion.getCount()", head, NOD)
+    assert keys == TWICE[:2]
+    assert "this is in a loop: here the robot does it once" in {d.message for d in found}
+
+
+def test_nested_loops_end_in_time() -> None:
+    loops = [f"{'    ' * i}for i{i} in range(900):" for i in range(6)]
+    assert any("in a loop" in d.message for d in script(*loops, " " * 20 + NOD)[1])
+
+
+def test_the_type_of_each_handle_counts() -> None:
+    keys = "[0.1, [3, -0.1, 0], [3, 0.1, 0]], [0.2, [3, -0.1, 0], [3, 0.1, 0]]"
+    call = "motion.angleInterpolationBezier(['HeadYaw'], [[1.0, 2.0]], [[KEYS]])"
+    plain = script(call.replace("KEYS", keys))
+    assert plain[1] == []
+    for old, new in (("[3, 0.1, 0]], [0.2", "[1, 0.1, 0]], [0.2"), ("[0.2, [3", "[0.2, [2"), ("[0.2, [3", "[0.2, [1")):
+        assert old in keys
+        found = script(call.replace("KEYS", keys.replace(old, new)))[1]
+        assert [d.message for d in found] == ["`HeadYaw` comes to 2 s in a way that is not known here"], new
+
+
+@for_each(
+    ("motor", "told"),
+    [
+        ('<position joint="HeadYaw" ctrlrange="-1 1"/>', ["-57.3 to 57.3 deg"]),
+        ('<position joint="HeadYaw" ctrlrange="-3 3" gear="3"/>', ["-57.3 to 57.3 deg"]),
+        ('<position joint="HeadYaw" ctrlrange="-1 1" ctrllimited="false"/>', []),
+        ('<position joint="HeadYaw" ctrlrange="-90 90"/>', []),
+        ('<motor joint="HeadYaw" ctrlrange="-1 1"/>', []),
+    ],
+)
+def test_a_servo_that_holds_its_joint_within_less_is_told(motor: str, told: list[str]) -> None:
+    body = '<body><joint name="HeadYaw" range="-90 90"/><geom size="1"/></body>'
+    text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
+    found = read_robot("head.xml", text.encode(), "head", "head.xml")[1]
+    assert [d.message.split("from ")[1].removesuffix(" only") for d in found if "turns it from" in d.message] == told

@@ -48,6 +48,10 @@ class ConversionFindings:
         """Something is there in another form."""
         self._found[Diagnostic(CHANGED, message, place, hint, Severity.WARNING)] = None
 
+    def include(self, other: "ConversionFindings") -> None:
+        """What another part of the conversion reported."""
+        self._found |= other._found
+
 
 def check_size(file: str, content: bytes) -> None:
     """Raise ForeignFileError for a file that is too large to be read."""

@@ -57,6 +57,12 @@ def value_of(node: ast.expr, names: Mapping[str, Any]) -> Any:
             return _FUNCTIONS[name](_number(argument, names))
         case ast.Call(func=ast.Name(id="list"), args=[]):
             return []
+        case ast.Call(func=ast.Name(id="len"), args=[argument]) if isinstance(items := value_of(argument, names), list):
+            return len(items)
+        case ast.Subscript(value=value, slice=index):
+            items, i = value_of(value, names), value_of(index, names)
+            if isinstance(items, list) and isinstance(i, int) and -len(items) <= i < len(items):
+                return items[i]
     raise NotWrittenOutError(node)
 
 

@@ -22,6 +22,7 @@ from lumen.formats.gestures.statements import (
     OwnFunctions,
     attribute,
     changed_names,
+    has_jumps,
     lists_of,
     statements,
 )
@@ -30,6 +31,8 @@ from lumen.language.diagnostics import Place, did_you_mean
 BEZIER, LINEAR = 3, 1
 MAX_STEPS = 20_000
 """Statements that are followed: functions that call each other may be endless."""
+MAX_ROUNDS = 1_000
+"""Rounds of a loop that are followed."""
 
 _OLD = (
     (re.compile(r"^([ \t]*except[ \t]+[\w.]+),[ \t]*(\w+)[ \t]*:", re.MULTILINE), r"\1 as \2:"),
@@ -41,8 +44,29 @@ _OLD = (
 def read_naoqi(file: str, text: str, findings: ConversionFindings, timeline: str = "") -> JointCurves:
     """The curves that the file hands to ALMotion, or a function of that name. Raises ForeignFileError for none."""
     tree = _tree(file, text)
+    for rounds in (MAX_ROUNDS, 0):
+        found = ConversionFindings()
+        try:
+            curves = _read(file, tree, found, timeline, rounds)
+        except _TooManyStepsError as error:
+            if rounds:
+                continue
+            raise broken(error.place, "too-large", "its functions call each other without an end") from None
+        break
+    findings.include(found)
+    return curves
+
+
+class _TooManyStepsError(Exception):
+    def __init__(self, place: Place) -> None:
+        super().__init__(str(place))
+        self.place = place
+
+
+def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: str, rounds: int) -> JointCurves:
+    """The curves, with loops followed for at most so many rounds."""
     own = OwnFunctions(tree)
-    reading = _Reading(file, findings, tree, own)
+    reading = _Reading(file, findings, tree, own, rounds)
     function = _chosen(file, tree, own, findings, timeline)
     if function is None:
         reading.run(tree.body)
@@ -106,8 +130,10 @@ def _tree(file: str, text: str) -> ast.Module:
 class _Reading:
     """The variables so far, and the curves of the calls."""
 
-    def __init__(self, file: str, findings: ConversionFindings, tree: ast.Module, own: OwnFunctions) -> None:
-        self.file, self.findings, self.own = file, findings, own
+    def __init__(
+        self, file: str, findings: ConversionFindings, tree: ast.Module, own: OwnFunctions, rounds: int
+    ) -> None:
+        self.file, self.findings, self.own, self.rounds = file, findings, own, rounds
         texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
         self.named = {node.value: node for node in reversed(texts)}
         self.globals: dict[str, Any] = {}
@@ -126,10 +152,10 @@ class _Reading:
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
         """Follow statements in their order; what they return, None if that is not written out."""
-        for statement, branch in statements(body, around):
+        for statement, branch in statements(body, around, self._items):
             self.steps += 1
             if self.steps > MAX_STEPS:
-                raise broken(self._place(statement), "too-large", "its functions call each other without an end")
+                raise _TooManyStepsError(self._place(statement))
             if isinstance(statement, FunctionNode):
                 continue
             if isinstance(statement, ast.ClassDef):
@@ -139,6 +165,31 @@ class _Reading:
             if isinstance(statement, ast.Return) and branch is Branch.ALWAYS:
                 return self._value(statement.value) if statement.value else None
         return None
+
+    def _items(self, loop: ast.For) -> list[ast.expr] | None:
+        """What the variable of a loop is in each round; None if that is not written out, or is very much."""
+        if has_jumps(loop):
+            return None
+        rounds: list[ast.expr]
+        match loop.iter:
+            case ast.List(elts=rounds) | ast.Tuple(elts=rounds):
+                pass
+            case ast.Call(func=ast.Name(id="range" | "xrange"), args=[_, *_] as args, keywords=[]):
+                ends = [self._value(argument) for argument in args]
+                if len(ends) > 3 or not all(_is_number(end) and end == int(end) for end in ends) or ends[2:] == [0]:
+                    return None
+                rounds = [ast.Constant(number) for number in range(*map(int, ends))[: self.rounds + 1]]
+            case _:
+                values = self._value(loop.iter)
+                if not isinstance(values, list):
+                    return None
+                indices = range(min(len(values), self.rounds + 1))
+                rounds = [ast.Subscript(loop.iter, ast.Constant(i), ast.Load()) for i in indices]
+        if len(rounds) > self.rounds:
+            return None
+        for made in (each for each in rounds if not hasattr(each, "lineno")):
+            ast.fix_missing_locations(ast.copy_location(made, loop.iter))
+        return rounds
 
     def enter(self, function: FunctionNode, given: Mapping[str, Any], around: Branch = Branch.ALWAYS) -> Any:
         """Follow a function with its own variables; what it returns."""
@@ -351,17 +402,19 @@ class _Reading:
         self.play(node, values["names"], values["times"], values["keys"])
 
     def _points(self, node: ast.AST, joint: str, times: list[Any], rows: list[Any]) -> Iterator[CurvePoint]:
+        left = BEZIER
         for time, row in zip_longest(times, rows):
             angle, *handles = row if isinstance(row, list) and row else [row]
             if not (_is_number(time) and _is_number(angle)):
                 self.findings.lost(self._place(node), f"a key of `{joint}` has no time or no angle")
                 continue
             kind, into = _handle(handles[0]) if handles else (LINEAR, (0.0, 0.0))
-            left, out = _handle(handles[1]) if len(handles) > 1 else (kind, (0.0, 0.0))
-            if not {kind, left} <= {BEZIER, LINEAR}:
+            leaves, out = _handle(handles[1]) if len(handles) > 1 else (kind, (0.0, 0.0))
+            if kind not in (BEZIER, LINEAR) or (time != times[0] and left != kind):
                 self.findings.changed(
                     self._place(node), f"`{joint}` comes to {time:g} s in a way that is not known here"
                 )
+            left = leaves
             yield CurvePoint(float(time), float(angle), self._place(node), kind != BEZIER, into, out)
 
     def _place(self, node: ast.AST) -> Place:

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from enum import Enum
 from typing import NamedTuple
 
@@ -18,10 +18,12 @@ class Branch(Enum):
     LOOP = "loop"
 
 
-def statements(body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Iterator[tuple[ast.stmt, Branch]]:
+def statements(
+    body: list[ast.stmt], around: Branch, items: Callable[[ast.For], list[ast.expr] | None]
+) -> Iterator[tuple[ast.stmt, Branch]]:
     """The simple statements, and functions and classes as a whole; what is asked by a compound one is one, too.
 
-    What handles exceptions counts as an `else`.
+    What handles exceptions counts as an `else`. A loop is as many rounds as `items` finds values for its variable.
     """
     waiting = [(statement, around) for statement in reversed(body)]
     while waiting:
@@ -35,6 +37,12 @@ def statements(body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Iterator
                 parts = [(part, branch) for part in (statement.body, statement.orelse)]
                 parts += [(handler.body, _within(branch, Branch.ELSE)) for handler in statement.handlers]
                 parts.append((statement.finalbody, branch))
+            case ast.For(target=target) if (rounds := items(statement)) is not None:
+                parts = []
+                for item in rounds:
+                    setting = ast.copy_location(ast.Assign([target], item), statement.iter)
+                    parts += [([setting], branch), (statement.body, branch)]
+                parts.append((statement.orelse, branch))
             case ast.For() | ast.AsyncFor() | ast.While():
                 head = [statement.test if isinstance(statement, ast.While) else statement.iter]
                 parts = [(statement.body, Branch.LOOP), (statement.orelse, Branch.LOOP)]
@@ -49,6 +57,11 @@ def statements(body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Iterator
         for asked in head:
             yield ast.copy_location(ast.Expr(asked), asked), branch
         waiting += [(inner, where) for body, where in reversed(parts) for inner in reversed(body)]
+
+
+def has_jumps(loop: ast.For) -> bool:
+    """Whether a round of a loop may end early."""
+    return any(isinstance(node, ast.Break | ast.Continue | ast.Return) for node in _inner(loop.body))
 
 
 def _within(around: Branch, branch: Branch) -> Branch:

@@ -1,6 +1,6 @@
 """A robot of MJCF, as far as roles go. MuJoCo is not asked: the file is read where no simulator is installed, too."""
 
-from math import pi, radians
+from math import degrees, pi, radians
 
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.known_elements import tell_losses
@@ -22,6 +22,8 @@ from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel
 from lumen.formats.xml_elements import XmlElement
 
 _ORIGIN = (0.0, 0.0, 0.0)
+SAME_ANGLE = 1e-3
+"""Files round angles [rad]."""
 _FOVY = 45.0
 _EQUAL = (0.0, 1.0, 0.0, 0.0, 0.0)
 """The coefficients of a joint that equals another one."""
@@ -156,6 +158,7 @@ class _MjcfReader:
         elif self.followers.get(name) != "":
             low, high = self.limits(joint)
             motor = self.motors.get(name)
+            self.held(joint, motor, low, high)
             self.joints.append(
                 ModelJoint(
                     name, link, joint.place,
@@ -185,13 +188,30 @@ class _MjcfReader:
             return None, None
         return span[0] * self.angle, span[1] * self.angle
 
+    def held(self, joint: XmlElement, motor: XmlElement | None, low: float | None, high: float | None) -> None:
+        """Report a servo that holds its joint within less than the joint's range; its goals are in [rad]."""
+        if motor is None or motor.tag != "position" or motor.get("ctrllimited", "auto") == "false":
+            return
+        span, gear = self.numbers.all(motor, "ctrlrange", 2), self.gear(motor)
+        if not span or span[0] >= span[1] or not gear:
+            return
+        least, most = sorted(end / gear for end in span)
+        if low is None or high is None or least > low + SAME_ANGLE or most < high - SAME_ANGLE:
+            reach = f"{degrees(least):.4g} to {degrees(most):.4g} deg"
+            message = f"the motor of `{joint.get('name')}` turns it from {reach} only"
+            self.findings.changed(motor.place, message, "give the joint this `range` in the body")
+
+    def gear(self, motor: XmlElement) -> float:
+        """How far the motor turns for each turn of the joint."""
+        return float(word) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
+
     def effort(self, joint: XmlElement, motor: XmlElement | None) -> float | None:
         """The greatest torque [N m] that model and motor let through; None where neither says one."""
         most = []
         if span := self.numbers.all(joint, "actuatorfrcrange", 2):
             most.append(max(span))
         if motor is not None:
-            gear = abs(float(word)) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
+            gear = abs(self.gear(motor))
             spans = ["forcerange", "ctrlrange"] if motor.tag == "motor" else ["forcerange"]
             given = (self.numbers.all(motor, key, 2) for key in spans)
             most += [max(span) * gear for span in given if span][:1]
