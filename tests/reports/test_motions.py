@@ -720,3 +720,15 @@ def test_a_servo_that_holds_its_joint_within_less_is_told(motor: str, told: list
     text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
     found = read_robot("head.xml", text.encode(), "head", "head.xml")[1]
     assert [d.message.split("from ")[1].removesuffix(" only") for d in found if "turns it from" in d.message] == told
+
+
+@for_each(
+    ("name", "gear", "told"),
+    [("HeadYaw", "-1", ["-1"]), ("HeadYaw", "2 0 0", ["2"]), ("HeadYaw", "1", []), ("turn", "-1", [])],
+)
+def test_a_servo_that_counts_in_another_way_than_its_joint_is_told(name: str, gear: str, told: list[str]) -> None:
+    body = '<body><joint name="HeadYaw" range="-90 90"/><geom size="1"/></body>'
+    motor = f'<position name="{name}" joint="HeadYaw" gear="{gear}"/>'
+    text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
+    found = read_robot("head.xml", text.encode(), "head", "head.xml")[1]
+    assert [d.message.split("`gear` of ")[1].split(":")[0] for d in found if "`gear`" in d.message] == told

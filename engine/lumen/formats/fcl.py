@@ -83,6 +83,7 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     block = reader.first(_without_comments(text))
     sections = list(_sections(block))
     reader.tell_outside(block, sections)
+    reader.tell_cut(block)
     if not any(section.kind == "FUZZIFY" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no function block: it has no FUZZIFY")
     return reader.block(sections), findings.diagnostics
@@ -159,6 +160,14 @@ class _FclReader:
                 message = f"`{word[0][:40]}` and what follows it are left out: that is no section"
                 hint = f"did you mean `{near[0]}`?" if near else ""
                 self.findings.lost(self.place(begin + at, len(word[0])), message, hint)
+
+    def tell_cut(self, text: str) -> None:
+        """Report a function block without its end: the file may be cut off."""
+        if re.search(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE) and not re.search(
+            r"\bEND_FUNCTION_BLOCK\b", text, re.IGNORECASE
+        ):
+            place = self.place(len(text.rstrip()))
+            self.findings.changed(place, "`END_FUNCTION_BLOCK` is missing: the file may be cut off")
 
     def block(self, sections: list[FclSection]) -> dict[str, Any]:
         blocks = [section for section in sections if section.kind == "RULEBLOCK"]

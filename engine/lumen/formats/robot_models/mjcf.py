@@ -24,6 +24,8 @@ from lumen.formats.xml_elements import XmlElement
 _ORIGIN = (0.0, 0.0, 0.0)
 SAME_ANGLE = 1e-3
 """Files round angles [rad]."""
+SAME_TORQUE = 1e-3
+"""The part by which the torques of two directions may differ."""
 _FOVY = 45.0
 _EQUAL = (0.0, 1.0, 0.0, 0.0, 0.0)
 """The coefficients of a joint that equals another one."""
@@ -190,10 +192,13 @@ class _MjcfReader:
 
     def held(self, joint: XmlElement, motor: XmlElement | None, low: float | None, high: float | None) -> None:
         """Report a servo that holds its joint within less than the joint's range; its goals are in [rad]."""
-        if motor is None or motor.tag != "position" or motor.get("ctrllimited", "auto") == "false":
+        if motor is None or motor.tag != "position":
             return
         span, gear = self.numbers.all(motor, "ctrlrange", 2), self.gear(motor)
-        if not span or span[0] >= span[1] or not gear:
+        if gear != 1.0 and motor.get("name") == joint.get("name"):
+            message = f"the motor of `{motor.get('name')}` has a `gear` of {gear:g}: it turns to other angles"
+            self.findings.changed(motor.place, message, "leave out `gear`: goals are angles of the joint")
+        if motor.get("ctrllimited", "auto") == "false" or not span or span[0] >= span[1] or not gear:
             return
         least, most = sorted(end / gear for end in span)
         if low is None or high is None or least > low + SAME_ANGLE or most < high - SAME_ANGLE:
@@ -210,12 +215,22 @@ class _MjcfReader:
         most = []
         if span := self.numbers.all(joint, "actuatorfrcrange", 2):
             most.append(max(span))
+            self.uneven(joint, [span])
         if motor is not None:
             gear = abs(self.gear(motor))
             spans = ["forcerange", "ctrlrange"] if motor.tag == "motor" else ["forcerange"]
             given = (self.numbers.all(motor, key, 2) for key in spans)
-            most += [max(span) * gear for span in given if span][:1]
+            spans_given = [span for span in given if span][:1]
+            most += [max(span) * gear for span in spans_given]
+            self.uneven(motor, spans_given)
         return min((torque for torque in most if torque > 0), default=None)
+
+    def uneven(self, element: XmlElement, spans: list[tuple[float, ...]]) -> None:
+        """Report torques that differ by the direction."""
+        for low, high in spans:
+            if abs(low + high) > SAME_TORQUE * max(abs(low), abs(high)):
+                message = f"`{element.get('name')}` has {low:g} to {high:g} of torque: here it has {high:g} either way"
+                self.findings.changed(element.place, message)
 
     def camera(self, camera: XmlElement, link: str) -> None:
         if not camera.get("name"):
