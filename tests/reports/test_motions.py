@@ -732,3 +732,8 @@ def test_a_servo_that_counts_in_another_way_than_its_joint_is_told(name: str, ge
     text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
     found = read_robot("head.xml", text.encode(), "head", "head.xml")[1]
     assert [d.message.split("`gear` of ")[1].split(":")[0] for d in found if "`gear`" in d.message] == told
+
+
+def test_a_script_with_odd_numbers_and_escapes_says_nothing_of_python(recwarn: pytest.WarningsRecorder) -> None:
+    assert script("shown = '\\d' if 1in nod else 0", "if True:", NOD)[0] == TWICE[:2]
+    assert not recwarn.list

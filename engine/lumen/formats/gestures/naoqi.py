@@ -8,6 +8,7 @@ returns the lists for it, is a motion of its own.
 
 import ast
 import re
+import warnings
 from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from typing import Any
@@ -118,7 +119,8 @@ def _tree(file: str, text: str) -> ast.Module:
     for pattern, now in _OLD:
         text = pattern.sub(now, text)
     try:
-        return ast.parse(text)
+        with warnings.catch_warnings(action="ignore"):  # of numbers and escapes that Python finds odd
+            return ast.parse(text)
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
         place = Place(file, line, column, line, column + 1)
