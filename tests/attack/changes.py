@@ -129,7 +129,9 @@ def _xml_changed(random: Random, text: str) -> Change | None:
 
 def _special_place(element: ET.Element, above: Mapping[ET.Element, ET.Element]) -> str:
     """The place in a table of an element that means something else than others of its name."""
-    joint = above.get(element, element) if element.tag == "axis" else element
+    joint = above.get(element, element) if element.tag in ("axis", "limit") else element
+    if element.tag == "limit" and joint.find("mimic") is not None:
+        return "<limit> of a joint that follows"
     if joint.tag == "joint" and joint.get("type") == "fixed":
         return "<joint> that is fixed"
     if local(element) == "Tangent" and element.get("side") == "right" and _is_straight(above[element], above):

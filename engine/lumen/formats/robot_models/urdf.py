@@ -48,6 +48,7 @@ KNOWN: FormatTable = {
     "<parent>": _LINK,
     "<child>": _LINK,
     "<axis>": Known(frozenset(("xyz",))),
+    "<limit> of a joint that follows": Known(meaningless=dict.fromkeys(("velocity", "effort"), "it has no motor")),
     "<limit>": Known(frozenset(("lower", "upper", "effort", "velocity"))),
     "<mimic>": Known(frozenset(("joint", "multiplier", "offset"))),
     "<dynamics>": Known(frozenset(("damping", "friction"))),
