@@ -85,7 +85,7 @@ def test_links_in_a_circle_and_into_nothing(project: Path) -> None:
 def test_a_folder_that_is_a_link_in_a_circle(project: Path) -> None:
     shutil.rmtree(project / "motions")
     (project / "motions").symlink_to("motions")
-    assert codes(project) == ["missing-folder"]
+    assert codes(project) == ["unreadable-file"]
 
 
 def test_a_pipe_is_not_waited_for(project: Path) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.language.commands import PlaySound
+from lumen.loading.files import on_disk
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound
 
@@ -35,8 +36,9 @@ class Loudspeaker:
         self._playing: list[subprocess.Popen[bytes]] = []
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
-        playing, cut = self._heard(self._root / sound.file), None
-        if self._track is not None and (found := _mono(self._root / sound.file, sound.length)):
+        file = on_disk(self._root, sound.file)
+        playing, cut = self._heard(file), None
+        if self._track is not None and (found := _mono(file, sound.length)):
             cut = self._track.add(found.at_volume(volume), now)
 
         def end(then: float) -> None:

@@ -11,6 +11,7 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.sayings import SAYINGS_FOLDER, SayingSet
 from lumen.language.stories import Story
+from lumen.loading.files import composed
 from lumen.loading.packaged import MAIN_FILE
 
 FOLDER = Path("behaviors", "stories")
@@ -64,8 +65,8 @@ def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) ->
     whole = Path(os.path.abspath(project.root)) / folder
     for base in (Path(), Path(project.root), whole):
         file = Path(os.path.abspath(base / word))
-        if file.parent == whole and file.suffix == ".yaml" and file.stem in known:
-            return [known[file.stem]]
+        if file.parent == whole and file.suffix == ".yaml" and (stem := composed(file.stem)) in known:
+            return [known[stem]]
     return []
 
 

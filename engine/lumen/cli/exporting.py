@@ -23,6 +23,7 @@ from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.document import Document
+from lumen.loading.files import on_disk
 from lumen.loading.yaml_reader import parse
 
 Writer = Callable[[MachineDefinition, PlaceOfPath], tuple[str, list[Diagnostic]]]
@@ -86,6 +87,6 @@ def _written(text: str, diagnostics: list[Diagnostic], document: Document, optio
 
 def _document(root: Path, file: str) -> Document:
     """The file, for the lines of what is listed."""
-    document = parse(file, (root / file).read_bytes())[0]
+    document = parse(file, on_disk(root, file).read_bytes())[0]
     assert document is not None  # it was loaded a moment ago
     return document

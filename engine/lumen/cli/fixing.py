@@ -11,6 +11,7 @@ from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import paint
 from lumen.errors import UsageError
 from lumen.language.text_lines import lines_of
+from lumen.loading.files import on_disk
 from lumen.rules.repairs import Repair, repaired
 from lumen.upkeep.replacing import replace_file
 
@@ -43,7 +44,7 @@ def write(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -
     Raises UsageError where one can't be written, or was saved by somebody else meanwhile.
     """
     for file in (file for file in after if after[file] != before[file]):
-        path = (root / file).resolve()
+        path = on_disk(root, file).resolve()
         try:
             if path.read_bytes() != before[file]:
                 raise UsageError(f"{path} was saved meanwhile: nothing was written to it, call lint again")

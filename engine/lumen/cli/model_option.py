@@ -7,6 +7,7 @@ from pathlib import Path
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.loading.chosen_model import choose
+from lumen.loading.files import composed
 
 
 def configure_model(parser: argparse.ArgumentParser) -> None:
@@ -21,7 +22,7 @@ def use_model(name: str, roots: Iterable[Path]) -> None:
     from lumen.loading.lending import MODELS, shipped_models  # only who asks for one waits for it
 
     for root in roots:
-        known = {*shipped_models(), *(file.stem for file in (root / MODELS).glob("*.yaml"))}
+        known = {*shipped_models(), *(composed(file.stem) for file in (root / MODELS).glob("*.yaml"))}
         if name not in known:
             raise UsageError(f"there is no model `{name}`: {did_you_mean(name, known, 'there are')}")
     choose(name)

@@ -11,6 +11,7 @@ from lumen.errors import UsageError
 from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import did_you_mean
+from lumen.loading.files import on_disk
 from lumen.motion import Motion
 
 
@@ -47,8 +48,8 @@ def _found(name: str) -> Path:
     if Path(name).is_file():
         return Path(name)
     root = shown_project(None)
-    if (root / name).is_file():
-        return root / name
+    if (file := on_disk(root, name)).is_file():
+        return file
     there = [
         str(p.relative_to(root)) for folder in ("fuzzy", "motions") for p in sorted((root / folder).glob("*.yaml"))
     ]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import lumen
 from lumen.errors import LumenError
+from lumen.loading.files import composed
 from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
 
@@ -16,7 +17,7 @@ def names_of(placeholder: str) -> Sequence[str]:
 
 
 def _files(folder: str) -> Callable[[Path], Iterable[str]]:
-    return lambda root: [file.stem for file in (root / folder).glob("*.yaml")]
+    return lambda root: [composed(file.stem) for file in (root / folder).glob("*.yaml")]
 
 
 def _codes(root: Path) -> Iterable[str]:

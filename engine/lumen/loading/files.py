@@ -5,6 +5,7 @@ import os
 import stat
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
+from unicodedata import normalize
 
 from lumen.loading.chosen_model import choice
 from lumen.loading.chosen_robot import CHOSEN_ROBOT, as_robot
@@ -94,11 +95,31 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
             if folder not in MISTAKEN_FOLDERS:
                 found[outside] = Unreadable(LEADS_OUT)
             continue
-        for name in _names(root / folder, endings):
+        if any(isinstance(found.get(each), Unreadable) for each in _within(folder)):
+            continue
+        try:
+            names = _names(root / folder, endings)
+        except OSError as error:
+            if folder not in MISTAKEN_FOLDERS:
+                found[folder] = Unreadable(_reason(error))
+            continue
+        for name in names:
             content = read.file(f"{folder}/{name}")
             if content is not None:
-                found[f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"] = content
+                file = f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"
+                found[composed(file) if composed(name) == name or composed(name) not in names else file] = content
     return dict(sorted(as_robot(with_common_words({**found, **choice()}), robot).items()))
+
+
+def composed(file: str) -> str:
+    """The name by which a file is known: a Mac may have saved the accents of it as characters of their own."""
+    return normalize("NFC", file) if file == normalize("NFD", file) else file
+
+
+def on_disk(root: Path, file: str) -> Path:
+    """Where a file of a project is, whichever way its accents were saved."""
+    path, decomposed = root / file, root / normalize("NFD", file)
+    return decomposed if not path.exists() and decomposed.exists() else path
 
 
 def read_main_file(root: Path) -> bytes:
@@ -145,12 +166,23 @@ def _within(folder: str) -> Iterator[str]:
 
 
 def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
-    """The files of a folder; what begins with a dot belongs to an editor."""
+    """The files of a folder, none if it is not there; what begins with a dot belongs to an editor. Raises OSError."""
     try:
         listed = os.listdir(folder)
-    except OSError:
-        return []
+    except FileNotFoundError:
+        if not folder.is_symlink():
+            return []
+        raise
     return sorted(name for name in listed if name.endswith(endings) and not name.startswith("."))[:MAX_FOLDER_FILES]
+
+
+def _reason(error: OSError) -> bytes:
+    """Why a file or a folder can't be read, in words."""
+    if isinstance(error, NotADirectoryError):
+        return b"it is a file, and should be a folder"
+    if isinstance(error, FileNotFoundError):
+        return b"what it links to is not there"
+    return (error.strerror or "the system refuses").lower().encode()
 
 
 class _Reader:
@@ -176,7 +208,7 @@ class _Reader:
         except FileNotFoundError:
             return Unreadable(b"the file it links to is not there") if path.is_symlink() else None
         except OSError as error:
-            return Unreadable((error.strerror or "the system refuses").lower().encode())
+            return Unreadable(_reason(error))
         if len(content) > self._left:
             return Unreadable(f"the project holds more than {MAX_PROJECT_BYTES // MEGABYTE} MB".encode())
         self._left -= len(content)

@@ -6,7 +6,7 @@ from itertools import islice
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.packaged import MAIN_FILE, find_project, project_above
+from lumen.loading.packaged import MAIN_FILE, find_project, misnamed_main_file, project_above
 
 MAX_FOLDERS = 5_000
 """How many folders are looked into, which takes a fraction of a second; a project has its place near the top."""
@@ -52,6 +52,8 @@ def _folders(here: Path) -> list[Path]:
 
 
 def _instead(folder: Path) -> str:
+    if there := next(filter(None, map(misnamed_main_file, (folder, *folder.parents))), ""):
+        return f"rename {there} to {MAIN_FILE}"
     below = [_named(one) for one in islice(projects_below(folder), NAMED + 1)]
     if not below:
         return "name the folder of a project, or make one with `lumen new DIR`"

@@ -1,11 +1,14 @@
 """Where the shipped exhibition and the engine's own schemas are, and which project is meant by a path or by none."""
 
+import os
+import re
 from functools import cache
 from pathlib import Path
 
 from lumen.errors import UsageError
 
 MAIN_FILE = "lumen.yaml"
+_MISNAMED = re.compile(r"lumen\s*\.ya?ml\s*(\.te?xt)?\s*", re.IGNORECASE)
 _PACKAGE = Path(__file__).parents[1]
 
 
@@ -26,12 +29,28 @@ def project_above(here: Path) -> Path | None:
     return next((folder for folder in (here, *here.parents) if (folder / MAIN_FILE).is_file()), None)
 
 
+def misnamed_main_file(folder: Path) -> str:
+    """The file in that folder that was probably meant to be its lumen.yaml; empty if there is none."""
+    try:
+        names = sorted(os.listdir(folder))
+    except OSError:
+        return ""
+    return next((name for name in names if name != MAIN_FILE and _MISNAMED.fullmatch(name)), "")
+
+
 def find_project(path: str | Path | None = None) -> Path:
     """The folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml, else the
-    shipped one. `path` may name the folder or its lumen.yaml. Raises UsageError where there is no such folder.
+    shipped one. `path` may name the folder or its lumen.yaml. Raises UsageError if there is no such folder, or if
+    one of them holds a lumen.yaml under another name.
     """
     if path is None:
-        return project_above(Path.cwd()) or shipped_root()
+        here = Path.cwd()
+        if found := project_above(here):
+            return found
+        for above in (here, *here.parents):
+            if there := misnamed_main_file(above):
+                raise UsageError(f"there is no {MAIN_FILE} in {above}: rename {there} to {MAIN_FILE}")
+        return shipped_root()
     folder = Path(path)
     try:
         if folder.name == MAIN_FILE and folder.is_file():

@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import TypeVar
+from unicodedata import normalize
 
 from lumen.interpreters.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
@@ -25,6 +26,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import (
     FLEET_FILE,
     FOLDERS,
+    LEADS_OUT,
     MISTAKEN_FOLDERS,
     Unreadable,
     endings_in,
@@ -246,7 +248,8 @@ def _each(
     `around` is what else `build` depends on.
     """
     names, read = set(), dict[str, BuiltFile[T]]()
-    for file, content in (found.files if files is None else files).items():
+    files = found.files if files is None else files
+    for file, content in files.items():
         if file.rpartition("/")[0] != folder or (path := PurePosixPath(file)).suffix not in (
             ".yaml",
             ".yml",
@@ -257,8 +260,9 @@ def _each(
             hint = f"rename it to {path.stem}.yaml, or delete it"
             found.say(NOT_READ, file, "files that end in .yml are not read", hint)
             continue
-        if path.stem in names:
-            message = f"this is not read: {folder}/ has another file called {path.stem}"
+        composed = normalize("NFC", path.stem)
+        if path.stem in names or (path.stem != composed and f"{folder}/{composed}{path.suffix}" in files):
+            message = f"this is not read: {folder}/ has another file called {composed}"
             found.say(NOT_READ, file, message, "join them, or give one of them another name")
             continue
         names.add(path.stem)
@@ -278,6 +282,8 @@ def _folders(found: ProjectDraft) -> None:
     for name, content in found.files.items():
         if isinstance(content, Unreadable) and (name in FOLDERS or endings_in(name)):
             hint = "put a folder of the project in its place: what lies elsewhere is not read"
+            if content != LEADS_OUT:
+                hint = "put a folder there that can be read, or delete it"
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
             found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
     for folder, meant in MISTAKEN_FOLDERS.items():

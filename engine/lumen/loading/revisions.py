@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.loading.files import MAX_FILE_BYTES, MAX_PROJECT_BYTES, Unreadable, belongs
+from lumen.loading.files import MAX_FILE_BYTES, MAX_PROJECT_BYTES, Unreadable, belongs, composed
 from lumen.loading.regular_files import MEGABYTE
 
 
@@ -47,7 +47,7 @@ def _blobs(listed: bytes) -> Iterator[_Blob]:
         about, _, path = row.partition(b"\t")
         mode, _, id, size = about.decode().split()
         if mode in ("100644", "100755"):
-            yield _Blob(path.decode("utf-8", "replace"), id, int(size))
+            yield _Blob(composed(path.decode("utf-8", "replace")), id, int(size))
 
 
 def _contents(root: Path, ids: Sequence[str]) -> list[bytes]:

@@ -3,6 +3,8 @@
 import wave
 from pathlib import Path
 
+from lumen.loading.files import on_disk
+
 MAX_SOUND_DURATION = 600.0
 """How long a sound may be [s]."""
 RATES = (8_000, 96_000)
@@ -14,7 +16,7 @@ def sound_duration(root: Path, file: str) -> float:
 
     Raises OSError where it is not there or outside of the project, ValueError with a reason where it can't be played.
     """
-    path = root / file
+    path = on_disk(root, file)
     if not path.resolve().is_relative_to(root.resolve()) or not path.is_file():
         raise FileNotFoundError(f"there is no file {file} in the project")
     try:

@@ -17,7 +17,7 @@ from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.context import check_memory
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import MAX_FILE_BYTES
+from lumen.loading.files import MAX_FILE_BYTES, composed
 from lumen.loading.linking import link
 from lumen.loading.plain import plain_document
 from lumen.loading.regular_files import read_regular
@@ -36,7 +36,8 @@ def machine_from_file(path: Path) -> MachineDefinition:
     Raises UsageError where a file can't be read, ProjectError for what they say.
     """
     beside, words = _yaml_files(path.parent), _yaml_files(path.parent / "words")
-    return _Family(_Shelf.of_files(beside | {path.stem: path}), _Shelf.of_files(words)).head(path.stem)
+    name = composed(path.stem)
+    return _Family(_Shelf.of_files(beside | {name: path}), _Shelf.of_files(words)).head(name)
 
 
 @gc_paused()
@@ -51,7 +52,7 @@ def machine_from_dict(
 
 
 def _yaml_files(folder: Path) -> dict[str, Path]:
-    return {file.stem: file for file in sorted(folder.glob("*.yaml"))}
+    return {composed(file.stem): file for file in sorted(folder.glob("*.yaml"))}
 
 
 class _Shelf(NamedTuple):

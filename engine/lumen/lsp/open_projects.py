@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.files import read_files
+from lumen.loading.files import composed, read_files
 from lumen.loading.packaged import MAIN_FILE
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
@@ -63,4 +63,4 @@ def root_of(path: Path) -> Path | None:
 
 
 def _file(path: Path, root: Path) -> str:
-    return path.relative_to(root).as_posix() if path.is_relative_to(root) else ""
+    return composed(path.relative_to(root).as_posix()) if path.is_relative_to(root) else ""

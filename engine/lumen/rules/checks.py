@@ -30,6 +30,7 @@ from lumen.rules import (
     knowledge,
     life,
     lists,
+    misnamed,
     models,
     motions,
     offers,
@@ -65,6 +66,7 @@ from lumen.rules import (
 CHECKS: tuple[ModuleType, ...] = (
     traps,
     schemas,
+    misnamed,
     references,
     recipients,
     models,

@@ -6,6 +6,7 @@ from lumen.language.machines import MachineDefinition, State, StateKind, Transit
 from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.files import on_disk
 from lumen.loading.sounds import sound_duration
 from lumen.rules.lookups import first, value_at
 from lumen.rules.statecharts import within
@@ -94,7 +95,7 @@ def _sounds(motion: MotionDefinition, report: DocumentReport, draft: ProjectDraf
 def _sound(file: str, path: NodePath, report: DocumentReport, draft: ProjectDraft) -> None:
     """A sound file that is not in the project's folder, or can't be played."""
     assert draft.root is not None
-    draft.looks.at(draft.root / file)
+    draft.looks.at(on_disk(draft.root, file))
     try:
         sound_duration(draft.root, file)
     except OSError:

@@ -10,6 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.keyframes import UNKNOWN_MOTION
 from lumen.loading.lending import shipped_models
 from lumen.loading.linking import UNKNOWN_BEHAVIOR
+from lumen.loading.misnamed import misnamed_for
 
 MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
 UNKNOWN_CONTROLLER = Code("unknown-controller", "references", ERROR, "a controller is named that is not in fuzzy/")
@@ -52,7 +53,7 @@ class References:
     """Looks names of files up; a folder in which nothing is, is reported once."""
 
     def __init__(self, draft: ProjectDraft) -> None:
-        self._names = draft.names
+        self._root, self._names = draft.root, draft.names
         self._missing = draft.missing
 
     def look_up(self, report: DocumentReport, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
@@ -61,7 +62,11 @@ class References:
         names = self._names.get(folder, frozenset())
         if name in names:
             return True
-        if names:
+        there = misnamed_for(self._root, folder, name) if self._root else None
+        if there:
+            hint, cause = f"rename {there.there} to {there.meant}", f"{kind} {name}"
+            report(code, path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
+        elif names:
             hint = did_you_mean(name.rpartition("/")[2].removesuffix(".yaml"), names, f"{folder}/ has")
             cause = f"{kind} {name}"
             report(code, path, f"there is no {what} `{name}`", hint, key=key, cause=cause)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory, keep, memory_file, remember
-from lumen.loading.files import FLEET_FILE, belongs, read_files
+from lumen.loading.files import FLEET_FILE, belongs, on_disk, read_files
 from lumen.runtime.home import Home, home_of
 
 FOLDER = "fleet"
@@ -23,10 +23,10 @@ def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
     there, wanted = _own(read_files(root)), _own(files)
     for path, content in wanted.items():
         if there.get(path) != content:
-            _write(root / path, content)
+            _write(on_disk(root, path), content)
     for path in {*there} - {*wanted}:
         with suppress(OSError):
-            (root / path).unlink()
+            on_disk(root, path).unlink()
     return read_files(root)
 
 

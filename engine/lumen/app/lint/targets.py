@@ -11,7 +11,7 @@ from lumen.app.lint.kept_findings import known_or_checked
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.common_words import own_files
-from lumen.loading.files import MAX_FILE_BYTES, counts, read_files
+from lumen.loading.files import MAX_FILE_BYTES, composed, counts, read_files
 from lumen.loading.own_project import own_project
 from lumen.loading.packaged import MAIN_FILE, project_above
 
@@ -98,7 +98,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
         raise UsageError(f"{path} belongs to no project: there is no {MAIN_FILE} beside it or above")
     if whole:
         return root, set()
-    name = here.absolute().relative_to(root).as_posix()
+    name = composed(here.absolute().relative_to(root).as_posix())
     files = {file for file in own_files(read_files(root)) if file == name or file.startswith(f"{name}/")}
     if not files:
         raise UsageError(f"in {path} is nothing that lint reads: docs/yaml.md lists the files of a project")
@@ -116,7 +116,7 @@ def _typed(paths: Sequence[str], name: str | None) -> LintTarget:
     root = _root(Path(name))
     if root is None:
         raise UsageError(f"{name} belongs to no project: there is no {MAIN_FILE} beside it or above")
-    file = Path(name).absolute().relative_to(root).as_posix()
+    file = composed(Path(name).absolute().relative_to(root).as_posix())
     if not counts(file):
         raise UsageError(f"{name} is no file that lint reads: docs/yaml.md lists the files of a project")
     content = sys.stdin.buffer.read(MAX_FILE_BYTES + 1)

@@ -1,0 +1,54 @@
+"""Files that are there and not read because their name is nearly right: `wave.yaml.txt`, `wave.YAML`, `Motions/`."""
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+
+from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, counts, endings_in
+
+_ENDING = re.compile(r"(?P<stem>.+?)\s*\.(?:(?P<yaml>ya?ml)|(?P<other>md|json|xml))\s*(?:\.te?xt)?\s*", re.IGNORECASE)
+
+
+class Misnamed(NamedTuple):
+    """A file or folder as it is called, and as it should be, both from the project's root."""
+
+    there: str
+    meant: str
+
+
+def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
+    """The files of a folder of the project whose ending is nearly one that is read, and folders with other letters."""
+    endings, listed = endings_in(folder), _listed(root, folder)
+    for name in listed:
+        path = f"{folder}/{name}" if folder else name
+        lowered = path.lower()
+        if lowered != path and lowered in FOLDERS - MISTAKEN_FOLDERS.keys() and not (root / lowered).exists():
+            yield Misnamed(f"{path}/", f"{lowered}/")
+        elif (found := _ENDING.fullmatch(name)) and not counts(path) and (root / path).is_file():
+            ending = f".{found['other'] or 'yaml'}".lower()
+            meant = found["stem"] + ending
+            if ending in endings and meant not in listed and not name.startswith("."):
+                yield Misnamed(path, f"{folder}/{meant}")
+
+
+def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
+    """What was probably meant to be the file of that name in a folder of the project."""
+    above = ["", *map(str, reversed(PurePosixPath(folder).parents[:-1])), folder]
+    found = (each for one in above for each in misnamed_in(root, one))
+    fits = (
+        each
+        for each in found
+        if each.meant.rstrip("/") in above or each.meant.partition(".")[0].lower() == f"{folder}/{name}".lower()
+    )
+    return next(fits, None)
+
+
+def _listed(root: Path, folder: str) -> list[str]:
+    """What is in a folder of the project; nothing of one that lies elsewhere."""
+    try:
+        inside = (root / folder).resolve().is_relative_to(root.resolve())
+        return sorted(os.listdir(root / folder)) if inside else []
+    except (OSError, RuntimeError):  # the latter for links in a circle
+        return []

@@ -1,0 +1,24 @@
+"""Files of the project's folders that nothing reads because their name is nearly right."""
+
+from dataclasses import replace
+
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.files import FOLDERS
+from lumen.loading.misnamed import misnamed_in
+from lumen.loading.packaged import MAIN_FILE, misnamed_main_file
+from lumen.loading.project import MISSING_FILE, NOT_READ
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report endings in other letters or with another one behind them, and folders with capital letters."""
+    if draft.root is None:
+        return
+    for folder in ("", *sorted(FOLDERS)):
+        draft.looks.at(draft.root / folder)
+        for there, meant in misnamed_in(draft.root, folder):
+            name = meant if meant.endswith("/") else meant.rpartition("/")[2]
+            message = f"this is not read: its name is not `{name}`"
+            draft.say(NOT_READ, there.rstrip("/"), message, f"rename it to {name}")
+    if MAIN_FILE not in draft.files and (there := misnamed_main_file(draft.root)):
+        hint = f"rename {there} to {MAIN_FILE}"
+        draft.loose[:] = [replace(d, hint=hint) if d.code == MISSING_FILE else d for d in draft.loose]
