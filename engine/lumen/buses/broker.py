@@ -14,6 +14,7 @@ import pika
 from pika import exceptions
 
 from lumen.errors import BusAddressError, BusError, BusRefusedError, BusUnreachableError
+from lumen.language.addresses import fault_of_broker, public
 
 HEARTBEAT_INTERVAL = 10
 """How often both sides show that they live [s], where the address does not say."""
@@ -33,16 +34,17 @@ class BrokerAddress:
     """A broker's URL, taken apart; `str` shows it without the password."""
 
     def __init__(self, url: str) -> None:
+        shown = public(url)
         try:
+            if fault := fault_of_broker(url):
+                raise ValueError(fault)
             parts = urlsplit(url)
-            if not parts.hostname:
-                raise ValueError("there is no host in it")
             authority, url = _authority(parts)
             self.parameters = pika.URLParameters(url)
         except (ValueError, TypeError, KeyError) as error:
             raise BusAddressError(
-                f"`{_public(url)}` is no address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/"
-            ) from error
+                f"`{shown}` is no address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/VHOST"
+            ) from None  # what stands there may hold the password
         options = self.parameters
         options.connection_attempts = 1
         options.socket_timeout = SOCKET_TIMEOUT
@@ -145,9 +147,3 @@ def _causes(error: BaseException) -> Iterator[BaseException]:
         if isinstance(item, BaseException):
             yield from _causes(item)
     yield error
-
-
-def _public(url: str) -> str:
-    """The URL without what may be a password."""
-    scheme, _, rest = url.partition("://")
-    return f"{scheme}://{rest.rpartition('@')[2]}" if rest else url.rpartition("@")[2]

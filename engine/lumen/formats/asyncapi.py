@@ -7,6 +7,7 @@ from urllib.parse import urlsplit
 
 import yaml
 
+from lumen.language.addresses import fault_of_broker
 from lumen.language.projects import Project
 from lumen.language.routes import Carried, Direction, Route
 
@@ -58,7 +59,7 @@ def document(project: Project) -> dict[str, Any]:
 
 def _server(url: str) -> dict[str, Any]:
     """Where the broker is, without who may use it."""
-    parts = urlsplit(url if url.startswith("amqp") else "amqp://localhost:5672/")
+    parts = urlsplit(url if url.startswith("amqp") and not fault_of_broker(url) else "amqp://localhost:5672/")
     host = f"{parts.hostname or 'localhost'}:{parts.port or (5671 if parts.scheme == 'amqps' else 5672)}"
     return {"host": host, "protocol": parts.scheme, "protocolVersion": "0.9.1"}
 

@@ -6,6 +6,7 @@ from ipaddress import ip_address
 from typing import Any
 from urllib.parse import urlsplit
 
+from lumen.language.addresses import credentials_of
 from lumen.language.alerts import Mail, Recipient, Webhook
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.loading.alerts import WHERE
@@ -85,12 +86,12 @@ def _web(report: DocumentReport, url: str, where: NodePath) -> None:
         port_or_none = parts.port
     except ValueError:
         parts, port_or_none = urlsplit(""), None
-    if parts.scheme not in ("http", "https") or not parts.hostname or port_or_none == 0 or re.search(r"\s", url):
-        hint = "write an address such as https://chat.museum.example/hooks/lumen, or $NAME of a variable that holds it"
-        report(ALERT_ADDRESS, where, f"`{url}` is no address on the web", hint)
-    elif parts.username is not None:
+    if parts.username is not None or (not parts.scheme and credentials_of(url)):
         hint = "write `webhook: $LUMEN_ALERT_URL`, and the address into that environment variable"
         report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
+    elif parts.scheme not in ("http", "https") or not parts.hostname or port_or_none == 0 or re.search(r"\s", url):
+        hint = "write an address such as https://chat.museum.example/hooks/lumen, or $NAME of a variable that holds it"
+        report(ALERT_ADDRESS, where, f"`{url}` is no address on the web", hint)
     elif parts.scheme == "http" and not loopback(parts.hostname):
         report(ALERT_IN_CLEAR, where, f"what is sent to {parts.hostname} is not encrypted", "write https://")
 

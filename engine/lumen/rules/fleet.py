@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from urllib.parse import urlsplit
 
 from lumen.interpreters.fleet.conditions import condition_faults
+from lumen.language.addresses import credentials_of
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.language.fleet import Fleet
 from lumen.loading.document_report import DocumentReport
@@ -85,15 +86,16 @@ def _key(fleet: Fleet, report: DocumentReport) -> None:
 
 
 def _address(address: str, where: NodePath, report: DocumentReport) -> None:
+    if credentials_of(address):
+        hint = "take them out: `lumen fleet init` writes names and passwords into files of their own"
+        report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
+        return
     try:
         parts = urlsplit(address)
         host = parts.hostname or ""
     except ValueError:
         return
-    if parts.username is not None:
-        hint = "take them out: `lumen fleet init` writes names and passwords into files of their own"
-        report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
-    elif parts.scheme == "amqp" and not loopback(host):
+    if parts.scheme == "amqp" and not loopback(host):
         report(FLEET_IN_CLEAR, where, f"what is sent to {host} is not encrypted", "write amqps://")
 
 

@@ -1,8 +1,8 @@
 """The route table: keys, schemas, events."""
 
 from collections.abc import Collection, Iterator, Mapping
-from urllib.parse import urlsplit
 
+from lumen.language.addresses import credentials_of, unescaped
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.commands import Track
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, has_errors
@@ -81,13 +81,11 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
 
 def _password(bus: str, report: DocumentReport) -> None:
     """A project is copied, mailed and published; what opens the broker's door is not."""
-    try:
-        secret = urlsplit(bus).username is not None
-    except ValueError:  # no address at all: who connects says so
-        secret = "@" in bus
-    if secret:
+    if credentials_of(bus):
         message = "a name and a password stand in a file that everybody reads"
         hint = "write them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
+        if signs := unescaped(bus):
+            hint += f"; in LUMEN_BUS write {signs}"
         report(PASSWORD_IN_FILE, ("bus",), message, hint)
 
 

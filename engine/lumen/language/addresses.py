@@ -1,0 +1,58 @@
+"""Addresses of brokers and servers (RFC 3986): what of them may be shown, and which signs have to be written as %XX."""
+
+import re
+from urllib.parse import quote, unquote, urlsplit
+
+_FILE = re.compile(r"(?<=[?&])ca=[^&]*")
+"""The parameter that names a file, whose path may hold an `@`."""
+_PORT = re.compile(r"(\[[^\]]*\]|[^:/?#\[\]]*):(?!\d*(?:[/?#]|$))(.*)", re.DOTALL)
+"""A host and what is no port behind it: that may be a password of which the host was forgotten."""
+_ENDING = "/?#[]"
+"""What ends a host, or makes one of numbers: a name or a password has to write these as %XX."""
+
+
+def credentials_of(url: str) -> str:
+    """The name and password in an address, as far as they may reach; empty if there are none."""
+    return _FILE.sub("", url.partition("://")[2] or url).rpartition("@")[0]
+
+
+def public(url: str) -> str:
+    """The address without what may be a name or a password."""
+    scheme, separator, rest = url.partition("://")
+    rest = rest.rpartition("@")[2]
+    if not separator:
+        return url.rpartition("@")[2]
+    if found := _PORT.fullmatch(rest):
+        rest = f"{found[1]}:…"
+    return f"{scheme}{separator}{rest}"
+
+
+def unescaped(url: str) -> str:
+    """How to write the signs of a name or a password that end it too early; empty if there are none."""
+    signs = [sign for sign in _ENDING if sign in credentials_of(url)]
+    return ", ".join(f"{quote(sign, safe='')} for `{sign}`" for sign in signs)
+
+
+def fault_of_broker(url: str) -> str:
+    """Why this is no address of a broker, with what would be right; empty if it may be one."""
+    if signs := unescaped(url):
+        return f"in a name or a password write {signs}, and behind the host %40 for `@`"
+    try:
+        parts = urlsplit(url)
+        host = parts.hostname
+    except ValueError:  # its text may hold the password
+        return "its host is none, or it holds a sign that no address may hold"
+    if not host:
+        return "there is no host in it"
+    try:
+        parts.port  # noqa: B018  it raises if it is none
+    except ValueError:
+        return "its port is no number from 0 to 65535"
+    if parts.fragment:
+        return "write %23 for `#`"
+    segment = parts.path[1:]
+    if "/" in segment.removesuffix("/") or segment == "/":
+        meant, bare = quote(unquote(segment), safe=""), segment.strip("/")
+        other = f" (or /{bare})" if bare and "/" not in bare else ""
+        return f"a virtual host is one segment, its slashes are %2F: write /{meant}{other} for /{segment}"
+    return ""

@@ -1,0 +1,145 @@
+"""Addresses, brokers and messages as other people had trouble with them: one line says what is wrong and what is right.
+
+Each case is a reduction of a public report about another system.
+"""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lumen.bus import connect
+from lumen.buses.broker import BrokerAddress
+from lumen.cli.main import main
+from lumen.errors import BusAddressError
+from lumen.language.addresses import public
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from tests.tables import for_each
+
+MINIMAL = Path(__file__).parents[2] / "examples" / "minimal"
+
+
+def refusal(url: str) -> str:
+    with pytest.raises(BusAddressError) as caught:
+        connect(url)
+    return str(caught.value)
+
+
+@for_each(
+    ("password", "said"),
+    [
+        ("QQ/QQ", "`amqp://h/` is no address of a broker (in a name or a password write %2F for `/`"),
+        ("QQ#QQ", "`amqp://h/` is no address of a broker (in a name or a password write %23 for `#`"),
+        ("QQ?QQ", "`amqp://h/` is no address of a broker (in a name or a password write %3F for `?`"),
+        ("17/QQ", "`amqp://h/` is no address of a broker (in a name or a password write %2F for `/`"),
+        ("17#QQ", "`amqp://h/` is no address of a broker (in a name or a password write %23 for `#`"),
+        ("QQ?a=QQ", "`amqp://h/` is no address of a broker (in a name or a password write %3F for `?`"),
+        ("Q[Q]", "`amqp://h/` is no address of a broker (in a name or a password write %5B for `[`, %5D for `]`"),
+        ("QQ/Q#Q?", "(in a name or a password write %2F for `/`, %3F for `?`, %23 for `#`"),
+        ("QQ@Q/Q", "`amqp://h/` is no address of a broker (in a name or a password write %2F for `/`"),
+    ],
+)
+def test_a_password_with_signs_of_an_address_is_not_shown(password: str, said: str) -> None:
+    told = refusal(f"amqp://u:{password}@h/")
+    assert said in told
+    assert "Q" not in told
+    assert "17" not in told
+
+
+def shown(url: str) -> str:
+    """What is printed of an address, right or wrong."""
+    try:
+        return str(BrokerAddress(url))
+    except BusAddressError as error:
+        return str(error)
+
+
+PATHS = ["", "/", "/museum", ":5672/?heartbeat=5"]
+
+
+@given(password=st.text("Q1/#?@[]:%&=;℀ ", min_size=1), path=st.sampled_from(PATHS))
+def test_no_part_of_a_password_is_shown(password: str, path: str) -> None:
+    url = f"amqp://u:Q{password}Q@h{path}"
+    assert "Q" not in public(url) + shown(url)
+
+
+@for_each(
+    ("url", "said"),
+    [
+        ("amqp://guest:secret", "`amqp://guest:…` is no address of a broker (its port is no number from 0 to 65535)"),
+        ("amqp://guest:secret/museum", "`amqp://guest:…` is no"),
+        ("amqp://u:secret@h:port/", "`amqp://h:…` is no address of a broker (its port is no number"),
+        ("amqp://u:secret@h:70000/", "its port is no number from 0 to 65535"),
+        ("amqp://u:secret@/", "there is no host in it"),
+        ("amqp://u:secret℀@h/", "it holds a sign that no address may hold"),
+    ],
+)
+def test_an_address_that_is_wrong_elsewhere_does_not_show_it_either(url: str, said: str) -> None:
+    told = refusal(url)
+    assert said in told
+    assert "secret" not in told
+
+
+@for_each(
+    ("path", "said"),
+    [
+        ("/museum/hall", "a virtual host is one segment, its slashes are %2F: write /museum%2Fhall for /museum/hall"),
+        ("//museum", "its slashes are %2F: write /%2Fmuseum (or /museum) for //museum"),
+        ("//", "write /%2F for //"),
+        ("/a/b/", "write /a%2Fb%2F for /a/b/"),
+        ("/museum#hall", "write %23 for `#`"),
+    ],
+)
+def test_a_virtual_host_of_several_segments_is_none(path: str, said: str) -> None:
+    assert said in refusal(f"amqp://h{path}")
+
+
+@for_each(
+    ("path", "vhost"),
+    [
+        ("", "/"), ("/", "/"), ("/museum", "museum"), ("/museum/", "museum"), ("/%2F", "/"), ("/%2Fmuseum", "/museum"),
+        ("/museum%2Fhall", "museum/hall"), ("/a%40b", "a@b"), ("/a%23b?heartbeat=5", "a#b"),
+    ],
+)  # fmt: skip
+def test_a_virtual_host_is_the_one_that_was_written(path: str, vhost: str) -> None:
+    address = BrokerAddress(f"amqp://u%2F:p%2F%23%3F%40@h{path}")
+    assert (address.vhost, address.user, address.parameters.credentials.password) == (vhost, "u/", "p/#?@")
+
+
+@for_each("password", ["secret", "se/cret", "se#cret", "se?cret", "12/cret", "12#cret", "s[cret", "se@cret"])
+@for_each("file", ["lumen.yaml", "fleet.yaml", "alerts"])
+def test_a_password_in_a_file_is_found_whatever_signs_it_has(file: str, password: str) -> None:
+    files = read_files(MINIMAL)
+    if file == "fleet.yaml":
+        files[file] = f"houses: {{a: {{broker: 'amqps://u:{password}@h/', robots: [nao]}}}}\n".encode()
+    elif file == "alerts":
+        if password.startswith("12"):
+            return  # `https://u:12/cret@h/` is an address on the web, of the host `u`
+        files["lumen.yaml"] += f"alerts: {{to: [{{webhook: 'https://u:{password}@h/'}}]}}\n".encode()
+    else:
+        files[file] += f"bus: 'amqp://u:{password}@h/'\n".encode()
+    found = [d for d in check_files(MINIMAL, files)[1] if d.code == "password-in-file"]
+    assert len(found) == 1
+    assert "cret" not in found[0].message + found[0].hint
+
+
+def test_the_hint_says_how_to_write_it_elsewhere() -> None:
+    files = read_files(MINIMAL)
+    files["lumen.yaml"] += b"bus: 'amqp://u:pa/s#s@h/'\n"
+    [found] = [d for d in check_files(MINIMAL, files)[1] if d.code == "password-in-file"]
+    assert found.hint.endswith("; in LUMEN_BUS write %2F for `/`, %23 for `#`")
+
+
+@pytest.mark.parametrize("words", [["doctor"], ["topic", "list"], ["status"], ["run", "--robot", "recording"]])
+def test_each_command_keeps_the_password(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("LUMEN_BUS", "amqp://u:12/pa#ss@h/")
+    monkeypatch.chdir(MINIMAL)
+    assert main(words) != 0
+    printed = capsys.readouterr()
+    assert "write %2F for `/`, %23 for `#`" in printed.err
+    assert printed.err.count("\n") == 1
+    assert "pa#" not in printed.out + printed.err
