@@ -3,19 +3,28 @@
 Each case is a reduction of a public report about another system.
 """
 
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lumen.app.fleet.broker_check import check_broker
+from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
 from lumen.buses.broker import BrokerAddress
+from lumen.buses.probe import BrokerProbe
 from lumen.cli.main import main
-from lumen.errors import BusAddressError
+from lumen.errors import BusAddressError, BusUnreachableError
 from lumen.language.addresses import public
+from lumen.language.fleet import Fleet, FleetHouse
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests.rabbitmq import RabbitMQ
+from tests.relay import Relay
 from tests.tables import for_each
 
 MINIMAL = Path(__file__).parents[2] / "examples" / "minimal"
@@ -143,3 +152,56 @@ def test_each_command_keeps_the_password(
     assert "write %2F for `/`, %23 for `#`" in printed.err
     assert printed.err.count("\n") == 1
     assert "pa#" not in printed.out + printed.err
+
+
+@pytest.fixture
+def silent_port() -> Iterator[int]:
+    """A port of loopback that accepts connections, as a stopped broker or the wrong program does, and sends nothing."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        yield int(listener.getsockname()[1])
+
+
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wait for a broker for a moment only; each of these waits is for what never comes."""
+    monkeypatch.setattr("lumen.buses.polled.BROKER_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.buses.broker.SOCKET_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.buses.broker.BROKER_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.2)
+
+
+ASKING = ["doctor", "topic list", "topic echo heard", "topic pub lumen.a 1", "status", "stop"]
+
+
+@pytest.mark.usefixtures("impatient")
+@pytest.mark.parametrize("words", ASKING)
+def test_a_port_that_is_silent_is_one_line(
+    words: str, silent_port: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(MINIMAL)
+    assert main([*words.split(), "--bus", f"amqp://127.0.0.1:{silent_port}/"]) == 2
+    said = capsys.readouterr()
+    assert (
+        f"the broker at 127.0.0.1:{silent_port} does not answer: check the host, the port and the network" in said.err
+    )
+    assert (said.err.count("\n"), said.out) == (1, "")
+
+
+@pytest.mark.usefixtures("impatient")
+def test_a_silent_broker_of_a_house_is_a_finding(silent_port: int) -> None:
+    fleet = Fleet("amqps://centre.example/", houses={"itb": FleetHouse("amqps://itb.example/", ("nao1",))})
+    [found] = check_broker(fleet, "itb", f"amqp://127.0.0.1:{silent_port}/", RabbitMQControl(""))
+    assert "does not answer" in str(found)
+
+
+@pytest.mark.parametrize("ask", [lambda p: p.writing("lumen.a"), lambda p: p.reading("lumen.a")], ids=["write", "read"])
+def test_a_broker_that_hangs_after_the_login_is_told_as_such(
+    ask: Callable[[BrokerProbe], str], broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    relay = Relay(broker.port)
+    with closing(relay), closing(BrokerProbe(f"amqp://guest:guest@{broker.place(relay.port)}")) as probe:
+        assert ask(probe) == ""
+        relay.cut()
+        monkeypatch.setattr("lumen.buses.polled.BROKER_TIMEOUT", 0.2)
+        with pytest.raises(BusUnreachableError, match="does not answer"):
+            ask(probe)

@@ -29,6 +29,10 @@ class AskedChannel:
     def __getattr__(self, name: str) -> Callable[..., Any]:
         return lambda *args, **kwargs: self._ask(getattr(self._channel, name), *args, **kwargs)
 
+    def send(self, exchange: str, key: str, properties: Any) -> None:
+        """Send an empty message; if the broker refuses it, the next question raises."""
+        self._channel.basic_publish(exchange, key, b"", properties)
+
     def close(self) -> None:
         """Nothing more is asked; nobody waits for the broker to know."""
         if self._channel.is_open:

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pika
-from pika.exceptions import AMQPError, ChannelClosedByBroker
+from pika.exceptions import ChannelClosedByBroker
 
+from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.polled import PolledConnection
 from lumen.buses.queues import EXCHANGE, queue_of
@@ -27,24 +28,33 @@ class QueueStatus(NamedTuple):
 
 
 class BrokerProbe:
-    """A connection for questions; raises BusError, saying what to do, where the broker can't be used."""
+    """A connection for questions; raises BusError, saying what to do, if the broker can't be used."""
 
     def __init__(self, url: str) -> None:
         self.address = BrokerAddress(url)
+        with self._explained():
+            self._connection = PolledConnection(self.address.parameters)
+        server = self._connection.server
+        self.product, self.version = (_text(server.get(name)) for name in ("product", "version"))
         try:
-            self._connection = pika.BlockingConnection(self.address.parameters)
-            polled = PolledConnection(self.address.parameters)
-        except (AMQPError, OSError) as error:
-            raise self.address.explain(error) from error
-        self.product, self.version = (_text(polled.server.get(name)) for name in ("product", "version"))
-        server = polled.server
-        polled.close()
-        self.address.check_version(server)
+            self.address.check_version(server)
+        except BusUnreachableError:
+            self.close()
+            raise
+
+    def has_queue(self, name: str) -> bool:
+        """Whether there is a queue or a stream of that name."""
+        try:
+            with self.asking() as channel:
+                channel.queue_declare(name, passive=True)
+        except ChannelClosedByBroker:
+            return False
+        return True
 
     def reading(self, key: str) -> str:
         """Why we may not read what is sent under this key; empty where we may."""
         try:
-            with self._channel() as channel:
+            with self.asking() as channel:
                 queue = channel.queue_declare("", exclusive=True).method.queue
                 channel.queue_bind(queue, EXCHANGE, key)
                 channel.queue_delete(queue)
@@ -60,9 +70,9 @@ class BrokerProbe:
         """
         properties = pika.BasicProperties(user_id=FORGED_USER)
         try:
-            with self._channel() as channel:
-                channel.confirm_delivery()
-                channel.basic_publish(EXCHANGE, key, b"", properties)
+            with self.asking() as channel:
+                channel.send(EXCHANGE, key, properties)
+                channel.basic_qos(prefetch_count=1)  # answered after the message: the broker goes by their order
         except ChannelClosedByBroker as error:
             return str(error.reply_text) if error.reply_code == ACCESS_REFUSED else ""
         raise BusUnreachableError(f"the broker at {self.address} took a message that claims to be from `{FORGED_USER}`")
@@ -70,7 +80,7 @@ class BrokerProbe:
     def served(self, key: str, route: Route) -> QueueStatus:
         """How many wait and read in the queue of a route whose messages must arrive."""
         try:
-            with self._channel() as channel:
+            with self.asking() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method
         except ChannelClosedByBroker:
             return QueueStatus()
@@ -80,10 +90,19 @@ class BrokerProbe:
         self._connection.close()
 
     @contextmanager
-    def _channel(self) -> Iterator[Any]:
-        channel = self._connection.channel()
-        yield channel
-        channel.close()
+    def asking(self) -> Iterator[AskedChannel]:
+        """A channel of its own for questions. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
+        with self._explained(), self._connection.asking() as channel:
+            yield channel
+
+    @contextmanager
+    def _explained(self) -> Iterator[None]:
+        try:
+            yield
+        except ChannelClosedByBroker:  # it refuses, which is an answer
+            raise
+        except Exception as error:  # pika has some that are neither AMQPError nor OSError
+            raise self.address.explain(error) from error
 
 
 def _text(value: object) -> str:

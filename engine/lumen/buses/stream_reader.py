@@ -1,14 +1,15 @@
 """A stream of RabbitMQ, read from where it was left: whoever was off hears what was said meanwhile."""
 
 from collections import deque
+from contextlib import closing
 from typing import Any, NamedTuple
 
-import pika
-from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
+from pika.exceptions import ConsumerCancelled
 
 from lumen.buses.bodies import JSON, decode
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
+from lumen.buses.probe import BrokerProbe
 from lumen.buses.properties import MessageProperties
 
 PREFETCH = 200
@@ -82,15 +83,5 @@ class StreamReader(BrokerConnection):
 
 def has_stream(url: str, name: str) -> bool:
     """Whether the broker has such a queue. Raises BusError where it can't be reached."""
-    address = BrokerAddress(url)
-    try:
-        connection = pika.BlockingConnection(address.parameters)
-    except (AMQPError, OSError) as error:
-        raise address.explain(error) from error
-    try:
-        connection.channel().queue_declare(name, passive=True)
-    except ChannelClosedByBroker:
-        return False
-    finally:
-        connection.close()
-    return True
+    with closing(BrokerProbe(url)) as probe:
+        return probe.has_queue(name)

@@ -1,6 +1,7 @@
 """Whether a broker has what a fleet needs, asked of the broker itself and of its rabbitmqctl."""
 
 from collections.abc import Iterator
+from contextlib import closing
 from typing import Any
 from urllib.parse import quote
 
@@ -12,6 +13,7 @@ from lumen.app.fleet.brokers import CENTRE, OPERATORS, ROBOTS, UP, centre_settin
 from lumen.app.fleet.keys import EXCHANGE
 from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.buses.broker import BrokerAddress
+from lumen.buses.probe import BrokerProbe
 from lumen.errors import BusError
 from lumen.language.fleet import Fleet
 
@@ -27,21 +29,14 @@ def check_broker(
 
     Passwords are not compared. The certificate is that of the address in fleet.yaml, signed by who is in the file `ca`.
     """
-    import pika
-    from pika.exceptions import AMQPError
-
     try:
-        address = BrokerAddress(trusting(url, ca))
-        connection = pika.BlockingConnection(address.parameters)
-    except (BusError, AMQPError, OSError) as error:
-        yield BrokerFinding("the broker", str(error if isinstance(error, BusError) else address.explain(error)))
+        with closing(BrokerProbe(trusting(url, ca))) as probe:
+            seen = [_passive(probe, "exchange", EXCHANGE)]
+            seen.append(_passive(probe, "queue" if name != CENTRE else "exchange", UP))
+    except BusError as error:
+        yield BrokerFinding("the broker", str(error))
         return
     yield BrokerFinding("the broker", note=f"it answers, {'by TLS' if url.startswith('amqps:') else 'in clear'}")
-    try:
-        seen = [_passive(connection, "exchange", EXCHANGE)]
-        seen.append(_passive(connection, "queue" if name != CENTRE else "exchange", UP))
-    finally:
-        connection.close()
     for told in (fleet.centre if name == CENTRE else fleet.houses[name].broker, url):
         if told.startswith("amqps:"):
             yield check_certificate(BrokerAddress(trusting(told, ca)))
@@ -70,15 +65,16 @@ def _wanted(fleet: Fleet, name: str) -> Any:
     return house_settings(fleet, name, {ROBOTS: ""}, "").definitions
 
 
-def _passive(connection: Any, kind: str, name: str) -> BrokerFinding:
+def _passive(probe: BrokerProbe, kind: str, name: str) -> BrokerFinding:
     from pika.exceptions import ChannelClosedByBroker
 
-    channel, what = connection.channel(), f"the {kind} {name}"
+    what = f"the {kind} {name}"
     try:
-        if kind == "exchange":
-            channel.exchange_declare(name, passive=True)
-            return BrokerFinding(what)
-        waiting = channel.queue_declare(name, passive=True).method.message_count
+        with probe.asking() as channel:
+            if kind == "exchange":
+                channel.exchange_declare(name, passive=True)
+                return BrokerFinding(what)
+            waiting = channel.queue_declare(name, passive=True).method.message_count
     except ChannelClosedByBroker as error:
         if error.reply_code == 404:
             return BrokerFinding(what, "it is not there", mend=IMPORT)
