@@ -42,7 +42,8 @@ def test_properties_are_read_as_pika_reads_them() -> None:
         user_id="u", app_id="a", cluster_id="x",
     )  # fmt: skip
     read = read_properties(b"".join(given.encode()))
-    assert read._replace(table=b"") == MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7, "a", 2)
+    expected = MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7, "a", 2, content_encoding="utf-8")
+    assert read._replace(table=b"") == expected
     assert read_properties(b"".join(pika.BasicProperties(timestamp=7).encode())).timestamp == 7
 
 

@@ -3,19 +3,27 @@
 Each case is a reduction of a public report about another system.
 """
 
+import base64
+import gzip
+import re
 import socket
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
 
+import pika
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lumen import load
 from lumen.app.fleet.broker_check import check_broker
 from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
+from lumen.buses.bodies import JSON, TEXT, decode
 from lumen.buses.broker import BrokerAddress
+from lumen.buses.checking import SchemaCheck
 from lumen.buses.probe import BrokerProbe
 from lumen.cli.main import main
 from lumen.errors import BusAddressError, BusUnreachableError
@@ -205,3 +213,71 @@ def test_a_broker_that_hangs_after_the_login_is_told_as_such(
         monkeypatch.setattr("lumen.buses.polled.BROKER_TIMEOUT", 0.2)
         with pytest.raises(BusUnreachableError, match="does not answer"):
             ask(probe)
+
+
+BODY = '{"x": 160, "y": 120}'
+
+
+@for_each(
+    ("data", "content_type", "content_encoding", "reason"),
+    [
+        (b"\xef\xbb\xbf" + BODY.encode(), JSON, "", "it begins with a byte order mark (BOM), which JSON does not have"),
+        (BODY.encode("utf-16"), JSON, "", "it is UTF-16: send UTF-8"),
+        (BODY.encode("utf-16-le"), JSON, "utf-16", "it is UTF-16: send UTF-8"),
+        (BODY.encode("utf-16-be"), JSON, "", "it is UTF-16: send UTF-8"),
+        ("hello".encode("utf-16-le"), TEXT, "", "it is UTF-16: send UTF-8"),
+        (gzip.compress(BODY.encode()), JSON, "gzip", "it is compressed with gzip: send it as it is"),
+        (gzip.compress(BODY.encode()), "", "", "it is compressed with gzip: send it as it is"),
+        (gzip.compress(b"hello"), TEXT, "gzip", "it is compressed with gzip: send it as it is"),
+        (zlib.compress(BODY.encode()), JSON, "deflate", "its content encoding is `deflate`: send plain UTF-8"),
+        (base64.b64encode(BODY.encode()), JSON, "base64", "its content encoding is `base64`: send plain UTF-8"),
+        ('{"x": "é"}'.encode("latin-1"), JSON, "iso-8859-1", "its content encoding is `iso-8859-1`: send plain UTF-8"),
+        ('{"x": "é"}'.encode("latin-1"), JSON, "", "it is not UTF-8 (invalid continuation byte at byte 7)"),
+        (b"{'x': 1}", JSON, "utf-8", "it is not JSON (Expecting property name"),
+    ],
+)
+def test_a_body_that_is_no_plain_utf_8_is_refused_with_what_it_is(
+    data: bytes, content_type: str, content_encoding: str, reason: str
+) -> None:
+    with pytest.raises(ValueError, match=re.escape(reason)):
+        decode(data, content_type or JSON, content_encoding)
+
+
+@for_each("encoding", ["", "utf-8", "UTF-8", "identity", "binary", "gzip"])
+def test_a_plain_body_is_read_whatever_its_sender_calls_it(encoding: str) -> None:
+    assert decode(BODY.encode(), JSON, encoding) == {"x": 160, "y": 120}
+
+
+@for_each(
+    ("body", "says"),
+    [
+        (BODY, "it is a text that holds JSON: send it with the content type application/json, not text/plain"),
+        ("[1, 2]", "it is a text that holds JSON"),
+        ("hello", "'hello' is not of type 'object'"),
+        ("{hello}", "'{hello}' is not of type 'object'"),
+        ({"x": "left"}, "x: 'left' is not of type"),
+    ],
+)
+def test_json_that_came_as_a_text_is_told_as_such(body: object, says: str) -> None:
+    schema = {"type": "object", "properties": {"x": {"type": "number"}}}
+    assert SchemaCheck(schema)(body).startswith(says)
+
+
+def test_a_sender_hears_the_content_type_and_the_encoding(broker: RabbitMQ) -> None:
+    shipped = load(MINIMAL)
+    key = shipped.routes["face"].key_for(shipped.robot)
+    connection = pika.BlockingConnection(pika.URLParameters(broker.url))
+    with closing(connection), closing(connect(broker.url, shipped)) as bus:
+        bus.subscribe(key, lambda message: None)
+        channel = connection.channel()
+        mine = channel.queue_declare("", exclusive=True).method.queue
+        answers = []
+        for data, kind, encoding in (
+            (BODY.encode(), TEXT, ""), (b"\xef\xbb\xbf" + BODY.encode(), JSON, ""), (gzip.compress(b"{}"), JSON, "gzip")
+        ):  # fmt: skip
+            said = pika.BasicProperties(reply_to=mine, content_type=kind, content_encoding=encoding or None)
+            channel.basic_publish("amq.topic", key, data, said)
+            answers.append(next(channel.consume(mine, auto_ack=True))[2].decode())
+    for answer, word in zip(answers, ("text/plain", "BOM", "gzip"), strict=True):
+        assert answer.startswith("message refused: ")
+        assert word in answer

@@ -4,6 +4,7 @@ What one side does with a body must not be seen by another, so every reader gets
 and sharing the scalars in them is several times cheaper than a round trip through text, and as strict.
 """
 
+import codecs
 import json
 from collections.abc import Sequence
 from math import isfinite
@@ -23,6 +24,7 @@ MAX_TTL = 10 * 365 * 24 * 3600
 """How long a message may be of use [s]."""
 TEXT = "text/plain"
 JSON = "application/json"
+UTF_16 = "it is UTF-16: send UTF-8"
 
 MIN_INTEGER, MAX_INTEGER = -(2**63), 2**63
 """Between which integers may lie: what every language can hold, and a float without overflowing."""
@@ -143,23 +145,53 @@ def encode(body: Any) -> bytes:
     return data
 
 
-def decode(data: bytes, content_type: str = JSON) -> Any:
-    """The body in these bytes, JSON or (`text/plain`) the text itself; raises ValueError that says what is wrong."""
+def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") -> Any:
+    """The body in these bytes, JSON or (`text/plain`) the text itself; raises ValueError that says what is wrong.
+
+    `content_encoding` is what the sender wrote of it, and named if the bytes are not plain UTF-8.
+    """
     if len(data) > MAX_BODY_BYTES:
         raise ValueError(f"it has more than {MAX_BODY_BYTES:,} bytes")
+    if 0 in data[:2]:
+        raise ValueError(UTF_16)
     try:
         text = data.decode()
         return text if content_type.startswith(TEXT) else copied(_decoder.decode(text))
     except UnicodeDecodeError as error:
-        raise ValueError(f"it is not UTF-8 ({error.reason} at byte {error.start})") from error
+        reason = f"it is not UTF-8 ({error.reason} at byte {error.start})"
+        raise ValueError(_foreign(data, content_encoding) or reason) from error
     except json.JSONDecodeError as error:
-        raise ValueError(f"it is not JSON ({error})") from error
+        raise ValueError(_foreign(data, content_encoding) or f"it is not JSON ({error})") from error
     except RecursionError as error:
         raise ValueError(f"it is nested deeper than {MAX_BODY_DEPTH} levels") from error
     except BadMessageError as error:
         raise ValueError(str(error)) from error
     except ValueError as error:  # Python reads 4,300 digits
         raise ValueError("it holds an integer of thousands of digits") from error
+
+
+def _foreign(data: bytes, content_encoding: str) -> str:
+    """What the bytes are in place of plain UTF-8, and what to send; empty if that can't be seen."""
+    if data.startswith(codecs.BOM_UTF8):
+        return "it begins with a byte order mark (BOM), which JSON does not have: send UTF-8 without one"
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return UTF_16
+    if data.startswith(b"\x1f\x8b"):
+        return "it is compressed with gzip: send it as it is, without a content encoding"
+    if content_encoding.lower() not in ("", "utf-8", "utf8", "identity"):
+        return f"its content encoding is `{content_encoding}`: send plain UTF-8, without a content encoding"
+    return ""
+
+
+def text_of_json(body: Any) -> str:
+    """Why a body is a text although an object or a list was meant; empty if it is no text that holds JSON."""
+    if not isinstance(body, str) or body.lstrip()[:1] not in ("{", "["):
+        return ""
+    try:
+        _decoder.decode(body)
+    except (ValueError, RecursionError, BadMessageError):
+        return ""
+    return f"it is a text that holds JSON: send it with the content type {JSON}, not {TEXT}, and encode it once"
 
 
 def _no_constant(name: str) -> Any:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from lumen.buses.bodies import text_of_json
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.projects import Project
 
@@ -35,6 +36,8 @@ class SchemaCheck:
     def __call__(self, body: Any) -> str:
         if self.fits(body):
             return ""
+        if reason := text_of_json(body):
+            return reason
         try:
             error = next(self._schema.errors(body), None)
         except RecursionError:

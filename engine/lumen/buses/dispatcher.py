@@ -121,7 +121,7 @@ class Dispatcher:
             if (form := properties.content_type) in (JPEG_TYPE, FLOATS_TYPE):
                 body = unpacked(delivery.body, form, header_fields(properties.table))
             else:
-                body = decode(delivery.body, form or JSON)
+                body = decode(delivery.body, form or JSON, properties.content_encoding)
         except ValueError as error:
             self._drop(delivery, str(error))
             return

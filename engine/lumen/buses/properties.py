@@ -50,6 +50,7 @@ class MessageProperties(NamedTuple):
     offset: int = -1
     table: bytes = b""
     unreadable: tuple[str, ...] = ()
+    content_encoding: str = ""
 
 
 class TolerantConnection(pika.SelectConnection):  # type: ignore[misc]  # pika is not typed

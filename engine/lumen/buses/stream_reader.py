@@ -72,7 +72,7 @@ class StreamReader(BrokerConnection):
         self._next = offset + 1
         key = name.decode(errors="ignore")
         try:
-            body = decode(data, properties.content_type or JSON)
+            body = decode(data, properties.content_type or JSON, properties.content_encoding)
         except ValueError:
             body = None
         self._read.append(StreamEntry(offset, key, body, properties.message_id, float(properties.timestamp)))
