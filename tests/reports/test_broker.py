@@ -11,6 +11,7 @@ import zlib
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pika
 import pytest
@@ -281,3 +282,58 @@ def test_a_sender_hears_the_content_type_and_the_encoding(broker: RabbitMQ) -> N
     for answer, word in zip(answers, ("text/plain", "BOM", "gzip"), strict=True):
         assert answer.startswith("message refused: ")
         assert word in answer
+
+
+Declare = Callable[[Any], object]
+
+OTHERWISE: dict[str, tuple[Declare, str]] = {
+    "an exchange of another type": (
+        lambda c: c.exchange_declare("lumen.dead", "topic", durable=True),
+        "the exchange `lumen.dead` otherwise (its `type` is 'topic', not 'fanout')",
+    ),
+    "an exchange that is not durable": (
+        lambda c: c.exchange_declare("lumen.nowhere", "fanout"),
+        "the exchange `lumen.nowhere` otherwise (its `durable` is 'false', not 'true')",
+    ),
+    "a queue with other limits": (
+        lambda c: c.queue_declare("lumen.dead", durable=True, arguments={"x-max-length": 5}),
+        "the queue `lumen.dead` otherwise (its `x-m",
+    ),
+    "a queue of another type": (
+        lambda c: c.queue_declare("lumen.dead", durable=True, arguments={"x-queue-type": "quorum"}),
+        "the queue `lumen.dead` otherwise (its `x-",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OTHERWISE)
+def test_dead_letters_that_somebody_declared_otherwise_are_told(
+    name: str,
+    broker: RabbitMQ,
+    caplog: pytest.LogCaptureFixture,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    declare, said = OTHERWISE[name]
+    monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.2)
+    monkeypatch.chdir(MINIMAL)
+    with closing(pika.BlockingConnection(pika.URLParameters(broker.url))) as connection:
+        channel = connection.channel()
+        _without_side_queues(channel)
+        declare(channel)
+        connect(broker.url).close()
+        told = [record.getMessage() for record in caplog.records if "otherwise" in record.getMessage()]
+        assert len(told) == 1
+        assert said in told[0]
+        assert "delete it (`rabbitmq" in told[0]
+        assert main(["doctor", "--bus", broker.url]) == 1
+        assert f"!! dead letters: somebody declared {said}" in capsys.readouterr().out
+        _without_side_queues(channel)
+        main(["doctor", "--bus", broker.url])
+        assert "ok dead letters: what nobody can use is kept in lumen.dead and lumen.nowhere" in capsys.readouterr().out
+
+
+def _without_side_queues(channel: Any) -> None:
+    for name in ("lumen.dead", "lumen.nowhere"):
+        channel.queue_delete(name)
+        channel.exchange_delete(name)

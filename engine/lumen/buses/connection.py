@@ -33,6 +33,7 @@ class OutageLog:
         self._address = address
         self._away: set[str] = set()
         self._logged: set[str] = set()
+        self._faults: set[str] = set()
         self._changing = threading.Lock()
 
     @property
@@ -46,6 +47,14 @@ class OutageLog:
             self._away.add(connection)
             self._logged.add(what)
         _log.log(logging.WARNING if new else logging.INFO, "the broker at %s %s: %r", self._address, what, error)
+
+    def warn_once(self, what: str) -> None:
+        """Log a fault of the broker that each connection meets anew."""
+        with self._changing:
+            new = what not in self._faults
+            self._faults.add(what)
+        if new:
+            _log.warning("the broker at %s: %s", self._address, what)
 
     def back(self, connection: str) -> None:
         with self._changing:

@@ -1,8 +1,8 @@
 """What a broker lets us do, found out without anybody else noticing."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pika
 from pika.exceptions import ChannelClosedByBroker
@@ -10,7 +10,7 @@ from pika.exceptions import ChannelClosedByBroker
 from lumen.buses.asked_channel import AskedChannel
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.polled import PolledConnection
-from lumen.buses.queues import EXCHANGE, queue_of
+from lumen.buses.queues import EXCHANGE, OTHERWISE, SIDE_EXCHANGE, SIDE_QUEUE_LIMITS, declared_otherwise, queue_of
 from lumen.errors import BusUnreachableError
 from lumen.language.routes import Route
 
@@ -85,6 +85,26 @@ class BrokerProbe:
         except ChannelClosedByBroker:
             return QueueStatus()
         return QueueStatus(found.message_count, found.consumer_count)
+
+    def misdeclared(self) -> Iterator[str]:
+        """What is wrong with the places for what nobody could use, if they are there; nothing is declared anew."""
+        for name, limits in SIDE_QUEUE_LIMITS.items():
+            for fault in (self._misdeclared(name, limits, exchange) for exchange in (True, False)):
+                if fault:
+                    yield fault
+
+    def _misdeclared(self, name: str, limits: Mapping[str, Any], exchange: bool) -> str:
+        try:
+            with self.asking() as channel:
+                if exchange:
+                    channel.exchange_declare(name, passive=True)
+                    channel.exchange_declare(name, SIDE_EXCHANGE, durable=True)
+                else:
+                    channel.queue_declare(name, passive=True)
+                    channel.queue_declare(name, durable=True, arguments=limits)
+        except ChannelClosedByBroker as error:
+            return declared_otherwise(error.reply_text) if error.reply_code == OTHERWISE else ""
+        return ""
 
     def close(self) -> None:
         self._connection.close()

@@ -13,7 +13,7 @@ from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.outbox import Outbox, OutgoingMessage
 from lumen.buses.polled import PolledConnection
 from lumen.buses.properties import CAUSE_HEADER, write_properties
-from lumen.buses.queues import SIDE_QUEUES, UNROUTED, Queue, declare_side_queues
+from lumen.buses.queues import OTHERWISE, SIDE_QUEUES, UNROUTED, Queue, declare_side_queues, declared_otherwise
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
@@ -235,5 +235,8 @@ class Publisher(BrokerConnection):
             self._declared.add(name)
         except ChannelClosedByBroker as error:
             self._refused.add(name)
-            why = error.reply_text
-            _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, why)
+            if error.reply_code == OTHERWISE:
+                self._outage.warn_once(declared_otherwise(error.reply_text))
+            else:
+                why = error.reply_text
+                _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, why)

@@ -7,6 +7,8 @@ bound: what can't be kept is refused to the sender, or is the oldest of what may
 """
 
 import hashlib
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -39,6 +41,23 @@ UNUSED_EXPIRY = 10 * 60 * 1000
 QUORUM_SETTLE_TIME = 1.0
 """How long a new quorum queue stays unbound [s]: RabbitMQ writes down half a second later which log is whose; killed
 before that, it loses what the queue held (docs/decisions)."""
+
+SIDE_EXCHANGE = "fanout"
+"""The type of the exchanges in front of the side queues: each message goes to the queue, whatever its key."""
+SIDE_QUEUE_LIMITS: Mapping[str, Mapping[str, Any]] = {
+    name: {
+        "x-max-length": MAX_LENGTH_TELEMETRY,
+        "x-max-length-bytes": MAX_SIDE_QUEUE_BYTES,
+        "x-message-ttl": lifetime,
+    }
+    for name, lifetime in ((DEAD_LETTERS, 7 * 24 * HOUR), (UNROUTED, HOUR))
+}
+"""The side queues, each with its arguments."""
+OTHERWISE = 406
+"""AMQP's code for what is there and was declared with other arguments."""
+_OTHER_ARGUMENT = re.compile(
+    r"inequivalent arg '([^']+)' for (exchange|queue) '([^']+)' in vhost .*: received (.*) but current is (.*)"
+)
 
 
 @dataclass(frozen=True)
@@ -93,15 +112,26 @@ def journal_of(key: str) -> Queue:
 
 def declare_side_queues(channel: AskedChannel) -> None:
     """Declare the places for what nobody could use: bounded, the oldest gives way."""
-    for name, lifetime in ((DEAD_LETTERS, 7 * 24 * HOUR), (UNROUTED, HOUR)):
-        limits = {
-            "x-max-length": MAX_LENGTH_TELEMETRY,
-            "x-max-length-bytes": MAX_SIDE_QUEUE_BYTES,
-            "x-message-ttl": lifetime,
-        }
-        channel.exchange_declare(name, "fanout", durable=True)
+    for name, limits in SIDE_QUEUE_LIMITS.items():
+        channel.exchange_declare(name, SIDE_EXCHANGE, durable=True)
         channel.queue_declare(name, durable=True, arguments=limits)
         channel.queue_bind(name, name, "")
+
+
+def declared_otherwise(reply: str) -> str:
+    """What is wrong with an exchange or a queue that somebody declared with other arguments, and what to do.
+
+    `reply` is what the broker answers if Lumen declares it.
+    """
+    found = _OTHER_ARGUMENT.search(reply)
+    if not found:
+        return reply
+    argument, kind, name, wanted, there = found.groups()
+    delete = f"rabbitmqctl delete_queue {name}" if kind == "queue" else f"rabbitmqadmin delete exchange name={name}"
+    return (
+        f"somebody declared the {kind} `{name}` otherwise (its `{argument}` is {there}, not {wanted}), so that what"
+        f" belongs there is lost: delete it (`{delete}`), and restart what uses it"
+    )
 
 
 def _lifetime(route: Route | None) -> dict[str, int]:

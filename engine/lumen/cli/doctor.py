@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from lumen.app.attendance import RobotAttendance
 from lumen.bus import connect
 from lumen.buses.probe import BrokerProbe
+from lumen.buses.queues import SIDE_QUEUES
 from lumen.buses.validated import by_key
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
@@ -80,6 +81,10 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
             yield from _life(bus, project)
             yield from _obeying(probe, attendance, project)
         yield from _served(probe, project)
+        faults = list(probe.misdeclared())
+        yield from (Finding("dead letters", "error", fault) for fault in faults)
+        if not faults:
+            yield Finding("dead letters", "ok", f"what nobody can use is kept in {SIDE_QUEUES}")
 
 
 def _embedded(options: argparse.Namespace, url: str, project: Project | None) -> Iterator[Finding]:
