@@ -319,6 +319,16 @@ class Bus(Protocol):
 
 
 @runtime_checkable
+class BlockableBus(Protocol):
+    """A bus whose broker may refuse to take messages for a while."""
+
+    @property
+    def blocked(self) -> str:
+        """What the broker is short of while it takes no messages; empty while it does."""
+        ...
+
+
+@runtime_checkable
 class ReturningBus(Protocol):
     """A bus between processes that can say whether a published message has a receiver."""
 

@@ -53,9 +53,9 @@ def files(folder: Path, web: Web) -> Path:
 
 
 class NearBus(MemoryBus):
-    """A bus in memory whose broker can be said to be away, and that many processes share."""
+    """A bus in memory whose broker can be said to be away or short of something, and that many processes share."""
 
-    away = False
+    away, blocked = False, ""
 
     def close(self) -> None:
         """It ends with the test."""

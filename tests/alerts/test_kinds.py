@@ -81,6 +81,12 @@ def test_a_broker_that_is_away_for_long(hall: Hall) -> None:
     assert hall.told("broker") == "the message broker can't be reached"
 
 
+def test_a_broker_that_is_short_of_memory(hall: Hall) -> None:
+    hall.whole()
+    hall.bus.blocked = "memory"
+    assert hall.told("broker") == "the message broker is short of memory, and takes no messages"
+
+
 def test_files_that_are_refused(hall: Hall) -> None:
     hall.whole()
     tour = hall.folder / "behaviors/tour.yaml"

@@ -19,22 +19,26 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen import load
+from lumen.app import node
 from lumen.app.fleet.broker_check import check_broker
 from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
 from lumen.buses.bodies import JSON, TEXT, decode
-from lumen.buses.broker import BrokerAddress
+from lumen.buses.broker import BrokerAddress, shortage
 from lumen.buses.checking import SchemaCheck
 from lumen.buses.probe import BrokerProbe
+from lumen.buses.validated import validated
 from lumen.cli.main import main
 from lumen.errors import BusAddressError, BusUnreachableError
 from lumen.language.addresses import public
 from lumen.language.fleet import Fleet, FleetHouse
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests.guarded import run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.tables import for_each
+from tests.waiting import HANG, Collector, until
 
 MINIMAL = Path(__file__).parents[2] / "examples" / "minimal"
 
@@ -337,3 +341,93 @@ def _without_side_queues(channel: Any) -> None:
     for name in ("lumen.dead", "lumen.nowhere"):
         channel.queue_delete(name)
         channel.exchange_delete(name)
+
+
+def rabbitmqctl(broker: RabbitMQ, words: str) -> None:
+    assert run_guarded(["sh", "-c", f"{broker.ctl} {words}"], capture_output=True).returncode == 0
+
+
+def takes_nothing(broker: RabbitMQ) -> bool:
+    with closing(BrokerProbe(broker.url)) as probe:
+        return probe.taking() != ""
+
+
+ALARM, NO_ALARM = "set_vm_memory_high_watermark 0", "set_vm_memory_high_watermark 0.6"
+
+
+@pytest.fixture(scope="module")
+def own_broker() -> Iterator[RabbitMQ]:
+    """A broker of this module's own, whose alarm concerns no other test."""
+    own = RabbitMQ()
+    own.start()
+    try:
+        yield own
+    finally:
+        own.stop()
+
+
+@pytest.fixture
+def short(own_broker: RabbitMQ) -> Iterator[RabbitMQ]:
+    """It is short of memory."""
+    rabbitmqctl(own_broker, ALARM)
+    until(lambda: takes_nothing(own_broker))
+    yield own_broker
+    rabbitmqctl(own_broker, NO_ALARM)
+
+
+def test_a_broker_that_is_short_of_memory_is_told_as_such_and_not_lost(
+    short: RabbitMQ, caplog: pytest.LogCaptureFixture
+) -> None:
+    bus, came = validated(connect(short.url), load(MINIMAL)), Collector()
+    with closing(bus):
+        bus.subscribe("lumen.a", came)
+        bus.publish("lumen.a", 1)
+        until(lambda: bus.blocked == "memory")
+        assert not bus.away
+        bus.publish("lumen.a", 2)
+        bus.publish("lumen.a", 3, ttl=0.01)
+        rabbitmqctl(short, NO_ALARM)
+        until(lambda: not bus.blocked)
+        assert came.wait(2) == [1, 2]
+    told = [record.getMessage() for record in caplog.records]
+    place = f"127.0.0.1:{short.port}"
+    assert [line[:66] for line in told if place in line] == [
+        f"the broker at {place} is short of memory, and takes no messages until"[:66],
+        f"the broker at {place} takes messages again",
+    ]
+
+
+def test_each_command_says_what_the_broker_is_short_of(
+    short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(MINIMAL)
+    reason = "is short of memory, and takes no messages until it has enough: `rabbitmqctl status`"
+    assert main(["topic", "pub", "lumen.a", "1", "--bus", short.url]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("lumen topic: the broker at")
+    assert reason in said
+    assert said.count("\n") == 1
+    assert main(["doctor", "--bus", short.url]) == 1
+    assert f"!! broker: the broker at 127.0.0.1:{short.port} {reason}" in capsys.readouterr().out
+
+
+def test_no_second_brain_starts_while_the_first_can_not_be_heard(
+    short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(MINIMAL)
+    monkeypatch.setattr(node, "CLAIM_DURATION", HANG)
+    assert main(["run", "--only", "brain", "--bus", short.url]) == 2
+    assert "whether another process is the brain of NAO can't be found out" in capsys.readouterr().err
+
+
+@for_each(
+    ("reason", "said"),
+    [
+        ("low on memory", "memory"),
+        ("low on disk", "disk"),
+        ("low on memory & disk", "memory and disk"),
+        ("low on file descriptors", "resources"),
+    ],
+)
+def test_the_reason_of_a_broker_is_told_in_our_words(reason: str, said: str) -> None:
+    assert shortage(reason) == said

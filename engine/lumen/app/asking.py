@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.errors import BusUnreachableError
 from lumen.language.routing_keys import OPERATOR_ANSWER, OPERATOR_REQUEST, key_of_robot
-from lumen.ports import Bus, ReturningBus
+from lumen.ports import BlockableBus, Bus, ReturningBus
 
 OPERATOR_ANSWERS = OPERATOR_ANSWER
 """Where the answers of a running exhibition come."""
@@ -42,6 +42,8 @@ def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_AN
             yield answer
             timeout = None
     except queue.Empty:
+        if isinstance(bus, BlockableBus) and bus.blocked:
+            raise BusUnreachableError(f"the broker is short of {bus.blocked}, and takes no messages") from None
         raise BusUnreachableError(f"nobody answers on `{key}`: is an exhibition running on that bus?") from None
     finally:
         undo()

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.errors import UsageError
+from lumen.buses.validated import ValidatedBus
+from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import Bus
@@ -30,3 +31,13 @@ def refuse_rivals(presence: Presence) -> None:
                 f"{where_it_runs(rival)} is the {part} of {presence.robot} on this bus already:"
                 " end it first, or give this project's robot another name"
             )
+
+
+def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
+    """Raises BusUnreachableError where a rival could not be heard: its broker takes no messages."""
+    if bus.blocked:
+        parts = " or ".join(part for part in ALONE if part in presence.parts)
+        raise BusUnreachableError(
+            f"the broker is short of {bus.blocked}, and takes no messages: whether another process is the {parts} of"
+            f" {presence.robot} can't be found out; start again when it has enough (`rabbitmqctl status`)"
+        )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from math import ceil, inf
 
-from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals
+from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals, refuse_silence
 from lumen.app.narrator import Narrator
 from lumen.app.pace import PaceWatch
 from lumen.app.parts.part import Part
@@ -237,6 +237,7 @@ class Node:
 
     def _claim(self, presence: Presence) -> None:
         refuse_rivals(presence)
+        refuse_silence(self.bus, presence)
         if time.monotonic() - self._asked >= CLAIM_DURATION:
             presence.settle()
             self.claimed()

@@ -65,6 +65,11 @@ class AmqpBus:
         return self._outage.going_on
 
     @property
+    def blocked(self) -> str:
+        """What the broker is short of while it takes no messages; empty while it does."""
+        return self._outage.blocked
+
+    @property
     def dropped(self) -> Mapping[str, int]:
         """How many messages were dropped under each key."""
         found = Counter[str]()

@@ -49,7 +49,6 @@ class BrokerAddress:
         options.connection_attempts = 1
         options.socket_timeout = SOCKET_TIMEOUT
         options.stack_timeout = BROKER_TIMEOUT
-        options.blocked_connection_timeout = 3 * HEARTBEAT_INTERVAL
         options.heartbeat = options.heartbeat if "heartbeat=" in parts.query else HEARTBEAT_INTERVAL
         options.client_properties = {"connection_name": "lumen"}
         if options.ssl_options:
@@ -92,7 +91,14 @@ class BrokerAddress:
         reason = self._unreachable(cause)
         return BusUnreachableError(reason) if reason else None
 
+    def short_of(self, what: str) -> str:
+        """That the broker takes no messages, since it is short of memory or of room on its disk."""
+        more = "`rabbitmqctl status` shows its alarms and what it has"
+        return f"the broker at {self} is short of {what}, and takes no messages until it has enough: {more}"
+
     def _unreachable(self, cause: BaseException) -> str:
+        if isinstance(cause, exceptions.ConnectionBlockedTimeout):
+            return self.short_of(str(cause.args[0]))
         if isinstance(cause, ConnectionRefusedError):
             return f"no broker listens at {self}: start RabbitMQ there"
         if isinstance(cause, socket.gaierror):
@@ -109,6 +115,11 @@ class BrokerAddress:
         if isinstance(cause, TimeoutError) or "Timeout" in type(cause).__name__:
             return f"the broker at {self} does not answer: check the host, the port and the network"
         return ""
+
+
+def shortage(reason: str) -> str:
+    """What a broker is short of, by the reason that it gives for taking no messages."""
+    return " and ".join(word for word in ("memory", "disk") if word in reason) or "resources"
 
 
 def _authority(parts: SplitResult) -> tuple[str, str]:

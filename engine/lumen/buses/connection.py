@@ -5,6 +5,7 @@ import random
 import threading
 import time
 from concurrent.futures import Future
+from functools import partial
 from typing import Any
 
 from pika.exceptions import AMQPError, ChannelClosedByBroker
@@ -34,6 +35,7 @@ class OutageLog:
         self._away: set[str] = set()
         self._logged: set[str] = set()
         self._faults: set[str] = set()
+        self._blocked: dict[str, str] = {}
         self._changing = threading.Lock()
 
     @property
@@ -41,8 +43,27 @@ class OutageLog:
         """Whether any of the connections is away."""
         return bool(self._away)
 
+    @property
+    def blocked(self) -> str:
+        """What the broker is short of while it takes no messages; empty while it does."""
+        return next(iter(self._blocked.copy().values()), "")
+
+    def block(self, connection: str, what: str) -> None:
+        """The broker takes nothing from that connection since it is short of something, or (empty) does again."""
+        with self._changing:
+            before = bool(self._blocked)
+            self._blocked.pop(connection, None)
+            if what:
+                self._blocked[connection] = what
+            after = bool(self._blocked)
+        if after and not before:
+            _log.warning("%s", self._address.short_of(what))
+        elif before and not after:
+            _log.warning("the broker at %s takes messages again", self._address)
+
     def lost(self, connection: str, what: str, error: BaseException) -> None:
         with self._changing:
+            self._blocked.pop(connection, None)
             new = not self._away or what not in self._logged
             self._away.add(connection)
             self._logged.add(what)
@@ -119,7 +140,7 @@ class BrokerConnection:
     def _run(self) -> None:
         while not self.ending.is_set():
             try:
-                self.connection = PolledConnection(self.address.parameters)
+                self.connection = PolledConnection(self.address.parameters, partial(self._outage.block, self.name))
             except Exception as error:
                 if not self._opened.done():
                     self._opened.set_exception(error)

@@ -10,10 +10,16 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelWrongStateError
+from pika.exceptions import (
+    AMQPChannelError,
+    AMQPConnectionError,
+    AMQPError,
+    ChannelWrongStateError,
+    ConnectionBlockedTimeout,
+)
 
 from lumen.buses.asked_channel import AskedChannel
-from lumen.buses.broker import BROKER_TIMEOUT
+from lumen.buses.broker import BROKER_TIMEOUT, shortage
 from lumen.buses.poll_loop import PollLoop
 from lumen.buses.turn_clock import TurnClock
 from lumen.buses.wire import MessageReader, WireConnection
@@ -23,9 +29,12 @@ class PolledConnection:
     """An open connection and its channel. Raises what pika raises, where it can't be opened or is lost.
 
     Unlike `BlockingConnection` it waits neither for each message to be sent nor for each confirm to come.
+
+    `blocked` is what the broker is short of while it takes nothing, else empty; `told` is called with each change.
     """
 
-    def __init__(self, parameters: Any) -> None:
+    def __init__(self, parameters: Any, told: Callable[[str], None] = lambda blocked: None) -> None:
+        self.blocked, self._told = "", told
         self.clock = TurnClock()
         self._loop = PollLoop()
         self._used = threading.Lock()
@@ -97,9 +106,11 @@ class PolledConnection:
             self.ask(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
-        """Turn until that is so, for as long as the broker may take to answer."""
+        """Turn until that is so, for as long as the broker may take to answer; one that takes nothing never does."""
         deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():
+            if self.blocked:
+                raise ConnectionBlockedTimeout(self.blocked)
             if time.monotonic() > deadline:
                 raise TimeoutError(f"no answer within {BROKER_TIMEOUT:g} s")
             self.turn(0.5)
@@ -190,7 +201,15 @@ class PolledConnection:
             on_close_callback=lambda _, reason: self._failed(reason),
             custom_ioloop=self._loop,
         )
+        self._connection.add_on_connection_blocked_callback(
+            lambda _, frame: self._block(shortage(str(frame.method.reason)))
+        )
+        self._connection.add_on_connection_unblocked_callback(lambda *_: self._block(""))
         self.until(lambda: opened)
+
+    def _block(self, what: str) -> None:
+        self.blocked = what
+        self._told(what)
 
     def _failed(self, error: BaseException | str) -> None:
         self._error = error if isinstance(error, BaseException) else AMQPConnectionError(error)

@@ -77,6 +77,14 @@ class BrokerProbe:
             return str(error.reply_text) if error.reply_code == ACCESS_REFUSED else ""
         raise BusUnreachableError(f"the broker at {self.address} took a message that claims to be from `{FORGED_USER}`")
 
+    def taking(self) -> str:
+        """Why the broker takes no messages from anybody, found out by sending one; empty if it does."""
+        try:
+            self.writing("")
+        except BusUnreachableError as error:
+            return str(error)
+        return ""
+
     def served(self, key: str, route: Route) -> QueueStatus:
         """How many wait and read in the queue of a route whose messages must arrive."""
         try:
@@ -113,7 +121,15 @@ class BrokerProbe:
     def asking(self) -> Iterator[AskedChannel]:
         """A channel of its own for questions. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
         with self._explained(), self._connection.asking() as channel:
-            yield channel
+            try:
+                yield channel
+            finally:
+                self._check_taken()
+
+    def _check_taken(self) -> None:
+        """Raise BusUnreachableError if the broker is short of something: it says so first, and may answer even so."""
+        if what := self._connection.blocked:
+            raise BusUnreachableError(self.address.short_of(what))
 
     @contextmanager
     def _explained(self) -> Iterator[None]:

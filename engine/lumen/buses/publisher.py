@@ -80,11 +80,21 @@ class Publisher(BrokerConnection):
         self.connection.confirm(self._confirmed, self._nacked)
 
     @property
+    def blocked(self) -> bool:
+        """Whether the broker takes nothing from this connection now."""
+        connection = self.connection
+        return bool(connection and connection.blocked)
+
+    @property
     def has_side_queues(self) -> bool:
         """Whether the broker let us declare the places for what nobody could use."""
         return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
+        if self.connection.blocked:  # what is sent now would be used late: in the outbox its time to live counts
+            self.connection.turn(IDLE_TIME)
+            self.outbox.drops.tell()
+            return not self.ending.is_set()
         journals = self.journals
         for key, queue in journals.items():
             self._declare(key, queue.declare)
@@ -137,7 +147,8 @@ class Publisher(BrokerConnection):
                 raise
 
     def _room(self) -> int:
-        return 0 if self._bytes > MAX_UNCONFIRMED_BYTES else MAX_UNCONFIRMED_MESSAGES - len(self._window)
+        full = self._bytes > MAX_UNCONFIRMED_BYTES or self.connection.blocked
+        return 0 if full else MAX_UNCONFIRMED_MESSAGES - len(self._window)
 
     def _send(self, message: OutgoingMessage) -> None:
         id, sender, sent, cause = message.origin

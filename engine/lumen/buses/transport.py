@@ -71,7 +71,7 @@ class Transport:
 
     def close(self, deadline: float) -> None:
         """Send what waits, and receive what of it comes back to us, until then [s, monotonic]."""
-        if not self.dispatcher.inside:
+        if not self.dispatcher.inside and not self.publisher.blocked:
             self._flush(deadline)
 
     def end(self, deadline: float) -> bool:

@@ -14,7 +14,7 @@ from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.language.routing_keys import KEY_PREFIXES
-from lumen.ports import Bus, Message, MessageHandler
+from lumen.ports import BlockableBus, Bus, Message, MessageHandler
 from lumen.upkeep.drops import ReasonLog
 
 OnRefused = Callable[[str, str], object]
@@ -68,6 +68,11 @@ class ValidatedBus:
     def away(self) -> bool:
         """Whether the broker can't be reached now; a bus without one is always there."""
         return bool(getattr(self._bus, "away", False))
+
+    @property
+    def blocked(self) -> str:
+        """What the broker is short of while it takes no messages; empty while it does, and without a broker."""
+        return self._bus.blocked if isinstance(self._bus, BlockableBus) else ""
 
     @property
     def dropped(self) -> Mapping[str, int]:

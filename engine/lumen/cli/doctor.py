@@ -72,6 +72,9 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
         yield Finding("broker", "ok", f"{probe.product} {probe.version} at {probe.address}, as `{probe.address.user}`")
         if not url.startswith("amqps:") and not probe.address.place.startswith(("127.", "localhost", "[::1]")):
             yield Finding("broker", "warning", "everybody on the network can read along: use amqps://")
+        if blocked := probe.taking():
+            yield Finding("broker", "error", blocked)
+            return
         if project is None:
             yield Finding("project", "error", "it has errors: see `lumen lint`")
             return

@@ -53,6 +53,7 @@ class AlertPart(Part, Observer):
         self.stopped: Callable[[], bool] = lambda: False
         self._now = 0.0
         self._away: float | None = None
+        self._blocked = ""
         self._brain: float | None = None
         self._missed = False
         self._troubles: dict[str, str] = {}
@@ -114,7 +115,13 @@ class AlertPart(Part, Observer):
 
     def _look_for_broker(self) -> None:
         """Robot and brain tell of the broker; the others need not all say the same."""
-        if not self._bus.away or not {ROBOT_PART, BRAIN} & set(self._parts):
+        if not {ROBOT_PART, BRAIN} & set(self._parts):
+            return
+        blocked, before = self._bus.blocked, self._blocked
+        self._blocked = blocked
+        if blocked and not before:
+            self._desk("broker", f"the message broker is short of {blocked}, and takes no messages", "blocked")
+        if not self._bus.away:
             self._away = None
         elif self._away is None:
             self._away = self._clock()
