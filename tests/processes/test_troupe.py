@@ -12,6 +12,8 @@ from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Perform
+from lumen.runtime.home import home_of
+from lumen.runtime.snapshot_store import SNAPSHOT_FILE
 from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
 from tests.waiting import HANG, Collector
@@ -191,6 +193,22 @@ def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resu
     assert part.server.hold.stopped is None
     troupe.insist(lambda: ask("rest", by="Ada"), lambda: "stopped" in brain.states)
     troupe.insist(lambda: ask("resume", by="Bo"), lambda: "watching" in brain.states)
+
+
+def test_a_new_brain_of_a_robot_that_a_person_stopped_prints_no_command_as_performed(
+    troupe: Troupe, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, brain = troupe.play()
+    body: dict[str, Any] = {"type": "motion", "method": "rest", "parameter": {"by": "Ada"}}
+    troupe.insist(lambda: troupe.ear.publish("avatar.NAO.stop", body, ttl=2.0), lambda: "stopped" in brain.states)
+    troupe.kill(brain)
+    (home_of(troupe.folder) / SNAPSHOT_FILE).unlink()
+    capsys.readouterr()
+    brain = troupe.join("brain")
+    troupe.until(lambda: "stopped" in brain.states)
+    told = capsys.readouterr().out
+    assert "refused  wake: Ada stopped the robot: " in told
+    assert "robot    wakes" not in told
 
 
 def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Troupe) -> None:

@@ -1,6 +1,7 @@
 """A run never ends with "All well" after a fall, a dropped event, an error of a `do`, or a joint that is not there."""
 
 import json
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,14 +10,17 @@ import pytest
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.parts.remote_brain import RemoteHold
 from lumen.app.rehearsal import RehearsalTrace, rehearse
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
-from lumen.language.events import HELD
+from lumen.language.commands import Say, Start, Wake
+from lumen.language.events import HELD, Event
 from lumen.ports import Message
 from lumen.robots.command_reports import CommandRecord, CommandReports
+from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.runtime.troubles import Trouble
@@ -207,6 +211,57 @@ def test_what_a_stopped_robot_refuses_is_told_as_refused(tmp_path: Path) -> None
         until(lambda: [body for body in told if "b" in body.get("entered", ())], HANG)
     assert [body["refused"]["verb"] for body in told if "refused" in body] == ["wake", "posture"]
     assert not [body for body in told if "command" in body]
+
+
+def test_a_robot_that_is_stopped_and_started_anew_prints_what_it_does_not_perform_as_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The run before was killed 11 minutes ago; a walk to a place is no other case than a posture."""
+    root = exhibition(tmp_path, WAKES.replace("{posture: Stand}", "{walk: {to: desk}}"), WAIT)
+    settings = Path(root, "lumen.yaml")
+    settings.write_text(settings.read_text("utf-8") + "places: {desk: {x: 1, y: 0, heading: 0}}\n", "utf-8")
+    home = Path(root, ".lumen")
+    home.mkdir()
+    since = datetime.now(UTC) - timedelta(minutes=11)
+    (home / "stopped.json").write_text(json.dumps({"by": "Ada", "since": since.isoformat()}), "utf-8")
+    capsys.readouterr()
+    assert run(root, "--for", "5s") == 0
+    told = [line.split(maxsplit=1)[1] for line in capsys.readouterr().out.splitlines() if line.startswith(" 0:0")]
+    reason = f"Ada stopped the robot: {HELD}"
+    assert f"refused  wake: {reason}" in told
+    assert f"refused  walk to desk: {reason}" in told
+    assert not [line for line in told if line.startswith("robot")]
+
+
+def test_a_brain_prints_what_a_robot_elsewhere_refuses_as_refused() -> None:
+    since = datetime(2026, 11, 26, tzinfo=UTC)
+    stopped: list[StoppedBy] = [StoppedBy("Ada", since)]
+    hold = RemoteHold(lambda: stopped[0] if stopped else None)
+    reason = f"Ada stopped the robot: {HELD}"
+    assert hold.refuse(Wake()) == reason
+    assert hold.refuse(Say("Hello")) == ""
+    for let, lets in [
+        (Event("touched", {"sensor": "LHand"}), False),
+        (Event("touched", {"sensor": "FrontTactil"}), True),
+        (Event("stop", {"by": "Bo"}), False),
+        (Event("resume", {"by": "Bo"}), True),  # the robot's process may publish the stop for another second
+    ]:
+        hold.answered(let)
+        assert (hold.refuse(Wake()) == "") == lets, let
+    hold.answered(Event("stop", {"by": "Bo"}))
+    stopped.clear()
+    assert hold.refuse(Wake()) == ""
+
+
+def test_a_refusal_that_the_brain_did_not_foresee_is_told_as_one() -> None:
+    project = exhibits.project()
+    trace = RehearsalTrace(lambda: 1.0, lambda: project.machine, None)
+    trace.performing(Start("c1", Wake()), 1.0)
+    trace.answered(Event("error.command.c1", {"reason": f"Ada stopped the robot: {HELD}"}))
+    assert [(who, text) for _, who, text in trace.lines] == [
+        ("robot", "wakes"),
+        ("refused", f"wake: Ada stopped the robot: {HELD}"),
+    ]
 
 
 def test_what_a_person_ends_is_no_trouble(tmp_path: Path) -> None:

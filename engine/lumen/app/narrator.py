@@ -7,7 +7,7 @@ from lumen.app.ignoring import IgnoredEvents
 from lumen.interpreters.statechart import Step, finished
 from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say, Start, Tell
-from lumen.language.events import CUE, RECORDED, Event
+from lumen.language.events import CUE, HELD, RECORDED, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import (
     AnswerQuestion,
@@ -108,7 +108,9 @@ class Narrator(Observer):
     def answered(self, event: Event) -> None:
         kind, _, id = event.name.partition(".command.")
         running = self._running.pop(id, "")
-        if kind == "error":
+        if kind == "error" and running and reason_of(event).endswith(HELD):
+            self.line("refused", f"{_base(running)}: {reason_of(event)}")
+        elif kind == "error":
             self.line("trouble", f"could not {_base(running) or 'do that'}: {reason_of(event)}")
         elif kind == "done" and event.data and LEFT_OUT in event.data:
             self.line("robot", f"leaves that out: {event.data[LEFT_OUT]}")

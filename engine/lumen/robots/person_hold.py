@@ -19,6 +19,16 @@ class StoppedBy(NamedTuple):
     by: str
     since: datetime
 
+    @property
+    def reason(self) -> str:
+        """Why a command that moves the robot is refused."""
+        return f"{self.by} stopped the robot: {HELD}"
+
+
+def on_head(event: Event) -> bool:
+    """Whether the robot noticed a hand on its head."""
+    return event.name == "touched" and isinstance(event.data, dict) and event.data.get("sensor") in HEAD_SENSORS
+
 
 class PersonHold:
     """Who stopped the robot (`stopped`), None where nobody has.
@@ -49,7 +59,7 @@ class PersonHold:
 
     def feel(self, event: Event) -> None:
         """Hear what the robot noticed: a hand on its head lets the behaviour wake it."""
-        if event.name == "touched" and isinstance(event.data, dict) and event.data.get("sensor") in HEAD_SENSORS:
+        if on_head(event):
             self._touched = True
 
     def admit(self, command: RobotCommand, *, behavior: bool) -> str:
@@ -62,7 +72,7 @@ class PersonHold:
             self._rests = self._rests and isinstance(command, Look | Aim)
             return ""
         if self.stopped:
-            return f"{self.stopped.by} stopped the robot: {HELD}"
+            return self.stopped.reason
         return "" if behavior or not self._rests else f"the behaviour lets the robot rest: {HELD}"
 
     def _notice(self, event: Event) -> None:

@@ -23,6 +23,7 @@ from lumen.language.commands import (
     Stop,
     Tell,
     Track,
+    Walk,
 )
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -65,6 +66,8 @@ class Performer:
         match command:
             case Start(_, Play(name)):
                 return self.refuse(Perform(project.motions[name])) if name in project.motions else ""
+            case Start(_, GoTo()):
+                return self.refuse(Walk())
             case Start(_, wanted) if not isinstance(wanted, Play | Ask | Track | Language | GoTo):
                 return "" if lack_of(wanted, project.body) else self.refuse(wanted)
         return ""
@@ -113,7 +116,10 @@ class Performer:
             case Language():
                 self._answer("done", id, now)
             case GoTo(place):
-                self.navigator.start(id, place, now)
+                if reason := self.refuse(Walk()):
+                    self._answer("error", id, now, reason)
+                else:
+                    self.navigator.start(id, place, now)
             case Ask():
                 raise TypeError("a question is asked of no robot")
             case _:

@@ -14,10 +14,13 @@ from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.ports import Clock
+from lumen.ports import Clock, RobotCommand
+from lumen.robots.command_table import row_of
+from lumen.robots.person_hold import StoppedBy, on_head
 from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking
 from lumen.runtime.home import Home
+from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.tracking import LocalTracking
@@ -59,6 +62,26 @@ class RemoteBody:
         return peer.session if peer and peer.said.get("bundle") == self._project().hash else ""
 
 
+class RemoteHold(Observer):
+    """Whether a robot elsewhere lets the behaviour move it: where a person stopped it, from a hand on its head on.
+
+    `stopped` is what the process of the robot publishes of itself, which may be a second old. So what this one can't
+    be sure of is sent, and the robot decides.
+    """
+
+    def __init__(self, stopped: Callable[[], StoppedBy | None]) -> None:
+        self._stopped, self._let = stopped, False
+
+    def answered(self, event: Event) -> None:
+        if on_head(event) or event.name in ("resume", "stop"):
+            self._let = event.name != "stop"
+
+    def refuse(self, command: RobotCommand) -> str:
+        """Return why the robot will refuse this command; empty if it may not."""
+        stopped = None if self._let or not row_of(command).moves else self._stopped()
+        return stopped.reason if stopped else ""
+
+
 class RemoteBrainPart(BrainPart):
     """Runs the behaviour on a robot that is somewhere else; it ends where that one follows another brain."""
 
@@ -72,10 +95,14 @@ class RemoteBrainPart(BrainPart):
         presence: Presence,
         home: Home | None,
         language: str = "",
+        stopped: Callable[[], StoppedBy | None] = lambda: None,
     ) -> None:
         super().__init__(behavior, narrator, presence, language)
         self.robot, self._tracking, self._others, self._home = body.robot, body.tracking, presence, home
         self.motion_module = body.motion_module
+        hold = RemoteHold(stopped)
+        behavior.loop.observers.append(hold)
+        behavior.loop.performer.refuse = hold.refuse
         self._session, self._lost = "", False
         self._earlier: dict[str, str] = {}
 

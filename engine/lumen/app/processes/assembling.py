@@ -32,6 +32,7 @@ from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
+from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, MOTION, VISITOR
 from lumen.runtime.resuming import FreshStart, Resumption
@@ -99,7 +100,11 @@ def assemble(
         body = RemoteBody(staged(project, story), bus, clock, presence)
         behavior = body.behavior(project, bus, story, options.speed)
         reloader = run_directory.reloader(behavior, narrator, mode=options.reload)
-        brain = RemoteBrainPart(behavior, body, narrator, presence, run_directory.home, options.language)
+
+        def stopped() -> StoppedBy | None:
+            return robot.server.hold.stopped if robot else stopped_there(presence)
+
+        brain = RemoteBrainPart(behavior, body, narrator, presence, run_directory.home, options.language, stopped)
 
         def recover() -> Resumption | FreshStart:
             found = run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
@@ -122,7 +127,7 @@ def assemble(
             behavior,
             narrator,
             journal,
-            stopped=lambda: robot.server.hold.stopped if robot else stopped_there(presence),
+            stopped=stopped,
             realtime=lambda: node.pace.realtime,
             reloaded=lambda: reloader.last_reload,
             record=run_directory.records.write,
