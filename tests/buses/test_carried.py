@@ -137,6 +137,21 @@ def test_a_command_is_never_done_twice(opened: Open, stranger: Any) -> None:
     assert seen.bodies == [0, 0, 0, 0, 1]
 
 
+def test_an_id_is_that_of_its_sender_and_who_uses_it_again_is_answered(opened: Open, stranger: Any) -> None:
+    way = route("avatar.B.command", Carried.COMMAND)
+    bus, seen = opened(way), Collector()
+    bus.subscribe(way.key, seen)
+    mine = stranger.queue_declare("", exclusive=True).method.queue
+    for sender, body in (("desk", b"1"), ("door", b"2"), ("desk", b"3")):
+        said = pika.BasicProperties(message_id="1", app_id=sender, reply_to=mine, correlation_id=sender)
+        stranger.basic_publish("amq.topic", way.key, body, said)
+    _, properties, answer = read(stranger, mine)
+    reason = "'desk' has sent the id '1' before: give each message an id of its own"
+    assert (properties.correlation_id, answer.decode()) == ("desk", f"message refused: {reason}")
+    assert seen.bodies == [1, 2]
+    assert bus.dropped == {way.key: 1}
+
+
 def test_what_failed_in_a_handler_is_put_aside_with_the_reason(opened: Open, stranger: Any) -> None:
     way = route("avatar.C.command", Carried.COMMAND)
     bus, dead = opened(way), copies(stranger, "lumen.dead")

@@ -14,15 +14,17 @@ from lumen.buses.properties import header_fields
 from lumen.buses.queues import UNROUTED
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
-from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
+from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Carried
 from lumen.ports import Message
-from lumen.upkeep.drops import ReasonLog
+from lumen.upkeep.drops import DropLog, ReasonLog
 from lumen.upkeep.threads import MessageGuard, WatchedThread
 
 FLUSH_MARK = "lumen.mark"
 """The type of a message that only says that everything published before it has arrived."""
 MAX_REMEMBERED_IDS = 10_000
 """Messages that must arrive by which a second one of the same id is known."""
+MAX_SHOWN = 40
+"""How many characters of an id or a sender a message shows."""
 
 _log = logging.getLogger(__name__)
 
@@ -32,7 +34,8 @@ class Dispatcher:
 
     `handled` is called with each delivery that is over, `refused` with one that nobody could use, and the reason. Of
     telemetry only the newest are handed on, as many as the route keeps, while they are young enough; what must arrive
-    and comes twice is handed on once.
+    and comes twice is handed on once. An id is that of its sender: a second message of the same sender that has an id
+    again, and is no copy of the first, is counted in `repeated` and refused.
     """
 
     def __init__(self, handled: Callable[[Delivery], None], refused: Callable[[Delivery, str], None]) -> None:
@@ -40,7 +43,8 @@ class Dispatcher:
         self._waiting: queue.SimpleQueue[Delivery | None] = queue.SimpleQueue()
         self._marks: set[str] = set()
         self._marked = threading.Event()
-        self._done: dict[tuple[int, str], None] = {}
+        self._done: dict[tuple[int, str, str], str] = {}
+        self.repeated = DropLog(_log)
         self.unusable = ReasonLog(_log, "a message on `%(key)s` was dropped: %(reason)s")
         self.guard = MessageGuard(_log, "what hands on messages")
         self._thread = WatchedThread("lumen-bus-handlers", self._run, vital=True)
@@ -102,15 +106,36 @@ class Dispatcher:
         return not late and not (route.keep and subscription.taken - subscription.handled >= route.keep)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Whether it was not handled before; messages of others have no id, and are known by all that they hold."""
-        id = delivery.properties.message_id
-        mark = (subscription.number, id or _digest(delivery))
-        if mark in self._done and (id or delivery.again):
+        """Whether it was not handled before; messages of others have no id, and are known by all that they hold.
+
+        What the broker or its sender sent again, since it was not confirmed, is no loss. Without a time such a copy
+        can't be told from a new message of a sender that counts its ids anew; a stop is rather handled twice.
+        """
+        id, sender = delivery.properties.message_id, delivery.properties.app_id
+        digest = _digest(delivery)
+        mark = (subscription.number, sender if id else "", id or digest)
+        first = self._done.get(mark)
+        if first is None:
+            self._done[mark] = digest
+            if len(self._done) > MAX_REMEMBERED_IDS:
+                del self._done[next(iter(self._done))]
+            return True
+        if not id:
+            return not delivery.again
+        if first == digest and (delivery.again or delivery.properties.timestamp):
             return False
-        self._done[mark] = None
-        if len(self._done) > MAX_REMEMBERED_IDS:
-            del self._done[next(iter(self._done))]
-        return True
+        if subscription.route and subscription.route.carried is Carried.STOP:
+            return True
+        self._repeat(delivery)
+        return False
+
+    def _repeat(self, delivery: Delivery) -> None:
+        id, sender = delivery.properties.message_id, delivery.properties.app_id
+        who = repr(sender[:MAX_SHOWN]) if sender else "a sender without a name (`app_id`)"
+        reason = f"{who} has sent the id {id[:MAX_SHOWN]!r} before: give each message an id of its own"
+        self.repeated.add(delivery.key, reason)
+        self.repeated.tell()
+        self._refused(delivery, reason)
 
     def _deliver(self, subscription: Subscription, delivery: Delivery) -> None:
         properties = delivery.properties

@@ -38,9 +38,10 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """What was dropped: too many came, a fault of ours met them, or they could not be sent."""
+        """What was dropped: too many came, a fault of ours met them, an id came again, or they could not be sent."""
         sent = self.publisher.outbox.drops, self.publisher.unsendable
-        return self.consumer.intake.drops, self.dispatcher.guard.drops, self.dispatcher.unusable.drops, *sent
+        heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated
+        return self.consumer.intake.drops, *heard, *sent
 
     def open(self) -> None:
         """Raises BusError, saying what to do, where the broker can't be used."""

@@ -62,7 +62,7 @@ class CommandQueries:
             _log.warning("a command was refused: `%s` needs the `id` of a command", method)
             self._reply(message, "command failed: which command? `id` names it")
             return
-        record = self._reports.find(id)
+        record = self._reports.asked(id, message.sender)
         cancelled = method == "cancel"
         if record is None:
             record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN_COMMAND)

@@ -45,6 +45,7 @@ MAX_BACKLOG = 15.0
 MAX_SPEECH = 60.0
 """How long about a text may take to say [s]."""
 ENDED = "the robot takes no more commands"
+ID_TAKEN = "its sender gave another command that id before: give each an id of its own"
 RESTARTED = "the robot was restarted since it began that"
 
 _log = logging.getLogger(__name__)
@@ -63,10 +64,11 @@ class CommandReceiver:
     Messages may come on any thread; the robot is touched by `begin` alone. Everybody gets an answer, as `Reports` has
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
     begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
-    never one too many, nor too late. A command with an `id` is performed once, however often it comes. `clock` [s]
-    measures how long they have waited; `begins` is called for each that begins, `refused` with the method and the
-    reason for each that may not, `hurry` when `begin` should be called soon, since something came that stops the robot.
-    What moves the robot may not where a person stopped it (`hold`).
+    never one too many, nor too late. A command with an `id` is performed once, however often its sender sends it;
+    another one with that id is refused, unless it stops the robot. `clock` [s] measures how long they have waited;
+    `begins` is called for each that begins, `refused` with the method and the reason for each that may not, `hurry`
+    when `begin` should be called soon, since something came that stops the robot. What moves the robot may not where a
+    person stopped it (`hold`).
     """
 
     def __init__(
@@ -224,13 +226,18 @@ class CommandReceiver:
     def _take(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
         """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
         message = arrival.message
-        record = CommandRecord(message, own_id(message.body), method_of(message.body))
+        record = CommandRecord(message, own_id(message.body), method_of(message.body), body=message.body)
         if record.method in CommandQueries.METHODS:
             self._queries.answer(message)
             return
-        if known := self._reports.find(record.id):
-            self._reports.repeat(known, message)
-            return
+        if known := self._reports.find(record.id, message.sender):
+            if known.body is None or known.body == message.body:
+                self._reports.repeat(known, message)
+                return
+            if not stops(message.body):
+                self.drops.add(message.key, ID_TAKEN)
+                self._refuse(message, ID_TAKEN)
+                return
         self._reports.remember(record)
         try:
             self._check_age(arrival)

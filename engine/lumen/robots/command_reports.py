@@ -21,7 +21,8 @@ class CommandRecord:
     """A command from the bus, `asker` the message that brought it.
 
     `id` is the one that its sender gave it, empty where it gave none, as the modules of 2015; `at` is what the robot
-    calls it. It moves these `parts` of the body for about so long (`takes` [s]).
+    calls it. It moves these `parts` of the body for about so long (`takes` [s]). `body` is that of the command, None
+    where only the id is known.
     """
 
     asker: Message
@@ -32,6 +33,7 @@ class CommandRecord:
     reason: str = ""
     parts: frozenset[str] = frozenset()
     takes: float = 0.0
+    body: Any = None
 
     @property
     def over(self) -> bool:
@@ -61,7 +63,7 @@ class CommandReports:
 
     def __init__(self, tell: Callable[[dict[str, Any]], None], reply: Callable[[Message, Any], None]) -> None:
         self._tell, self._reply = tell, reply
-        self._known: OrderedDict[str, CommandRecord] = OrderedDict()
+        self._known: OrderedDict[tuple[str | None, str], CommandRecord] = OrderedDict()
         self._running: dict[str, CommandRecord] = {}
 
     @property
@@ -73,16 +75,22 @@ class CommandReports:
         """How long about what is under way or waits keeps these parts of the body [s]."""
         return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
-    def find(self, id: str) -> CommandRecord | None:
-        """The record with that id of its sender's."""
-        return self._known.get(id)
+    def find(self, id: str, sender: str) -> CommandRecord | None:
+        """The record of the command that this sender, or one that is not known, gave that id."""
+        return self._known.get((sender, id)) or self._known.get((None, id))
+
+    def asked(self, id: str, sender: str) -> CommandRecord | None:
+        """The record that this sender means with that id: its own, else the newest that has the id."""
+        others = (record for record in reversed(self._known.values()) if record.id == id)
+        return self.find(id, sender) or next(others, None)
 
     def remember(self, record: CommandRecord) -> None:
-        """From now on who sends this again gets a report of how it stands."""
+        """From now on who sends this again gets a report of how it stands; without a `body` that is anyone."""
         if record.id:
-            self._known[record.id] = record
+            sender = None if record.body is None else record.asker.sender
+            self._known[sender, record.id] = record
             if len(self._known) > MAX_REMEMBERED_COMMANDS:
-                self._known.pop(next((id for id, old in self._known.items() if old.over), next(iter(self._known))))
+                self._known.pop(next((key for key, old in self._known.items() if old.over), next(iter(self._known))))
 
     def accept(self, record: CommandRecord) -> None:
         """The robot has it, under the id `at`."""
