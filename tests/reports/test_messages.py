@@ -1,4 +1,4 @@
-"""Ids of messages and commands are those of their senders; what is dropped for an id is counted and answered."""
+"""Ids and floods are those of their senders: nobody else's message is taken for a copy, or lost, or late for them."""
 
 import logging
 from dataclasses import replace
@@ -7,17 +7,20 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
+from lumen.buses import intake as taking
 from lumen.buses.dispatcher import Dispatcher
+from lumen.buses.intake import Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.buses.validated import validated
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Say
-from lumen.language.routes import Carried, Direction, Route
+from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
 from lumen.ports import Message
-from lumen.robots.command_receiver import ID_TAKEN
+from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RobotHost
+from lumen.upkeep.ratelimit import BURST, MAX_SENDERS, RateLimiter
 from tests.exhibits import BODY, messages, project
 from tests.tables import for_each
 from tests.waiting import HANG, Collector
@@ -146,3 +149,84 @@ def test_the_sender_of_a_command_is_told_of_its_own_and_others_of_the_newest() -
         states.append(stage.answers.bodies[-1]["state"])
     assert states == ["finished", "failed", "failed"]
     stage.host.close()
+
+
+FLOOD = 40
+"""How many commands of a stranger come at each tick: 2,000 a second."""
+
+
+def flooded(stage: Stage, ticks: int) -> None:
+    """A stranger's speech and lights, for so many ticks."""
+    for tick in range(ticks):
+        for i in range(FLOOD):
+            method, more = ("say", {"text": "Buy now"}) if i % 2 else ("leds", {"colours": {"eyes": "red"}})
+            body = {"type": "motion", "method": method, "parameter": more, "id": f"{tick}.{i}"}
+            stage.bus.publish("avatar.NAO.command", body, origin=MessageOrigin(sender="stranger"))
+        stage.robot.advance(0.02)
+        stage.host.tick(stage.robot.time)
+
+
+def until_said(stage: Stage, text: str) -> list[str]:
+    """What is said by then, from now on, while the flood goes on; at most 15 s."""
+    before = len(stage.said)
+    for _ in range(750):
+        flooded(stage, 1)
+        if text in stage.said[before:]:
+            break
+    return stage.said[before:]
+
+
+def test_what_the_behaviour_says_waits_for_no_stranger_but_the_one_that_speaks() -> None:
+    stage = Stage()
+    flooded(stage, 250)
+    stage.robot.start("d1", Say("Welcome"))
+    stage.robot.start("d2", Say("Come in"))
+    assert until_said(stage, "Come in") in (["Welcome", "Come in"], ["Buy now", "Welcome", "Come in"])
+    assert "Buy now" in until_said(stage, "Buy now"), "strangers are heard, too"
+    assert stage.host.server._orders.drops.counts["avatar.NAO.command"] > 5_000
+    stage.host.close()
+
+
+def test_nor_do_the_commands_of_a_brain_elsewhere() -> None:
+    stage = Stage()
+    stage.host.server.follow(lambda id: id.startswith("session."))
+    flooded(stage, 250)
+    for i in range(MAX_WAITING_COMMANDS):
+        body = {"type": "motion", "method": "say", "parameter": {"text": "Buy now"}, "id": f"at once {i}"}
+        stage.bus.publish("avatar.NAO.command", body, origin=MessageOrigin(sender="stranger"))
+    body = {"type": "motion", "method": "say", "parameter": {"text": "Welcome"}, "id": "session.d1"}
+    stage.bus.publish("avatar.NAO.command", body, origin=MessageOrigin(sender="brain"))
+    assert until_said(stage, "Welcome") in (["Welcome"], ["Buy now", "Welcome"])
+    stage.host.close()
+
+
+def test_a_flood_of_one_sender_leaves_room_for_the_commands_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr(taking, "RateLimiter", lambda: RateLimiter(lambda: now[0]))
+    passed, refused = list[Delivery](), list[Delivery]()
+    intake = Intake(passed.append, lambda delivery, _why: refused.append(delivery), lambda _seconds, _work: None)
+    subscription = Subscription(KEY, None, LAMP)
+
+    def come(sender: str) -> None:
+        intake.take(Delivery(subscription, KEY, b"", MessageProperties(app_id=sender), 1, 1))
+
+    def taken(sender: str) -> int:
+        return sum(delivery.properties.app_id == sender and not delivery.spent for delivery in passed)
+
+    for tick in range(250):
+        for _ in range(FLOOD):
+            come("stranger")
+        if tick % 50 == 0:
+            come("brain")
+        now[0] += 0.02
+    assert taken("brain") == 5
+    assert taken("stranger") <= (BURST + 5) * USUAL_RATE
+    assert intake.drops.counts[KEY] == 250 * FLOOD - taken("stranger")
+    assert refused, "some are answered"
+    before = len(passed)
+    for i in range(10_000):
+        come(f"stranger {i}")  # one under many names
+    assert sum(not delivery.spent for delivery in passed[before:]) <= (MAX_SENDERS + 1) * BURST * USUAL_RATE
+    now[0] += 2 * BURST
+    come("a lamp")
+    assert taken("a lamp") == 1

@@ -21,8 +21,9 @@ Later = Callable[[float, Callable[[], None]], object]
 class Intake:
     """Hands on to `receive` as many deliveries a second as their route takes (`Route.rate`); all on one thread.
 
-    Of a key without a route all is taken. Of telemetry that is too much the newest waits until there is room (`later`),
-    for it says how things are now; it gives way to a newer one. What must arrive is dropped, and some of it handed to
+    What must arrive is counted by its sender, so that no one's commands are lost among those of others. Of a key
+    without a route all is taken. Of telemetry that is too much the newest waits until there is room (`later`), for it
+    says how things are now; it gives way to a newer one. What must arrive is dropped, and some of it handed to
     `refused`, with the reason. What is dropped is counted in `drops`, under its key.
     """
 
@@ -39,7 +40,7 @@ class Intake:
         """Hand it on, hold it back, or drop it."""
         route = delivery.subscription.route
         rate = route.rate if route else 0.0
-        wait = self._limiter.wait(delivery.key, rate) if rate else 0.0
+        wait = self._wait(delivery, rate) if rate else 0.0
         place = (id(delivery.subscription), delivery.key)
         if not wait:
             if older := self._held.pop(place, None):
@@ -53,6 +54,11 @@ class Intake:
     def forget(self) -> None:
         """The connection is another: what was held back comes again, or is gone with its queue."""
         self._held.clear()
+
+    def _wait(self, delivery: Delivery, rate: float) -> float:
+        if not delivery.subscription.must_arrive:
+            return self._limiter.wait(delivery.key, rate)
+        return self._limiter.wait(self._limiter.apart(delivery.key, delivery.properties.app_id), rate)
 
     def _pass(self, delivery: Delivery) -> None:
         delivery.subscription.taken += 1

@@ -22,6 +22,7 @@ from lumen.robots.command_queries import CommandQueries
 from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, CommandRecord, CommandReports
 from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.deduplication_log import DeduplicationLog
+from lumen.robots.executor import FOREIGN
 from lumen.robots.person_hold import PersonHold
 from lumen.robots.robot_routes import (
     AIM_ROUTE,
@@ -36,6 +37,8 @@ from lumen.upkeep.once_log import OnceLog
 from lumen.upkeep.threads import MessageGuard
 
 MAX_WAITING_COMMANDS = 1_000
+MAX_WAITING_OWN = 1_000
+"""How many more may wait that are of the behaviour."""
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
@@ -48,6 +51,9 @@ ENDED = "the robot takes no more commands"
 ID_TAKEN = "its sender gave another command that id before: give each an id of its own"
 RESTARTED = "the robot was restarted since it began that"
 
+OWN = "b"
+"""What stands before the number in the id of a command of a brain elsewhere."""
+
 _log = logging.getLogger(__name__)
 
 
@@ -59,7 +65,7 @@ class _Arrival(NamedTuple):
 
 
 class CommandReceiver:
-    """Takes what modules send to the robot's keys for commands, under the ids `m1`, `m2`, …
+    """Takes what modules send to the robot's keys for commands, under the ids `m1`, `m2`, …, and `b1`, … of a brain.
 
     Messages may come on any thread; the robot is touched by `begin` alone. Everybody gets an answer, as `Reports` has
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
@@ -95,7 +101,7 @@ class CommandReceiver:
         self._log_of_changes = OnceLog(_log)
         self._reports = CommandReports(self._tell, self._reply)
         self._queries = CommandQueries(robot, self._reports, self.hold, self._reply, self.resume)
-        self._numbers = count(1)
+        self._numbers, self._own_numbers = count(1), count(1)
         self._language = ""
         self._log_of_begun = DeduplicationLog()
         self._undo: dict[str, tuple[str, Callable[[], None]]] = {}
@@ -206,12 +212,13 @@ class CommandReceiver:
 
     def _full(self, message: Message) -> str:
         """Why there is no room for this one; empty where there is."""
-        route = self._project.routes.get(COMMAND_ROUTE)
-        keep = route.keep if route and route.keep else MAX_WAITING_COMMANDS
-        waiting = len(self._came)
-        if waiting >= MAX_WAITING_COMMANDS or (waiting >= keep and not stops(message.body)):
-            return f"{waiting} commands are waiting already"
-        return ""
+        waiting, most = len(self._came), MAX_WAITING_COMMANDS
+        if self.is_brains(own_id(message.body)):
+            most += MAX_WAITING_OWN
+        elif not stops(message.body):
+            route = self._project.routes.get(COMMAND_ROUTE)
+            most = min(most, route.keep if route and route.keep else most)
+        return f"{waiting} commands are waiting already" if waiting >= most else ""
 
     def _refuse(self, message: Message, reason: str) -> None:
         """Answer a command that was not even looked at; it may be sent again."""
@@ -266,7 +273,8 @@ class CommandReceiver:
             self._language = command.language
             self._reports.change(record, FINISHED)
             return
-        if reason := self.hold.admit(command, behavior=self.is_brains(record.id)):
+        own = self.is_brains(record.id)
+        if reason := self.hold.admit(command, behavior=own):
             raise RobotRefusedError(reason)
         bounded = within_limits(command, self._project.body)
         command = bounded.command
@@ -275,7 +283,7 @@ class CommandReceiver:
             self.hold.stop(command.by)
         if isinstance(command, Say) and not command.language:
             command = replace(command, language=self._language)
-        if self._reports.running >= MAX_RUNNING_COMMANDS and not isinstance(command, Rest | Stop):
+        if self._reports.running >= MAX_RUNNING_COMMANDS and not own and not isinstance(command, Rest | Stop):
             raise RobotRefusedError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
         if record.id and not isinstance(command, Rest | Stop):
             self._log_of_begun.note(record.id)
@@ -285,9 +293,9 @@ class CommandReceiver:
             return
         if record.asker.body.get("replace") is True:
             self._clear(command)
-        elif not isinstance(command, Rest | Stop) and not self.is_brains(record.id):
+        elif not isinstance(command, Rest | Stop) and not own:
             self._check_backlog(record, command)
-        record.at = self._number()
+        record.at = f"{OWN}{next(self._own_numbers)}" if own else self._number()
         self._reports.accept(record)
         self._robot.start(record.at, command)
         self._begins(command, record.id)
@@ -321,7 +329,7 @@ class CommandReceiver:
             self._robot.start("", command)
 
     def _number(self) -> str:
-        return f"m{next(self._numbers)}"
+        return f"{FOREIGN}{next(self._numbers)}"
 
     def _angles(self) -> dict[str, float]:
         """Where the joints stand."""

@@ -1,8 +1,9 @@
 """Who moves what: commands wait until the parts of the body that they need are free.
 
 Head, arms, legs, voice, LEDs and ears each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
-everything; the others wait by rank, then in the order they came. A body supplies the activities; this keeps the order,
-the ownership and the answers, and is the same for every robot that executes commands itself.
+everything. Of the others, those of the behaviour come before those of other modules; among these they wait by rank,
+then in the order they came. A body supplies the activities; this keeps the order, the ownership and the answers, and is
+the same for every robot that executes commands itself.
 """
 
 from collections import deque
@@ -16,6 +17,8 @@ from lumen.language.events import MISSED, Event
 from lumen.ports import RobotCommand
 from lumen.robots.command_table import row_of
 
+FOREIGN = "m"
+"""What stands before the number in the id of a command that is not of the behaviour."""
 MAX_UNREAD_STARTS = 1_000
 """Of how many commands that began it is known at most, where nobody asks."""
 
@@ -57,8 +60,10 @@ class _Task:
         return self.activity is not None and not self.cancelled
 
     @property
-    def rank(self) -> int:
-        return row_of(self.command).rank
+    def turn(self) -> tuple[bool, bool, int]:
+        """Which of the tasks that wait begins first: the least."""
+        rank = row_of(self.command).rank
+        return rank > 0, self.id.startswith(FOREIGN) and self.id[1:].isdecimal(), rank
 
 
 class _Ended:
@@ -102,7 +107,7 @@ class Executor:
             self._cancel([t for t in self._tasks if not isinstance(t.command, Stop | Rest)])
         self._displace(task)
         self._tasks.append(task)
-        self._tasks.sort(key=lambda t: t.rank)
+        self._tasks.sort(key=lambda t: t.turn)
 
     def cancel(self, id: str) -> None:
         """End a command early; one that is unknown or over is left alone."""

@@ -7,6 +7,8 @@ BURST = 5.0
 """For how long a silence counts [s]."""
 MAX_KEYS = 10_000
 """Keys that are counted at a time; beyond that counting begins anew."""
+MAX_SENDERS = 16
+"""How many senders of a key are counted apart at a time; all further ones are counted as one."""
 
 
 class RateLimiter:
@@ -15,6 +17,20 @@ class RateLimiter:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._buckets: dict[str, list[float]] = {}
+        self._senders: dict[str, dict[str, float]] = {}
+
+    def apart(self, key: str, sender: str) -> str:
+        """The key under which this sender's are counted: its own, unless too many others sent in the last `BURST`."""
+        if len(self._senders) > MAX_KEYS:
+            self._senders.clear()
+        now, senders = self._clock(), self._senders.setdefault(key, {})
+        if sender not in senders and len(senders) >= MAX_SENDERS:
+            for quiet in [name for name, last in senders.items() if now - last > BURST]:
+                del senders[quiet]
+            if len(senders) >= MAX_SENDERS:
+                return key
+        senders[sender] = now
+        return f"{key} {sender}"
 
     def wait(self, key: str, rate: float) -> float:
         """0 where one more is not too much, and counts; else how long it is until the next is not [s]."""
