@@ -23,7 +23,7 @@ from lumen.robots.command_reports import CommandRecord, CommandReports
 from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
-from lumen.runtime.troubles import Trouble
+from lumen.runtime.troubles import RunTrouble
 from tests import exhibits
 from tests.tables import for_each
 from tests.waiting import HANG, until
@@ -169,10 +169,10 @@ def test_what_a_robot_elsewhere_missed_comes_with_its_report() -> None:
 
 def test_a_story_in_a_process_of_its_own_hears_of_troubles() -> None:
     bus, project = MemoryBus(), exhibits.project()
-    heard: list[Trouble] = []
+    heard: list[RunTrouble] = []
     subscriber = TraceSubscriber(project, bus, lambda _event: None)
     subscriber.watchers.append(SimpleNamespace(troubled=heard.append))
-    trouble = Trouble("dropped", "the event `touched` is dropped: it never comes to rest")
+    trouble = RunTrouble("dropped", "the event `touched` is dropped: it never comes to rest")
     TracePublisher(bus, lambda: project, lambda: 1.0).troubled(trouble)
 
     def told() -> bool:

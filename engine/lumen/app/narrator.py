@@ -25,7 +25,7 @@ from lumen.language.stories import (
 from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 from lumen.runtime.performer import LEFT_OUT
-from lumen.runtime.troubles import Trouble
+from lumen.runtime.troubles import RunTrouble
 
 MAX_TROUBLES = 100
 """How many troubles of a run are remembered for its end: the first."""
@@ -127,7 +127,7 @@ class Narrator(Observer):
             details = ", ".join(f"{k} {v}" for k, v in (event.data or {}).items())
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
 
-    def troubled(self, trouble: Trouble) -> None:
+    def troubled(self, trouble: RunTrouble) -> None:
         """Remember it for the end of the run; most of them have been told already, as what they are."""
         if trouble.kind == "joint":
             self.line("trouble", trouble.what)

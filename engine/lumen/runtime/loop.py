@@ -26,7 +26,7 @@ from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
 from lumen.runtime.shared_board import SharedBoard
 from lumen.runtime.tracking import LocalTracking, TrackingService
-from lumen.runtime.troubles import Trouble, trouble_of_answer, troubles_of_step
+from lumen.runtime.troubles import RunTrouble, trouble_of_answer, troubles_of_step
 from lumen.runtime.wall_clock_watch import WallClockWatch
 
 TICK_PERIOD = 0.02
@@ -51,7 +51,7 @@ class Observer:
     def answered(self, event: Event) -> None:
         """The robot answered a command, or noticed something; the behaviour has not heard of it yet."""
 
-    def troubled(self, trouble: Trouble) -> None:
+    def troubled(self, trouble: RunTrouble) -> None:
         """Something happened after which a run has not gone well."""
 
 
@@ -242,9 +242,9 @@ class BehaviorLoop:
             self._trouble(trouble)
 
     def _dropped(self, what: str) -> None:
-        self._trouble(Trouble("dropped", what))
+        self._trouble(RunTrouble("dropped", what))
 
-    def _trouble(self, trouble: Trouble) -> None:
+    def _trouble(self, trouble: RunTrouble) -> None:
         for observer in self.observers:
             observer.troubled(trouble)
 

@@ -39,7 +39,7 @@ from lumen.runtime.sending import send
 from lumen.runtime.story_answers import QUESTION_WITHIN, answered
 from lumen.runtime.story_observations import StoryObservations, UnmetExpectation, expects_error, expects_fall, listed
 from lumen.runtime.story_time import story_moment
-from lumen.runtime.troubles import Trouble
+from lumen.runtime.troubles import RunTrouble
 from lumen.runtime.visitor import VisitorActor
 
 
@@ -166,7 +166,7 @@ class StoryPlayer(Observer):
             if motion:
                 self._witness.played.append(motion)
 
-    def troubled(self, trouble: Trouble) -> None:
+    def troubled(self, trouble: RunTrouble) -> None:
         expected = self._falls if trouble.kind == "fall" else self._errors if trouble.kind == "do" else False
         if trouble.kind != "fall" and not expected:  # `answered` fails for a fall
             self.fail(UnmetExpectation("", trouble.what))

@@ -17,7 +17,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.approvals import HeldEvent
 from lumen.runtime.loop import Observer
-from lumen.runtime.troubles import Trouble
+from lumen.runtime.troubles import RunTrouble
 
 TRACE_ROUTE = "state"
 TRACE_TTL = 10.0
@@ -115,7 +115,7 @@ class TracePublisher(Observer):
             answer = {"id": id, "kind": kind}
             self._tell({"answer": {**answer, "reason": reason} if reason else answer})
 
-    def troubled(self, trouble: Trouble) -> None:
+    def troubled(self, trouble: RunTrouble) -> None:
         self._tell({"trouble": trouble._asdict()})
 
     def _tell(self, what: dict[str, Any]) -> None:

@@ -13,7 +13,7 @@ from lumen.language.projects import Project
 from lumen.language.routing_keys import OPERATOR_REQUEST, key_of_robot
 from lumen.ports import Bus, Message
 from lumen.runtime.trace_publisher import TRACE_ROUTE
-from lumen.runtime.troubles import Trouble
+from lumen.runtime.troubles import RunTrouble
 from lumen.upkeep.threads import MessageGuard
 
 REQUEST_TTL = 5.0
@@ -37,7 +37,7 @@ class TraceListener(Protocol):
 
     def answered(self, event: Event) -> None: ...
 
-    def troubled(self, trouble: Trouble) -> None: ...
+    def troubled(self, trouble: RunTrouble) -> None: ...
 
 
 class TraceSubscriber:
@@ -97,7 +97,7 @@ def _tell(watcher: TraceListener, body: dict[str, Any], now: float) -> None:
             reason = {"reason": str(answer["reason"])} if "reason" in answer else None
             watcher.answered(Event(f"{kind}.command.{id}", reason, now))
         case {"trouble": {"kind": "fall" | "dropped" | "do" | "joint" as kind, "what": str(what)}}:
-            watcher.troubled(Trouble(kind, what))
+            watcher.troubled(RunTrouble(kind, what))
         case {"noticed": str(name)}:
             watcher.answered(Event(name, None, now))
 

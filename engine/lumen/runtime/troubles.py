@@ -14,14 +14,14 @@ _ENDED = {"error.do.": "`do`", "error.invoke.": "`invoke`"}
 """What an error ended, by how its name begins."""
 
 
-class Trouble(NamedTuple):
+class RunTrouble(NamedTuple):
     """A fall, a dropped event or timer, an error that ended a `do`, or a joint that missed its goal; in words."""
 
     kind: TroubleKind
     what: str
 
 
-def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[Trouble]:
+def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrouble]:
     """Yield the errors that ended a `do` or an `invoke` in this step, invoked behaviours included.
 
     What was cancelled, or refused since a person keeps the robot still, ended as somebody wanted.
@@ -34,16 +34,18 @@ def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[Trouble
                 reason = error.data.get("reason") if isinstance(error.data, dict) else None
                 if error.name.startswith(begin) and not _wanted(str(reason)):
                     name = prefix + error.name.removeprefix(begin)
-                    yield Trouble("do", f"an error ended the {ended} of `{name}`" + (f": {reason}" if reason else ""))
+                    yield RunTrouble(
+                        "do", f"an error ended the {ended} of `{name}`" + (f": {reason}" if reason else "")
+                    )
 
 
 def _wanted(reason: str) -> bool:
     return reason == "cancelled" or reason.endswith(HELD)
 
 
-def trouble_of_answer(event: Event) -> Trouble | None:
+def trouble_of_answer(event: Event) -> RunTrouble | None:
     """Return the trouble that a robot's answer, or what it noticed, reports."""
     if event.name == FALLEN:
-        return Trouble("fall", "the robot fell")
+        return RunTrouble("fall", "the robot fell")
     missed = event.data.get(MISSED) if isinstance(event.data, dict) else None
-    return Trouble("joint", str(missed)) if missed else None
+    return RunTrouble("joint", str(missed)) if missed else None

@@ -17,7 +17,7 @@ from lumen.robots.remote import RemoteHall
 from lumen.runtime.presence import BRAIN, ROBOT_PART, VISITOR
 from lumen.runtime.story import StoryEnvironment, StoryPlayer
 from lumen.runtime.trace_subscriber import TraceSubscriber
-from lumen.runtime.troubles import Trouble
+from lumen.runtime.troubles import RunTrouble
 from lumen.runtime.visitor import VisitorActor
 
 
@@ -112,7 +112,7 @@ class RemoteVisitorPart(VisitorPart):
     def answered(self, event: Event) -> None:
         self._narrator.answered(event)
 
-    def troubled(self, trouble: Trouble) -> None:
+    def troubled(self, trouble: RunTrouble) -> None:
         self._narrator.troubled(trouble)
 
     def summary(self) -> Iterator[str]:
