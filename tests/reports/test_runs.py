@@ -18,9 +18,10 @@ from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
 from lumen.language.commands import Say, Start, Wake
 from lumen.language.events import HELD, Event
-from lumen.ports import Message
+from lumen.ports import Message, Perform
 from lumen.robots.command_reports import CommandRecord, CommandReports
 from lumen.robots.person_hold import StoppedBy
+from lumen.robots.simulation.robot import SimulatedRobot
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.runtime.troubles import RunTrouble
@@ -157,6 +158,23 @@ def test_a_joint_that_missed_its_goal_is_no_all_well(tmp_path: Path, capsys: pyt
     assert main(["play", str(too_fast), "--project", root]) == 1
     assert "in `nod` a joint missed its goal: `HeadYaw` was " in capsys.readouterr().err
     assert main(["play", "wave", "--project", root]) == 0
+
+
+@pytest.mark.physics
+@for_each(("limp", "missed"), [((), False), (("RShoulderPitch",), True)])
+def test_a_joint_without_stiffness_is_no_all_well(limp: tuple[str, ...], missed: bool) -> None:
+    """Its arm hangs where the motion ends, but was not where it went."""
+    project = lumen.load(".")
+    robot = set_up("simulation", project, "max").robot
+    assert isinstance(robot, SimulatedRobot)
+    robot.motors.stiffen(0.0, limp)
+    robot.start("p", Perform(project.motions["goodbye"]))
+    ended: list[Event] = []
+    while not ended:
+        robot.advance(0.02)
+        ended = [event for event in robot.poll() if event.name == "done.command.p"]
+    assert ("`RShoulderPitch` was" in str(ended[0].data)) == missed
+    robot.close()
 
 
 def test_what_a_robot_elsewhere_missed_comes_with_its_report() -> None:

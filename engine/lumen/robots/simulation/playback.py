@@ -18,8 +18,9 @@ APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
 
 _START_POSTURE_TOLERANCE = 0.05
 
-LATE, BLOCKED = 0.05, 0.2
-"""How far from a key a joint may be sent, and how far from there it may be at a motion's end [rad; hands 0..1]."""
+LATE, BLOCKED, BLOCKED_ON_THE_WAY = 0.05, 0.2, 0.4
+"""How far from a key a joint may be sent, and how far from there it may be at a motion's end, and at a key before
+[rad; hands 0..1]."""
 
 
 class MotionPlayback:
@@ -101,10 +102,11 @@ class MotionPlayback:
         return True
 
     def _note_keys(self, t: float) -> None:
-        """Note the joints whose keys have passed, and that are not there yet: they can't move faster."""
+        """Note the joints whose keys have passed, and that are not there: they can't move faster, or not at all."""
         while self._keys and self._keys[0][0] <= t:
             _, joint = self._keys.pop(0)
             self._note(joint, self._motors.lag(joint), LATE, t)
+            self._note(joint, self._motors.held_back(joint), BLOCKED_ON_THE_WAY, t)
 
     def _note(self, joint: str, away: float, most: float, t: float) -> None:
         if away > max(most, self._missed.get(joint, (0.0, 0.0))[0]):
