@@ -127,6 +127,25 @@ def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
     assert (rehearse(project, project.stories["visitor"]).failed is not None) == (code == 1)
 
 
+@for_each(
+    ("behavior", "code"),
+    [
+        ('initial: a\nstates: {a: {entry: {say: "{{ 1 / 0 }}"}}}\n', 1),
+        ('initial: a\nstates: {a: {entry: {say: "{{ 1 / 1 }}"}}}\n', 0),
+        ("context: {n: 0}\ninitial: a\nstates: {a: {on: {touched: {actions: {assign: {n: 1 / context.n}}}}}}\n", 1),
+    ],
+)
+def test_an_action_that_fails_is_no_all_well(
+    behavior: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also one of no `do`: an `entry`, or the action of a transition."""
+    root = exhibition(tmp_path, behavior, TOUCH)
+    assert run(root, "--story", "visitor") == code
+    told = capsys.readouterr().out
+    assert ("All well" in told) == (code == 0)
+    assert ("an action failed: this divides by zero" in told) == (code == 1)
+
+
 def test_an_error_in_an_invoked_behaviour_is_named_with_its_way(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

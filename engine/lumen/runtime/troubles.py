@@ -15,28 +15,36 @@ _ENDED = {"error.do.": "`do`", "error.invoke.": "`invoke`"}
 
 
 class RunTrouble(NamedTuple):
-    """A fall, a dropped event or timer, an error that ended a `do`, or a joint that missed its goal; in words."""
+    """A fall, a dropped event or timer, an error of an action or `do`, or a joint that missed its goal; in words."""
 
     kind: TroubleKind
     what: str
 
 
 def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrouble]:
-    """Yield the errors that ended a `do` or an `invoke` in this step, invoked behaviours included.
+    """Yield the errors that ended a `do`, an `invoke` or other actions in this step, invoked behaviours included.
 
     What was cancelled, or refused since a person keeps the robot still, ended as somebody wanted.
     """
     if not (step.raised or step.invoked):
         return
     for prefix, _, part in flattened_steps(machine, step):
-        for error in part.raised:
-            for begin, ended in _ENDED.items():
-                reason = error.data.get("reason") if isinstance(error.data, dict) else None
-                if error.name.startswith(begin) and not _wanted(str(reason)):
-                    name = prefix + error.name.removeprefix(begin)
-                    yield RunTrouble(
-                        "do", f"an error ended the {ended} of `{name}`" + (f": {reason}" if reason else "")
-                    )
+        errors = [(event.name, _reason(event)) for event in part.raised if event.name.startswith("error.")]
+        ended = [
+            (f"an error ended the {what} of `{prefix}{name.removeprefix(begin)}`", reason)
+            for name, reason in errors
+            for begin, what in _ENDED.items()
+            if name.startswith(begin)
+        ]
+        failed = [("an action failed", reason) for name, reason in errors if name == "error.execution"]
+        for text, reason in ended or failed:  # an action of a `do` raises both
+            if not _wanted(reason):
+                yield RunTrouble("do", text + (f": {reason}" if reason else ""))
+
+
+def _reason(error: Event) -> str:
+    reason = error.data.get("reason") if isinstance(error.data, dict) else None
+    return "" if reason is None else str(reason)
 
 
 def _wanted(reason: str) -> bool:
