@@ -208,6 +208,17 @@ def test_when_the_exhibition_ends_its_clients_are_told(opened: Opened) -> None:
     assert not Path(opened.server.address.path).exists()
 
 
+def test_a_run_of_a_relative_folder_is_reached_from_another_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "show").mkdir()
+    monkeypatch.chdir(tmp_path)
+    server = LocalBusServer(connect("memory://"), Path("show"))
+    monkeypatch.chdir("show")
+    server.address.connect().close()
+    server.close()
+
+
 def test_a_project_deep_in_folders_is_served_too(tmp_path: Path) -> None:
     deep = tmp_path / ("a" * 100) / ("b" * 100)
     deep.mkdir(parents=True)
