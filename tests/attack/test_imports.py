@@ -41,12 +41,12 @@ def test_an_importer_that_drops_a_value_is_found(monkeypatch: pytest.MonkeyPatch
 
 def test_what_has_no_meaning_may_change() -> None:
     importer = Importer()
-    text = normal("scxml", FOREIGN["scxml"])
-    other = text.replace('version="1.0"', 'version="1.1"')
-    seeds = (changed(Random(seed), "scxml", text) for seed in range(2_000))
-    change = next(one for one in seeds if one and ("<scxml>", "version") in one.touched)
-    assert "version" in TABLES["SCXML"]["<scxml>"].meaningless
-    assert not passes_silently("scxml", change, importer.outcome("scxml", text), importer.outcome("scxml", other))
+    text = FOREIGN["fis"]
+    seeds = (changed(Random(seed), "fis", text) for seed in range(2_000))
+    change = next(one for one in seeds if one and "Name='t" in text and "\nName='qt'" in one.text)
+    assert change.touched == {("[System]", "Name")}
+    assert "Name" in TABLES[".fis"]["[System]"].meaningless
+    assert not passes_silently("fis", change, importer.outcome("fis", text), importer.outcome("fis", change.text))
 
 
 def test_every_format_has_samples() -> None:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.cli.main import main
+from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.loading.packaged import shipped_root
@@ -109,7 +110,7 @@ def test_whatever_somebody_wrote_is_within_limits_and_speeds(rows: list[tuple[fl
     [
         ("for i in range(2):\n    times[i][0] = times[i][0] * 2", "`times[i][0] = times[i][0] * 2` changes `times`"),
         ("for row in range(2):\n    times[row].append(9.0)", "`times[row].append(9.0)` changes `times`"),
-        ("for i in range(3): names.append('HeadPitch')", "`names.append('HeadPitch')` changes `names`"),
+        ("while names: names.append('HeadPitch')", "`names.append('HeadPitch')` changes `names`"),
         ("times[0][0] *= 3", "`times[0][0] *= 3` changes `times`"),
         ("keys[0].reverse()", "`keys[0].reverse()` changes `keys`"),
         ("del times[0][1]", "`del times[0][1]` changes `times`"),
@@ -124,6 +125,12 @@ def test_what_a_program_changes_before_the_call_is_said(statement: str, message:
     assert [d.code for d in diagnostics] == ["not-carried-over"]
     assert diagnostics[0].message.startswith(message)
     assert f"{before}{statement}".splitlines()[diagnostics[0].place.line - 1].strip().endswith(message.split("`")[1])
+
+
+def test_a_list_that_a_loop_makes_unlike_the_others_is_refused() -> None:
+    before, call, after = EXPORT.partition("try:")
+    with pytest.raises(ForeignFileError, match="names, times and keys do not fit together"):
+        read("keys.py", f"{before}for i in range(3): names.append('HeadPitch')\n\n{call}{after}")
 
 
 def test_what_changes_other_variables_is_not_said() -> None:

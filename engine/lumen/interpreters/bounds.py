@@ -1,7 +1,7 @@
 """Commands brought within the limits and speeds of a body, in one place for every robot that performs them."""
 
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from math import degrees, isfinite
@@ -145,11 +145,25 @@ def slowed(motion: MotionDefinition, fast: Iterable[Excess]) -> MotionDefinition
         i = min(max(bisect_left(times, time), 1), len(times) - 1)
         return new[i] + (time - times[i]) * (factors[i] if time <= times[i] else 1.0)
 
-    def moved(key: Keyframe) -> Keyframe:
-        time = later(key.time)
-        into, out = ((later(key.time + dt) - time if dt else 0.0, da) for dt, da in (key.handle_in, key.handle_out))
-        return replace(key, time=time, handle_in=into, handle_out=out)
-
-    tracks = {joint: tuple(map(moved, keys)) for joint, keys in motion.tracks.items()}
+    tracks = {joint: _retimed(keys, later) for joint, keys in motion.tracks.items()}
     cues = tuple(replace(cue, time=later(cue.time)) for cue in motion.cues)
     return replace(motion, duration=later(motion.duration), tracks=tracks, cues=cues)
+
+
+def _retimed(keys: tuple[Keyframe, ...], later: Callable[[float], float]) -> tuple[Keyframe, ...]:
+    """The keys at their new times; a handle takes the same part of the way to the next key, so the way stays the same."""
+    old = [keys[0].time - 1.0, *(key.time for key in keys), keys[-1].time + 1.0] if keys else []
+    new = [later(time) for time in old]
+    parts = [
+        (after - before) / (end - begin)
+        for (before, after), (begin, end) in zip(pairwise(new), pairwise(old), strict=True)
+    ]
+    return tuple(
+        replace(
+            key,
+            time=later(key.time),
+            handle_in=(key.handle_in[0] * parts[i], key.handle_in[1]),
+            handle_out=(key.handle_out[0] * parts[i + 1], key.handle_out[1]),
+        )
+        for i, key in enumerate(keys)
+    )

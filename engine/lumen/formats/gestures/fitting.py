@@ -1,21 +1,18 @@
 """Curves brought within what a body can do beyond the range of each joint: coupled ranges, curved ways, speeds."""
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Iterator
-from itertools import pairwise
+from collections.abc import Iterable, Iterator
 from math import degrees, inf
 
 from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves
+from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves
+from lumen.interpreters import bounds
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 
 MAX_FITS = 50
 """How often a change may make another one necessary; each comes nearer to what the body can do."""
-
-SPEED_MARGIN = 1.005
-"""A part more than the time that a joint needs, since files round times and angles."""
 
 SAME_ANGLE = 1e-9
 """[rad]"""
@@ -45,39 +42,15 @@ def slowed(curves: JointCurves, body: Body) -> JointCurves:
         fast = too_fast(curves, body)
         if not fast:
             break
-        times = sorted({point.time for points in curves.values() for point in points})
-        factors = [1.0] * len(times)  # of the time before each
-        for excess in fast:
-            before = [point.time for point in curves[excess.joint] if point.time < excess.key.time]
-            begin = bisect_left(times, before[-1]) + 1 if before else 0
-            for i in range(begin, bisect_left(times, excess.key.time) + 1):
-                factors[i] = max(factors[i], SPEED_MARGIN * excess.value / excess.limit)
-        later = _warp(times, factors)
-        curves = {joint: [_moved(point, later) for point in points] for joint, points in curves.items()}
+        motion = bounds.slowed(_definition(curves), fast)
+        curves = {
+            joint: [
+                point._replace(time=key.time, handle_in=key.handle_in, handle_out=key.handle_out)
+                for point, key in zip(points, motion.tracks[joint], strict=True)
+            ]
+            for joint, points in curves.items()
+        }
     return curves
-
-
-def _warp(times: list[float], factors: list[float]) -> Callable[[float], float]:
-    """The new time of an old one, where each stretch before one of `times` takes its factor of what it took."""
-    old = [0.0, *times]
-    new = [0.0]
-    for (begin, end), factor in zip(pairwise(old), factors, strict=True):
-        new.append(new[-1] + (end - begin) * factor)
-
-    def later(time: float) -> float:
-        i = min(max(bisect_left(old, time), 1), len(times))
-        return new[i] + (time - old[i]) * factors[i - 1]
-
-    return later
-
-
-def _moved(point: CurvePoint, later: Callable[[float], float]) -> CurvePoint:
-    time = later(point.time)
-
-    def handle(old: BezierHandle) -> BezierHandle:
-        return later(point.time + old[0]) - time, old[1]
-
-    return point._replace(time=time, handle_in=handle(point.handle_in), handle_out=handle(point.handle_out))
 
 
 def _cut(points: list[CurvePoint], excess: Excess, body: Body, findings: ConversionFindings) -> None:
