@@ -86,7 +86,7 @@ def test_it_goes_where_a_person_wants_it(
     assert "offer" not in entered
     monkeypatch.setattr("sys.stdin", Terminal("y\n"))
     assert main(["goto", "offer", str(copy)]) == 0
-    assert entered[:2] == ["talking", "offer"]
+    assert entered[:4] == ["talking", "waiting", "guide.talking.waiting.wishes", "offer"]
 
 
 @pytest.mark.parametrize("verb", [["status"], ["goto", "idle"]])

@@ -77,10 +77,10 @@ def locked(hosted: Hosted) -> Iterator[Browser]:
 
 
 def meet(hosted: Hosted, name: str) -> None:
-    """A visitor comes and says who they are."""
+    """A visitor comes whose face is known by that name."""
     hosted.exhibition.send("face", {"x": 160, "y": 120})
-    until(lambda: "ask_name" in hosted.exhibition.configuration, HANG)
-    hosted.exhibition.send("heard", {"result": f"my name is {name}", "language": "en"})
+    until(lambda: "greet" in hosted.exhibition.configuration, HANG)
+    hosted.exhibition.send("recognised", {"name": name})
     until(lambda: hosted.exhibition.context.get("visitor") == name, HANG)
 
 

@@ -151,13 +151,11 @@ def slowed(motion: MotionDefinition, fast: Iterable[Excess]) -> MotionDefinition
 
 
 def _retimed(keys: tuple[Keyframe, ...], later: Callable[[float], float]) -> tuple[Keyframe, ...]:
-    """The keys at their new times; a handle takes the same part of the way to the next key, so the way stays the same."""
+    """The keys at their new times; a handle keeps its part of the time to the key beside it, so the way is the same."""
     old = [keys[0].time - 1.0, *(key.time for key in keys), keys[-1].time + 1.0] if keys else []
     new = [later(time) for time in old]
-    parts = [
-        (after - before) / (end - begin)
-        for (before, after), (begin, end) in zip(pairwise(new), pairwise(old), strict=True)
-    ]
+    gaps = ([end - begin for begin, end in pairwise(times)] for times in (new, old))
+    parts = [after / before for after, before in zip(*gaps, strict=True)]
     return tuple(
         replace(
             key,
