@@ -22,7 +22,7 @@ MAX_RELATED = 5
 MAX_COMPARED_NAMES = 200
 """Names that a misspelt one is compared with, letter by letter."""
 
-MAX_CHANGED_LETTERS = 0.5
+MAX_CHANGED_LETTERS = 0.4
 """The share of a name's letters by which a misspelt one may differ."""
 
 NodePath = tuple[str | int, ...]
@@ -197,6 +197,7 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 
 def _is_slip(word: str, meant: str) -> bool:
     """Whether one is the other with few letters changed: many that are in the same order are chance."""
+    word, meant = word.lstrip("-"), meant.lstrip("-")  # of options
     if word.startswith(meant) or meant.startswith(word):
         return True
     row = list(range(len(meant) + 1))  # the edit distance of Levenshtein
