@@ -200,6 +200,8 @@ def _is_slip(word: str, meant: str) -> bool:
     word, meant = word.lstrip("-"), meant.lstrip("-")  # of options
     if word.startswith(meant) or meant.startswith(word):
         return True
+    if "." in meant and "." not in word and _is_slip(word, meant.rpartition(".")[2]):
+        return True  # the last part of a name alone
     row = list(range(len(meant) + 1))  # the edit distance of Levenshtein
     for i, letter in enumerate(word):
         before, row[0] = row[0], i + 1
