@@ -109,7 +109,7 @@ def the_list_of_decisions_is_complete_and_calls_each_by_its_title() -> Iterator[
 def the_page_about_the_environment_names_every_variable() -> Iterator[Looked]:
     page = (DOCS / "environment.md").read_text(encoding="utf-8")
     code = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "engine/lumen").rglob("*.py"))
-    read = set(re.findall(r'"(LUMEN_[A-Z_]+)"', code)) | set(re.findall(r'environ(?:\.get\(|\[)"(\w+)"', code))
+    read = set(re.findall(r'"(LUMEN_[A-Z_]+)"', code)) | set(re.findall(r'environ(?:\.get\(|\[)"(\w+)"(?!\] =)', code))
     for name in sorted(read - {"GITHUB_WORKSPACE", "LOCALAPPDATA", "TERM"}):
         yield name, "" if f"`{name}`" in page else "is read by the engine: add it to docs/environment.md"
 

@@ -255,8 +255,10 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     file.write_text(WEBOTS)
     assert main(["import", str(file), "-o", str(out)]) == 0
     assert out.read_text().startswith("# yaml-language-server: $schema=../schemas/motion.schema.json\n")
-    assert main(["play", str(file)]) == 0
-    assert "NAO plays `wave` (2.5 s)" in capsys.readouterr().out
+    assert main(["play", str(file)]) == 1
+    played = capsys.readouterr()
+    assert "NAO plays `wave` (2.5 s)" in played.out
+    assert "in `wave` a joint missed its goal: `RShoulderPitch` was 0." in played.err  # half a second is too short
     file.write_text("#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,Pose,2.0\n00:00:300,Pose,-2.0\n")
     assert main(["play", str(file)]) == 1
     told = capsys.readouterr().err
