@@ -24,8 +24,6 @@ MAKERS = {
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "app/workers/work_kit.py": "a temporary folder",
     "app/starting.py": "a project, which is to be committed",
-    "cli/importing_robot.py": "where the user says",
-    "cli/story.py": "where the user says",
     "cli/writing.py": "where the user says",
     "robots/simulation/shells.py": "the robot's shape",
 }

@@ -155,6 +155,7 @@ def test_the_hint_says_how_to_write_it_elsewhere() -> None:
 
 
 @pytest.mark.parametrize("words", [["doctor"], ["topic", "list"], ["status"], ["run", "--robot", "recording"]])
+@pytest.mark.process
 def test_each_command_keeps_the_password(
     words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -407,6 +407,7 @@ def test_what_is_no_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixt
         replace_file(loop, b"no")
 
 
+@pytest.mark.network
 def test_a_recording_that_has_another_name_than_was_wanted_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

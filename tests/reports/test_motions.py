@@ -9,7 +9,6 @@ import pytest
 import yaml
 
 import lumen
-from lumen.cli.importing_robot import body_faults
 from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
@@ -324,7 +323,11 @@ def robot(name: str, *changes: tuple[str, str]) -> tuple[dict[str, Any], list[Di
         assert old in text, old
         text = text.replace(old, new)
     body, found = read_robot(name, text.encode(), "robot", "robot.xml")
-    assert [d for d in body_faults("robot.yaml", body) if d.severity == "error"] == []
+    document, faults = parse("robot.yaml", body.encode())
+    assert document is not None
+    report = DocumentReport(document)
+    build_body(check_schema(document, "body", report), report, name="imported")
+    assert [d for d in (*faults, *report.diagnostics) if d.severity == "error"] == []
     return yaml.safe_load(body), found
 
 

@@ -7,13 +7,16 @@ from collections.abc import Iterator
 from typing import Any
 
 import lumen
-from lumen.cli.importing import CONTROLLERS
 from lumen.formats.conversion_findings import ForeignFileError
+from lumen.formats.fcl import read_fcl
+from lumen.formats.fis import read_fis
+from lumen.formats.fll import read_fll
 from lumen.formats.gestures import read_gesture
 from lumen.formats.robot_models import read_robot
 from lumen.loading.packaged import shipped_root
 from tests.tables import for_each
 
+CONTROLLERS = {"fll": read_fll, "fcl": read_fcl, "fis": read_fis}
 BODY = lumen.load(shipped_root()).body
 
 SAMPLES = {
@@ -246,7 +249,7 @@ def imported(name: str, text: str) -> Any:
     try:
         if name.endswith((".urdf", ".xml")):
             return read_robot(name, text.encode(), "bot", "bot.xml")
-        read = CONTROLLERS.get(f".{name.rpartition('.')[2]}")
+        read = CONTROLLERS.get(name.rpartition(".")[2])
         return read(name, text.encode(), "sample") if read else read_gesture(name, text.encode(), BODY)
     except ForeignFileError as error:
         return error.diagnostic

@@ -81,6 +81,7 @@ def run(root: str, *arguments: str, robot: str = "recording") -> int:
 
 
 @for_each("name", ["endless-guarded.yaml", "endless-invoke.yaml"])
+@pytest.mark.process
 def test_a_story_in_which_an_event_is_dropped_fails(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -92,6 +93,7 @@ def test_a_story_in_which_an_event_is_dropped_fails(
     assert rehearse(lumen.load(root), lumen.load(root).stories["visitor"]).failed
 
 
+@pytest.mark.network
 def test_a_run_in_which_a_timer_is_dropped_ends_with_trouble(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -115,6 +117,7 @@ def test_a_run_in_which_a_timer_is_dropped_ends_with_trouble(
         (FAILS, "robot: {say: fails}\nsteps: [{expect: {state: b}}]", 0),
     ],
 )
+@pytest.mark.network
 def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
     behavior: str, story: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -135,6 +138,7 @@ def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
         ("context: {n: 0}\ninitial: a\nstates: {a: {on: {touched: {actions: {assign: {n: 1 / context.n}}}}}}\n", 1),
     ],
 )
+@pytest.mark.network
 def test_an_action_that_fails_is_no_all_well(
     behavior: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -146,6 +150,7 @@ def test_an_action_that_fails_is_no_all_well(
     assert ("an action failed: this divides by zero" in told) == (code == 1)
 
 
+@pytest.mark.network
 def test_an_error_in_an_invoked_behaviour_is_named_with_its_way(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -250,6 +255,7 @@ def test_what_a_stopped_robot_refuses_is_told_as_refused(tmp_path: Path) -> None
     assert not [body for body in told if "command" in body]
 
 
+@pytest.mark.network
 def test_a_robot_that_is_stopped_and_started_anew_prints_what_it_does_not_perform_as_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

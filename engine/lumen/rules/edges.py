@@ -25,16 +25,18 @@ STEP = 0.02
 """Distance between the points of a walk that are looked at [m]."""
 
 
-class Pose(NamedTuple):
+class PlaceOnGround(NamedTuple):
     """Where the robot stands [m], and how far it is turned to the left [rad], both since its start."""
 
     x: float = 0.0
     y: float = 0.0
     turned: float = 0.0
 
-    def after(self, walk: Walk) -> "Pose":
+    def after(self, walk: Walk) -> "PlaceOnGround":
         c, s = cos(self.turned), sin(self.turned)
-        return Pose(self.x + walk.x * c - walk.y * s, self.y + walk.x * s + walk.y * c, self.turned + walk.theta)
+        return PlaceOnGround(
+            self.x + walk.x * c - walk.y * s, self.y + walk.x * s + walk.y * c, self.turned + walk.theta
+        )
 
 
 class Stray(NamedTuple):
@@ -79,7 +81,7 @@ class _Ways:
 
     def strays(self) -> Iterator[Stray]:
         """Each walk that leaves the ground; a walk comes several times if several ways lead to it."""
-        waiting: list[tuple[str, Pose, frozenset[NodePath]]] = [("", Pose(), frozenset())]
+        waiting: list[tuple[str, PlaceOnGround, frozenset[NodePath]]] = [("", PlaceOnGround(), frozenset())]
         seen = set(waiting)
         while waiting and len(seen) < MAX_WAYS:
             path, pose, before = waiting.pop()
@@ -99,25 +101,25 @@ class _Ways:
     @staticmethod
     def _new(
         targets: Iterable[str],
-        pose: Pose | None,
+        pose: PlaceOnGround | None,
         made: set[NodePath],
-        seen: set[tuple[str, Pose, frozenset[NodePath]]],
-    ) -> list[tuple[str, Pose, frozenset[NodePath]]]:
+        seen: set[tuple[str, PlaceOnGround, frozenset[NodePath]]],
+    ) -> list[tuple[str, PlaceOnGround, frozenset[NodePath]]]:
         following = [(target, pose, frozenset(made)) for target in targets] if pose is not None else []
         fresh = [visit for visit in following if visit not in seen]
         seen.update(fresh)
         return fresh
 
     def _begun(
-        self, steps: Sequence[PlacedAction], pose: Pose | None, made: set[NodePath]
-    ) -> Generator[Stray, None, Pose | None]:
+        self, steps: Sequence[PlacedAction], pose: PlaceOnGround | None, made: set[NodePath]
+    ) -> Generator[Stray, None, PlaceOnGround | None]:
         """Actions that nothing waits for: after a walk it is unknown where the robot is."""
         after = yield from self._block(steps, pose, made)
         return None if any(_moves(steps)) else after
 
     def _block(
-        self, steps: Iterable[PlacedAction], pose: Pose | None, made: set[NodePath]
-    ) -> Generator[Stray, None, Pose | None]:
+        self, steps: Iterable[PlacedAction], pose: PlaceOnGround | None, made: set[NodePath]
+    ) -> Generator[Stray, None, PlaceOnGround | None]:
         """Where the robot is after some actions, None if that is unknown."""
         for step in steps:
             if pose is None:
@@ -126,7 +128,7 @@ class _Ways:
                 case Walk() as walk:
                     pose = yield from self._walk(step.where, pose, pose.after(walk), made)
                 case GoTo(to) if (place := self._places.get(to)) and place.heading is not None:
-                    there = Pose(place.x, place.y, place.heading)
+                    there = PlaceOnGround(place.x, place.y, place.heading)
                     pose = yield from self._walk(step.where, pose, there, made)
                 case If(then=then, otherwise=otherwise) if any(_moves((step,))):
                     for branch in (then, otherwise):
@@ -140,8 +142,8 @@ class _Ways:
         return pose
 
     def _walk(
-        self, where: NodePath, begin: Pose, end: Pose, made: set[NodePath]
-    ) -> Generator[Stray, None, Pose | None]:
+        self, where: NodePath, begin: PlaceOnGround, end: PlaceOnGround, made: set[NodePath]
+    ) -> Generator[Stray, None, PlaceOnGround | None]:
         count = max(1, min(round(hypot(end.x - begin.x, end.y - begin.y) / STEP), 10_000))
         points = (
             GroundPoint(begin.x + (end.x - begin.x) * i / count, begin.y + (end.y - begin.y) * i / count)
