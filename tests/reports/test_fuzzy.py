@@ -405,7 +405,7 @@ def test_two_sets_of_one_point_share_by_their_degrees() -> None:
     ],
 )
 def test_not_in_a_conclusion_is_a_finding(conclusion: str, said: str) -> None:
-    """The words mean what FuzzyLite means (docs/decisions/113): a rule that is fully true concludes nothing."""
+    """The words mean what FuzzyLite means (docs/decisions/110): a rule that is fully true concludes nothing."""
     text = (INPUTS / "not-low.yaml").read_text("utf-8")
     document, found = parse("fuzzy/tip.yaml", text.replace("Tip is not Low", conclusion).encode())
     assert document is not None
