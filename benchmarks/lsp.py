@@ -68,7 +68,7 @@ def main() -> int:
 
 
 def grown(text: str, lines: int) -> str:
-    """The tour with further regions like that of the guide, until it has about that many lines."""
+    """Return the tour with copies of the guide's region, so that it has about that many lines."""
     guide = re.search(r"(?ms)^  guide:\n.*?(?=^  \w+:\n)", text)
     assert guide
     region = guide.group()
@@ -77,7 +77,7 @@ def grown(text: str, lines: int) -> str:
 
 
 def _copied(region: str, n: int) -> str:
-    """A region under another name, whose states have ids of their own."""
+    """Return a copy of a region with another name and unique state ids."""
     region = region.replace("  guide:", f"  guide_{n}:", 1).replace(", key: e}", "}")
     ids = "|".join(re.findall(r"(?m)(?:^ +|\{)id: (\w+)(?:$|, )", region))
     region = re.sub(rf"(?m)((?:^ +|\{{)id: )({ids})(?=$|, )", rf"\g<1>\g<2>_{n}", region)

@@ -202,7 +202,7 @@ class Soak:
     _applied = ""
 
     def edit(self) -> None:
-        """On the writer's thread: one edit after the other, until one fails."""
+        """Make all edits on the writer's thread, until one fails."""
         try:
             for number in range(1, self.outcome.edits + 1):
                 self.edit_once(number)
@@ -213,7 +213,7 @@ class Soak:
             self._done.set()
 
     def edit_once(self, number: int) -> None:
-        """Edit, and wait for the verdict."""
+        """Make an edit, and wait for the verdict."""
         seen = len(self._told)
         hash, good, files = self.writer.edit()
         saved, single = time.monotonic(), good and files == 1

@@ -134,9 +134,9 @@ def command(root: Path, name: str) -> str:
 
 
 class Progress:
-    """Prints how far a run is, on one line of a terminal, or else every tenth of the run, instead of a dot per test.
+    """Print the progress of a run instead of dots: on one line of a terminal, else after each tenth of the run.
 
-    The name of a test that fails is printed at once: a run may last, or be stopped.
+    The name of a failed test is printed at once, because a run may last long or be stopped.
     """
 
     def __init__(self, config: pytest.Config) -> None:

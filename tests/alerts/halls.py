@@ -53,7 +53,7 @@ def files(folder: Path, web: Web) -> Path:
 
 
 class NearBus(MemoryBus):
-    """A bus in memory whose broker can be said to be away or short of something, and that many processes share."""
+    """A shared bus in memory whose broker a test can make unreachable or short of a resource."""
 
     away, blocked = False, ""
 

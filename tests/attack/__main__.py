@@ -3,8 +3,8 @@
 Attack N is the same wherever and whenever it is made: `--only N` makes it alone. After each batch an exhibition has to
 tick, to obey a stop, to speak and to answer who runs it; its memory, threads and handles may not grow.
 
-`python -m tests.attack --imports 2000` changes files of other tools, a name or a value at a time, and imports them: the
-result or the findings have to differ, unless the table of the format says that what was changed has no meaning.
+`python -m tests.attack --imports 2000` changes files of other tools, one name or value at a time, and imports them: the
+result or the findings must differ, unless the format's table lists the changed name as without meaning.
 """
 
 import argparse
@@ -56,7 +56,7 @@ def report(numbers: Iterable[int], url: str) -> list[str]:
 
 
 def report_imports(numbers: Iterable[int], folders: Sequence[Path]) -> list[str]:
-    """Print what came of those changes; what was lost silently."""
+    """Print the outcomes of those changes; return the changes that were lost silently."""
     logging.getLogger("lumen").setLevel(logging.CRITICAL)
     began = time.process_time()
     found = attack_imports(numbers, folders)

@@ -1,8 +1,8 @@
-"""Small changes to files of other tools, from a `random.Random`: a name misspelt, a value changed, something repeated.
+"""Make small random changes to files of other tools: misspell a name, change a value, repeat an element.
 
-    changed(random, ending, text)   a `Change` of that text, or None if there is nothing in it to change
+    changed(random, ending, text)   a `Change` of that text, or None if it has nothing to change
 
-What only repeats a default is never removed, so that each change means something, unless what it touches means nothing.
+No change removes a key that only repeats a default. So each change has a meaning, unless the touched name has none.
 """
 
 import ast
@@ -21,36 +21,36 @@ _FCL_HEAD = re.compile(
     r"\b(FUNCTION_BLOCK|VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK|OPTION\w*)\b", re.IGNORECASE
 )
 _COMMENTS = ("#", "%", "//", "/*", "(*", "END_FUNCTION_BLOCK")
-"""How lines begin that change nothing."""
+"""Beginnings of lines whose changes have no effect."""
 _OPPOSITES = {"true": "false", "false": "true"}
 
 Touched = frozenset[tuple[str, str]]
-"""Names that a change touches, each with its place, as in the tables of formats: `("<Key>", "frame")`."""
+"""The names that a change touches, with their places in the tables of formats: `("<Key>", "frame")`."""
 
 
 class Change(NamedTuple):
-    """The new text, what is changed in it, and where that was in the text before."""
+    """A change: the new text, a description, and the changed line of the old text."""
 
     text: str
     what: str
     line: int
     around: tuple[int, ...]
-    """The lines where elements around it begin, but for the outermost."""
+    """The first lines of the enclosing elements, except the outermost."""
     touched: Touched
     misspelt: bool = False
-    """Whether a name of the format is another one now."""
+    """Whether the change misspells a name of the format."""
 
 
 Changer = Callable[[Random, str], Change | None]
 
 
 def changed(random: Random, ending: str, text: str) -> Change | None:
-    """A change of a file with that ending."""
+    """Return a random change of a file with that ending."""
     return CHANGERS[ending](random, text)
 
 
 def normal(ending: str, text: str) -> str:
-    """The text with each element, or each key, on a line of its own; as it is if it can't be read."""
+    """Return the text with each element or key on its own line, or unchanged if it can't be parsed."""
     try:
         if ending in XML_ENDINGS:
             return _xml(ET.fromstring(text))
@@ -60,14 +60,14 @@ def normal(ending: str, text: str) -> str:
 
 
 def _other(random: Random, value: str) -> str:
-    """A value that means something else: of a text with numbers one of them changes, else the text."""
+    """Return a value with another meaning: with one number changed, or misspelt if it has no number."""
     if value in _OPPOSITES:
         return _OPPOSITES[value]
     numbers = list(NUMBER.finditer(value))
     if not numbers:
         return _misspelt(random, value)
     zeros = [match for match in numbers if not float(match.group())]
-    match = random.choice(zeros or numbers)  # of an axis, a factor changes nothing
+    match = random.choice(zeros or numbers)  # scaling an axis has no effect, so change a zero
     return value[: match.start()] + _number(match.group()) + value[match.end() :]
 
 
@@ -82,7 +82,7 @@ def _number(written: str) -> str:
 
 
 def _misspelt(random: Random, name: str) -> str:
-    """The name with a letter more, which no tool has."""
+    """Return the name with an extra letter, a name that no tool has."""
     at = random.randrange(len(name) + 1)
     return name[:at] + "q" + name[at:]
 
@@ -119,7 +119,7 @@ def _xml_changed(random: Random, text: str) -> Change | None:
         touched.add((f"<{local(above[here])}>", f"<{local(here)}>"))
         here = above[here]
         if here in above:
-            around += [lines[here], lines[here[0]]]  # a curve may be reported at its first key
+            around += [lines[here], lines[here[0]]]  # a finding about a curve may be at its first key
     before = {element.tag, *element.attrib}
     what, name = random.choice(ways)(random, element, above.get(element))
     touched |= {(place, name) for place in places}
@@ -128,7 +128,7 @@ def _xml_changed(random: Random, text: str) -> Change | None:
 
 
 def _special_place(element: ET.Element, above: Mapping[ET.Element, ET.Element]) -> str:
-    """The place in a table of an element that means something else than others of its name."""
+    """Return the place in the table for an element whose meaning differs from others of its name."""
     joint = above.get(element, element) if element.tag in ("axis", "limit") else element
     if element.tag == "limit" and joint.find("mimic") is not None:
         return "<limit> of a joint that follows"
@@ -150,7 +150,7 @@ def _special_place(element: ET.Element, above: Mapping[ET.Element, ET.Element]) 
 
 
 def _is_straight(key: ET.Element, above: Mapping[ET.Element, ET.Element]) -> bool:
-    """Whether no curve leads from a key to the next one."""
+    """Return whether the way from a key to the next one is straight."""
     keys = list(above[key])
     after = keys[keys.index(key) + 1] if key is not keys[-1] else None
     left = [one.get("interpType") for one in after or () if one.get("side") == "left"]
@@ -158,7 +158,7 @@ def _is_straight(key: ET.Element, above: Mapping[ET.Element, ET.Element]) -> boo
 
 
 def _is_timer(element: ET.Element) -> bool:
-    """Whether it begins or ends the time of an `after` that Lumen wrote: to do so twice is to do so once."""
+    """Return whether the action starts or cancels the timer of an exported `after`; repeating it has no effect."""
     return any(element.get(key, "").startswith("after.") for key in ("id", "sendid"))
 
 
@@ -174,7 +174,7 @@ def _xml_attribute(name: str) -> XmlWay:
             element.attrib.clear()
             element.attrib.update(items)
             return f"`{name}` of `<{local(element)}>` is `{new}`", name
-        half = name.endswith("_frame") and value.isdigit() and value != "1"  # so that keys are cut off
+        half = name.endswith("_frame") and value.isdigit() and value != "1"  # half the frames cut keys off
         element.attrib[name] = str(int(value) // 2) if half else _other(random, value)
         return f"`{name}` of `<{local(element)}>` is {element.attrib[name]!r}, not {value!r}", name
 
@@ -184,7 +184,7 @@ def _xml_attribute(name: str) -> XmlWay:
 def _xml_repeated(_: Random, element: ET.Element, parent: ET.Element | None) -> tuple[str, str]:
     assert parent is not None
     parent.insert(list(parent).index(element) + 1, deepcopy(element))
-    return f"`<{local(element)}>` stands twice", ""
+    return f"`<{local(element)}>` appears twice", ""
 
 
 def _xml_renamed(random: Random, element: ET.Element, _: ET.Element | None) -> tuple[str, str]:
@@ -201,12 +201,12 @@ def _xml_text(random: Random, element: ET.Element, _: ET.Element | None) -> tupl
 
 
 def local(element: ET.Element) -> str:
-    """The element's name without its namespace."""
+    """Return the element's name without its namespace."""
     return element.tag.rpartition("}")[2]
 
 
 def _begins(text: str) -> list[int]:
-    """The line of each element's first tag, in their order."""
+    """Return the line of each element's start tag, in document order."""
     return [text.count("\n", 0, match.start()) + 1 for match in re.finditer(r"<(?=[\w:])", text)]
 
 
@@ -224,10 +224,10 @@ def _json_changed(random: Random, text: str) -> Change | None:
     holder, key, path, place = random.choice(places)
     name = str(key)
     if isinstance(holder, list) and place == "tags":
-        return None  # they are a set
+        return None  # tags are a set: repeating one has no effect
     if isinstance(holder, list):
         holder.insert(int(key), deepcopy(holder[int(key)]))
-        what = f"{path} stands twice"
+        what = f"{path} appears twice"
     elif random.random() < 0.5 or isinstance(holder[key], dict | list) or key == "reenter" or holder[key] is None:
         new = _misspelt(random, name)
         items = [(new if k == key else k, v) for k, v in holder.items()]
@@ -261,7 +261,7 @@ def _json_other(random: Random, value: Any) -> Any:
 
 
 def _json_lines(text: str) -> dict[str, int]:
-    """The line of each path of a JSON text with one key or entry in a line, by how far lines are indented."""
+    """Return the line of each path in an indented JSON text that has one key or entry per line."""
     found: dict[str, int] = {}
     path: list[str] = []
     counts: list[int] = []
@@ -278,15 +278,15 @@ def _json_lines(text: str) -> dict[str, int]:
     return found
 
 
-# Texts of lines
+# Line-based formats
 
 
 PlaceOf = Callable[[list[str], int, int], tuple[str, str]]
-"""The place and the name of what begins in a line at a column, or of the line (-1)."""
+"""Return the place and name of the item at a line and column; column -1 is the whole line."""
 
 
 def _line_changed(place_of: PlaceOf, word: re.Pattern[str]) -> Changer:
-    """Changes of formats in which a line is one thing: a word misspelt, a number changed, the line twice."""
+    """Return a function that misspells a word, changes a number, or repeats a line of a line-based format."""
 
     def change(random: Random, text: str) -> Change | None:
         lines = text.split("\n")
@@ -311,7 +311,7 @@ def _line_changed(place_of: PlaceOf, word: re.Pattern[str]) -> Changer:
             what = f"`{match.group()}` is `{new}`"
         else:
             lines.insert(at, line)
-            what = f"the line {line.strip()[:60]!r} stands twice"
+            what = f"the line {line.strip()[:60]!r} appears twice"
         before = text.split("\n")
         around = _part(before, at) if place_of is _fll_place else ()
         return Change("\n".join(lines), what, at + 1, around, frozenset({place_of(before, at, start)}))
@@ -320,7 +320,7 @@ def _line_changed(place_of: PlaceOf, word: re.Pattern[str]) -> Changer:
 
 
 def _part(lines: list[str], at: int) -> tuple[int, ...]:
-    """The lines of a part of an engine that a line belongs to: its head, and those that are further in."""
+    """Return the `enabled` lines of the engine part that contains a line."""
     first = next((i for i in range(at, -1, -1) if lines[i][:1].strip()), 0)
     last = next((i for i in range(at + 1, len(lines)) if lines[i][:1].strip()), len(lines))
     return tuple(number + 1 for number in range(first, last) if "enabled" in lines[number])
@@ -375,11 +375,11 @@ def _python_changed(random: Random, text: str) -> Change | None:
     lines = text.split("\n")
     calls = {("call", _called(call)) for call in ast.walk(tree) if isinstance(call, ast.Call) and _holds(call, node)}
     if isinstance(node, ast.Assign):
-        return None  # a variable set twice is what it was
+        return None  # repeating an assignment has no effect
     if isinstance(node, ast.Expr):
         first, last = node.lineno - 1, node.end_lineno or node.lineno
         lines[last:last] = lines[first:last]
-        what = f"the line {lines[first].strip()[:60]!r} stands twice"
+        what = f"the line {lines[first].strip()[:60]!r} appears twice"
         return Change("\n".join(lines), what, node.lineno, (), frozenset(calls))
     part = ast.get_source_segment(text, node) or ""
     if isinstance(node, ast.Constant):

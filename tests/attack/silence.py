@@ -1,7 +1,7 @@
-"""Looks for small changes to files of other tools that change neither what `lumen import` writes nor what it reports.
+"""Find small changes to files of other tools that change neither the result nor the findings of `lumen import`.
 
-A change may pass if what it touches has no meaning by the table of its format (`lumen.formats.tables`), or if it lies
-in what the import of the file had listed before the change.
+A change may be silent if its format's table (`lumen.formats.tables`) lists the touched name as without meaning, or if
+the import had already listed that part of the file before the change.
 """
 
 import io
@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[2]
 
 
 _DAMAGED = ("hostile", "what_is_written_loads")
-"""Recorded imports of files that were damaged at random: most of what they hold is lost already."""
+"""Names of recorded imports of randomly damaged files, most of whose content is already lost."""
 
 
 class Sample(NamedTuple):
@@ -42,7 +42,7 @@ class Finding(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What an import wrote, by the names of files, what it reported, and what no file may cause."""
+    """The outcome of an import: the written files by name, the findings, and a fault that no file may cause."""
 
     code: int
     result: Mapping[str, bytes]
@@ -55,7 +55,7 @@ class Outcome(NamedTuple):
 
 
 def samples(folders: Iterable[Path] = ()) -> list[Sample]:
-    """Every file of another tool that the tests have, and those in some folders."""
+    """Return every file of another tool in the tests, and those in the given folders."""
     found = [Sample(f"the smallest .{ending}", ending, text) for ending, text in FOREIGN.items()]
     for path in sorted((ROOT / "tests/golden/imports").glob("*.json")):
         for name, row in json.loads(path.read_text("utf-8")).items():
@@ -78,7 +78,7 @@ def _text(path: Path) -> str:
 
 
 class Importer:
-    """Runs `lumen import` in this process, in a folder of its own."""
+    """Run `lumen import` in this process, in a folder of its own."""
 
     def __init__(self) -> None:
         self.folder = Path(temporary_folder("lumen-attack-"))
@@ -125,17 +125,17 @@ ENDINGS: Mapping[str, tuple[str, ...]] = {
     "py": ("NAOqi's Python",), "fll": ("FLL",), "fcl": ("FCL",), "fis": (".fis",), "urdf": ("URDF",),
     "xml": ("SCXML", "URDF", "MJCF"),
 }  # fmt: skip
-"""The formats that a file of each ending may have."""
+"""The possible formats of each file ending."""
 
 
 def passes_silently(ending: str, change: Change, before: Outcome, after: Outcome) -> bool:
-    """Whether a change that means something changes neither what is written nor what is reported."""
+    """Return whether a change with a meaning changes neither the result nor the findings."""
     if (before.code, before.result, before.told) != (after.code, after.result, after.told):
         return False
     if ending == "xml" and "<mujoco" in change.text and not change.misspelt:
-        return False  # the model stays as it is, and is a part of the result
+        return False  # the result contains the whole model, with the change
     if ending == "urdf" and "out.xml" not in before.result:
-        return False  # MuJoCo refuses it as a whole, which is reported
+        return False  # MuJoCo refuses the whole file, and a finding reports that
     if any("what follows it" in found.message and found.line <= change.line for found in before.findings):
         return False
     listed = {finding.line for finding in before.findings}
@@ -145,7 +145,7 @@ def passes_silently(ending: str, change: Change, before: Outcome, after: Outcome
 
 
 def _means_nothing(ending: str, change: Change, *, once: bool) -> bool:
-    """Whether what is touched has no meaning, or is lost, which a report says `once` for the whole file."""
+    """Return whether the touched names have no meaning, or are lost and reported `once` for the whole file."""
     tables = [TABLES[name] for name in ENDINGS[ending]]
     anywhere = {name for table in tables for known in table.values() for name in known.meaningless}
     for place, name in change.touched:
@@ -159,7 +159,7 @@ def _means_nothing(ending: str, change: Change, *, once: bool) -> bool:
 
 
 def _named(name: str, names: Iterable[str]) -> bool:
-    """Whether a name is among these, of which `get…` stands for all that begin so."""
+    """Return whether a name is among these; an entry such as `get…` matches every name with that beginning."""
     return any(one.lower() == name.lower() or (one.endswith("…") and name.startswith(one[:-1])) for one in names)
 
 
@@ -170,7 +170,7 @@ class Trouble(NamedTuple):
 
 
 class Report(NamedTuple):
-    """How many changes of each ending were tried, how many of them were refused, listed or in the result; troubles."""
+    """The number of changes by file ending and by outcome (refused, listed, in the result), and the troubles."""
 
     tried: Counter[str]
     outcomes: Counter[str]
@@ -180,7 +180,7 @@ class Report(NamedTuple):
 def attack_imports(
     numbers: Iterable[int], folders: Iterable[Path] = (), endings: Collection[str] = frozenset(CHANGERS)
 ) -> Report:
-    """Make these changes, each from its number alone, and import what comes of them."""
+    """Import the changed files; the number of a change determines it."""
     found, importer = samples(folders), Importer()
     before = cache(lambda at: importer.outcome(found[at].ending, found[at].text))
     by_ending: dict[str, list[int]] = {}
@@ -208,7 +208,7 @@ def attack_imports(
 
 
 def show(number: int, folders: Iterable[Path] = ()) -> str:
-    """A change as a difference of two files."""
+    """Return a change as a unified diff."""
     found = samples(folders)
     random = Random(number)
     ending = random.choice(sorted({sample.ending for sample in found}))

@@ -1,4 +1,4 @@
-"""Nothing of a file of another tool is lost silently: each small change to it is in the result, or is reported."""
+"""`lumen import` loses nothing silently: each small change to a file is in the result or is reported."""
 
 from random import Random
 
@@ -13,7 +13,7 @@ from tests.tables import for_each
 
 
 @for_each("ending", sorted(FOREIGN))
-def test_a_seed_says_what_is_changed(ending: str) -> None:
+def test_a_seed_determines_the_change(ending: str) -> None:
     text = normal(ending, FOREIGN[ending])
     first, again = (changed(Random(3), ending, text) for _ in range(2))
     assert first == again
@@ -39,7 +39,7 @@ def test_an_importer_that_drops_a_value_is_found(monkeypatch: pytest.MonkeyPatch
     assert any("silent" in trouble.text for trouble in attack_imports(range(60), endings={"motion"}).troubles)
 
 
-def test_what_has_no_meaning_may_change() -> None:
+def test_a_name_without_meaning_may_change() -> None:
     importer = Importer()
     text = FOREIGN["fis"]
     seeds = (changed(Random(seed), "fis", text) for seed in range(2_000))

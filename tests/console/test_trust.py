@@ -77,7 +77,7 @@ def locked(hosted: Hosted) -> Iterator[Browser]:
 
 
 def meet(hosted: Hosted, name: str) -> None:
-    """A visitor comes whose face is known by that name."""
+    """Let a visitor come whose face the robot recognises as `name`."""
     hosted.exhibition.send("face", {"x": 160, "y": 120})
     until(lambda: "greet" in hosted.exhibition.configuration, HANG)
     hosted.exhibition.send("recognised", {"name": name})

@@ -127,7 +127,7 @@ def test_what_a_program_changes_before_the_call_is_said(statement: str, message:
     assert f"{before}{statement}".splitlines()[diagnostics[0].place.line - 1].strip().endswith(message.split("`")[1])
 
 
-def test_a_list_that_a_loop_makes_unlike_the_others_is_refused() -> None:
+def test_a_list_whose_length_a_loop_changes_is_refused() -> None:
     before, call, after = EXPORT.partition("try:")
     with pytest.raises(ForeignFileError, match="names, times and keys do not fit together"):
         read("keys.py", f"{before}for i in range(3): names.append('HeadPitch')\n\n{call}{after}")

@@ -1,4 +1,4 @@
-"""The tables of what each format's importer reads, lists, or passes over."""
+"""The tables of the names that each importer reads, lists or ignores."""
 
 from scripts.format_tables import PAGE, written
 
@@ -12,7 +12,7 @@ def test_the_docs_have_the_tables() -> None:
 
 
 @for_each("format", TABLES)
-def test_a_name_is_either_read_or_listed_or_without_meaning(format: str) -> None:
+def test_a_name_is_either_read_or_listed_or_meaningless(format: str) -> None:
     for place, known in TABLES[format].items():
         parts = [set(known.read), set(known.lost), set(known.meaningless)]
         assert sum(map(len, parts)) == len(set().union(*parts)), place

@@ -1,6 +1,6 @@
-"""Addresses, brokers and messages as other people had trouble with them: one line says what is wrong and what is right.
+"""Broker addresses, brokers and messages from other systems' bug reports: one line names the fault and the correction.
 
-Each case is a reduction of a public report about another system.
+Each case is reduced from a public report.
 """
 
 import base64
@@ -71,7 +71,7 @@ def test_a_password_with_signs_of_an_address_is_not_shown(password: str, said: s
 
 
 def shown(url: str) -> str:
-    """What is printed of an address, right or wrong."""
+    """Return the printed form of a valid address, or the error for an invalid one."""
     try:
         return str(BrokerAddress(url))
     except BusAddressError as error:
@@ -98,7 +98,7 @@ def test_no_part_of_a_password_is_shown(password: str, path: str) -> None:
         ("amqp://u:secret℀@h/", "it holds a sign that no address may hold"),
     ],
 )
-def test_an_address_that_is_wrong_elsewhere_does_not_show_it_either(url: str, said: str) -> None:
+def test_another_error_in_an_address_does_not_show_the_password(url: str, said: str) -> None:
     told = refusal(url)
     assert said in told
     assert "secret" not in told
@@ -114,7 +114,7 @@ def test_an_address_that_is_wrong_elsewhere_does_not_show_it_either(url: str, sa
         ("/museum#hall", "write %23 for `#`"),
     ],
 )
-def test_a_virtual_host_of_several_segments_is_none(path: str, said: str) -> None:
+def test_a_virtual_host_of_several_segments_is_refused(path: str, said: str) -> None:
     assert said in refusal(f"amqp://h{path}")
 
 
@@ -132,7 +132,7 @@ def test_a_virtual_host_is_the_one_that_was_written(path: str, vhost: str) -> No
 
 @for_each("password", ["secret", "se/cret", "se#cret", "se?cret", "12/cret", "12#cret", "s[cret", "se@cret"])
 @for_each("file", ["lumen.yaml", "fleet.yaml", "alerts"])
-def test_a_password_in_a_file_is_found_whatever_signs_it_has(file: str, password: str) -> None:
+def test_a_password_in_a_file_is_found_with_any_characters(file: str, password: str) -> None:
     files = read_files(MINIMAL)
     if file == "fleet.yaml":
         files[file] = f"houses: {{a: {{broker: 'amqps://u:{password}@h/', robots: [nao]}}}}\n".encode()
@@ -147,7 +147,7 @@ def test_a_password_in_a_file_is_found_whatever_signs_it_has(file: str, password
     assert "cret" not in found[0].message + found[0].hint
 
 
-def test_the_hint_says_how_to_write_it_elsewhere() -> None:
+def test_the_hint_explains_how_to_write_it_elsewhere() -> None:
     files = read_files(MINIMAL)
     files["lumen.yaml"] += b"bus: 'amqp://u:pa/s#s@h/'\n"
     [found] = [d for d in check_files(MINIMAL, files)[1] if d.code == "password-in-file"]
@@ -170,14 +170,14 @@ def test_each_command_keeps_the_password(
 
 @pytest.fixture
 def silent_port() -> Iterator[int]:
-    """A port of loopback that accepts connections, as a stopped broker or the wrong program does, and sends nothing."""
+    """A loopback port that accepts connections but sends nothing, like a stopped broker or the wrong program."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         yield int(listener.getsockname()[1])
 
 
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Wait for a broker for a moment only; each of these waits is for what never comes."""
+    """Shorten the waits for a broker that never answers."""
     monkeypatch.setattr("lumen.buses.polled.BROKER_TIMEOUT", 0.2)
     monkeypatch.setattr("lumen.buses.broker.SOCKET_TIMEOUT", 0.2)
     monkeypatch.setattr("lumen.buses.broker.BROKER_TIMEOUT", 0.2)
@@ -209,7 +209,7 @@ def test_a_silent_broker_of_a_house_is_a_finding(silent_port: int) -> None:
 
 
 @pytest.mark.parametrize("ask", [lambda p: p.writing("lumen.a"), lambda p: p.reading("lumen.a")], ids=["write", "read"])
-def test_a_broker_that_hangs_after_the_login_is_told_as_such(
+def test_a_broker_that_hangs_after_the_login_is_reported(
     ask: Callable[[BrokerProbe], str], broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     relay = Relay(broker.port)
@@ -242,7 +242,7 @@ BODY = '{"x": 160, "y": 120}'
         (b"{'x': 1}", JSON, "utf-8", "it is not JSON (Expecting property name"),
     ],
 )
-def test_a_body_that_is_no_plain_utf_8_is_refused_with_what_it_is(
+def test_a_body_other_than_plain_utf_8_is_refused_with_the_reason(
     data: bytes, content_type: str, content_encoding: str, reason: str
 ) -> None:
     with pytest.raises(ValueError, match=re.escape(reason)):
@@ -250,7 +250,7 @@ def test_a_body_that_is_no_plain_utf_8_is_refused_with_what_it_is(
 
 
 @for_each("encoding", ["", "utf-8", "UTF-8", "identity", "binary", "gzip"])
-def test_a_plain_body_is_read_whatever_its_sender_calls_it(encoding: str) -> None:
+def test_a_plain_body_is_read_with_any_declared_encoding(encoding: str) -> None:
     assert decode(BODY.encode(), JSON, encoding) == {"x": 160, "y": 120}
 
 
@@ -264,12 +264,12 @@ def test_a_plain_body_is_read_whatever_its_sender_calls_it(encoding: str) -> Non
         ({"x": "left"}, "x: 'left' is not of type"),
     ],
 )
-def test_json_that_came_as_a_text_is_told_as_such(body: object, says: str) -> None:
+def test_json_sent_as_a_text_is_reported(body: object, says: str) -> None:
     schema = {"type": "object", "properties": {"x": {"type": "number"}}}
     assert SchemaCheck(schema)(body).startswith(says)
 
 
-def test_a_sender_hears_the_content_type_and_the_encoding(broker: RabbitMQ) -> None:
+def test_a_refusal_names_the_content_type_and_the_encoding(broker: RabbitMQ) -> None:
     shipped = load(MINIMAL)
     key = shipped.routes["face"].key_for(shipped.robot)
     connection = pika.BlockingConnection(pika.URLParameters(broker.url))
@@ -312,7 +312,7 @@ OTHERWISE: dict[str, tuple[Declare, str]] = {
 
 
 @pytest.mark.parametrize("name", OTHERWISE)
-def test_dead_letters_that_somebody_declared_otherwise_are_told(
+def test_dead_letters_declared_with_other_settings_are_reported(
     name: str,
     broker: RabbitMQ,
     caplog: pytest.LogCaptureFixture,
@@ -358,7 +358,7 @@ ALARM, NO_ALARM = "set_vm_memory_high_watermark 0", "set_vm_memory_high_watermar
 
 @pytest.fixture(scope="module")
 def own_broker() -> Iterator[RabbitMQ]:
-    """A broker of this module's own, whose alarm concerns no other test."""
+    """A broker for this module only, so that its alarm affects no other test."""
     own = RabbitMQ()
     own.start()
     try:
@@ -369,14 +369,14 @@ def own_broker() -> Iterator[RabbitMQ]:
 
 @pytest.fixture
 def short(own_broker: RabbitMQ) -> Iterator[RabbitMQ]:
-    """It is short of memory."""
+    """A broker that is short of memory."""
     rabbitmqctl(own_broker, ALARM)
     until(lambda: takes_nothing(own_broker))
     yield own_broker
     rabbitmqctl(own_broker, NO_ALARM)
 
 
-def test_a_broker_that_is_short_of_memory_is_told_as_such_and_not_lost(
+def test_a_broker_that_is_short_of_memory_is_reported_and_not_lost(
     short: RabbitMQ, caplog: pytest.LogCaptureFixture
 ) -> None:
     bus, came = validated(connect(short.url), load(MINIMAL)), Collector()
@@ -398,7 +398,7 @@ def test_a_broker_that_is_short_of_memory_is_told_as_such_and_not_lost(
     ]
 
 
-def test_each_command_says_what_the_broker_is_short_of(
+def test_each_command_names_what_the_broker_is_short_of(
     short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(MINIMAL)
@@ -412,7 +412,7 @@ def test_each_command_says_what_the_broker_is_short_of(
     assert f"!! broker: the broker at 127.0.0.1:{short.port} {reason}" in capsys.readouterr().out
 
 
-def test_no_second_brain_starts_while_the_first_can_not_be_heard(
+def test_no_second_brain_starts_while_the_first_is_unreachable(
     short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(MINIMAL)
@@ -430,5 +430,5 @@ def test_no_second_brain_starts_while_the_first_can_not_be_heard(
         ("low on file descriptors", "resources"),
     ],
 )
-def test_the_reason_of_a_broker_is_told_in_our_words(reason: str, said: str) -> None:
+def test_the_reason_of_a_broker_is_reworded(reason: str, said: str) -> None:
     assert shortage(reason) == said

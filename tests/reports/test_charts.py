@@ -1,4 +1,4 @@
-"""Statecharts of other people and of other systems: what was lost or misunderstood has its right value here."""
+"""Statecharts from bug reports and other systems: content that was once lost or misread is read correctly."""
 
 import json
 import re
@@ -28,7 +28,7 @@ def scxml(name: str) -> tuple[dict[str, Any], list[Diagnostic]]:
 
 
 def body(text: str) -> tuple[dict[str, Any], list[str]]:
-    """The data and the findings of a chart with this between its first and its last tag."""
+    """Return the data and the findings of a chart with this text as its content."""
     data, found = read_scxml("chart.scxml", f"{HEAD}{text}</scxml>".encode(), "chart")
     Machine.from_dict(data)
     return data, messages(found)
@@ -66,7 +66,7 @@ def test_the_layout_of_an_editor_is_one_line_and_no_error() -> None:
     assert data["states"]["a"] == {"on": {"e": {"guard": "In('b')", "target": "b"}}}
 
 
-def test_what_is_renamed_is_followed_by_conditions() -> None:
+def test_conditions_follow_a_renamed_id() -> None:
     data, found = scxml("renamed-in.scxml")
     assert [d.message for d in found] == ["the state `Talk#1` is called `Talk_1` here, wherever the chart names it"]
     it = Interpreter(Machine.from_dict(data))
@@ -75,7 +75,7 @@ def test_what_is_renamed_is_followed_by_conditions() -> None:
     assert {"q2", "Talk_1"} <= set(it.configuration)
 
 
-def test_what_is_renamed_is_followed_by_its_end() -> None:
+def test_done_events_follow_a_renamed_id() -> None:
     data, _ = scxml("renamed-done.scxml")
     it = Interpreter(Machine.from_dict(data))
     it.start()
@@ -147,7 +147,7 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
          "`<finalize>` has no counterpart"),
     ],
 )  # fmt: skip
-def test_what_is_not_read_is_listed(text: str, found: str) -> None:
+def test_unread_content_is_listed(text: str, found: str) -> None:
     said = read_scxml("chart.scxml", f"{HEAD}{text}</scxml>".encode(), "chart")[1]
     assert any(found in message for message in messages(said)), messages(said)
 
@@ -180,7 +180,7 @@ def test_a_chart_that_is_invoked_twice_has_two_ids() -> None:
          ["1:48 the data model `null` has no `<data>`: it is read as ECMAScript (write \"ecmascript\")"]),
     ],
 )  # fmt: skip
-def test_what_the_whole_document_says_of_itself(attributes: str, found: list[str]) -> None:
+def test_attributes_of_the_whole_document(attributes: str, found: list[str]) -> None:
     text = f'<scxml xmlns="http://www.w3.org/2005/07/scxml" {attributes}>'
     text += '<datamodel><data id="n" expr="1"/></datamodel><state id="a"/></scxml>'
     assert messages(read_scxml("chart.scxml", text.encode(), "chart")[1]) == found
@@ -201,13 +201,13 @@ def test_every_element_has_its_attributes_in_a_table() -> None:
 
 _SAME = {"true": "false", "deep": "shallow", "internal": "external", "late": "early"}
 _OF_NO_MEANING = {
-    'version="1.0"', 'datamodel="ecmascript"', 'binding="early"',  # defaults, or what all files have
+    'version="1.0"', 'datamodel="ecmascript"', 'binding="early"',  # defaults, or attributes of every file
     'initial="hall"', 'initial="waiting"', 'type="scxml"', 'id="quiz"', 'target="waiting"',
 }  # fmt: skip
 
 
 def changed_attributes(text: str) -> Iterator[tuple[str, str]]:
-    """Each attribute of a document with the documents in which it has another name, another value, or is not there."""
+    """Yield each attribute with documents in which it is renamed, removed or has another value."""
     for match in re.finditer(r'\s([\w:]+)="([^"]*)"', text):
         name, value = match.groups()
         if not name.startswith("xmlns"):
@@ -246,7 +246,7 @@ def test_no_change_of_an_element_is_silent() -> None:
 
 
 def xstate(source: str | dict[str, Any]) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """A file of the inputs, or a machine."""
+    """Read an input file or a machine; return its data and findings."""
     content = (INPUTS / source).read_bytes() if isinstance(source, str) else json.dumps(source).encode()
     data, found = read_xstate("chart.json", content, "chart")
     Machine.from_dict(data)
@@ -328,7 +328,7 @@ def test_actions_of_xstate_itself(action: dict[str, Any], ours: dict[str, Any]) 
         ({"type": "xstate.send", "event": "E", "params": "soon"}, "`params` of an xstate.send is no object"),
     ],
 )  # fmt: skip
-def test_what_an_action_of_xstate_lacks_is_listed(action: dict[str, Any], found: str) -> None:
+def test_missing_parts_of_an_xstate_action_are_listed(action: dict[str, Any], found: str) -> None:
     said = xstate({"context": {"n": 0}, "states": {"a": {"entry": action, "on": {"E": {}}}}})[1]
     assert found in [d.message for d in said]
 
@@ -367,7 +367,7 @@ def test_what_an_action_of_xstate_lacks_is_listed(action: dict[str, Any], found:
          "a history can't lead to a history"),
     ],
 )  # fmt: skip
-def test_what_is_not_read_of_a_machine_is_listed(state: dict[str, Any], found: str) -> None:
+def test_unread_keys_of_a_machine_are_listed(state: dict[str, Any], found: str) -> None:
     said = xstate({"initial": "a", "states": {"a": state, "b": {}}})[1]
     assert found in [d.message for d in said], messages(said)
 
@@ -413,7 +413,7 @@ def test_a_key_that_is_there_twice_is_listed() -> None:
 
 
 def changed_json(data: Any, where: tuple[Any, ...] = ()) -> Iterator[tuple[str, Any]]:
-    """The path of each key with data in which it has another name, another value, or is not there."""
+    """Yield the path of each key with data in which it is removed, renamed or has another value."""
     for key, value in data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ():
         path = ".".join(map(str, (*where, key)))
         others = {k: v for k, v in data.items() if k != key} if isinstance(data, dict) else None
@@ -430,7 +430,7 @@ def changed_json(data: Any, where: tuple[Any, ...] = ()) -> Iterator[tuple[str, 
 @for_each(
     ("name", "meaningless"),
     [
-        # written out, yet the default; without meaning; or part of something that is listed as lost
+        # explicit defaults, keys without meaning, and parts of something that is listed as lost
         ("rich4.json", {"id", "key", "predictableActionArguments", "initial", "states.b.initial",
                         "states.b.invoke.data.n", "states.b.invoke.autoForward", "states.b.states.was.type",
                         "states.b.states.was.target"}),
@@ -455,7 +455,7 @@ SETTINGS = b"name: Charts\nbehavior: hello\nlanguages: [en]\nrobot: {name: NAO, 
 
 
 def lint(hello: str, **others: str) -> list[str]:
-    """The findings of a small project with that behaviour, and more behaviours by their names."""
+    """Return the findings of a small project with that behaviour and others by name."""
     files = {"lumen.yaml": SETTINGS, "behaviors/hello.yaml": hello.encode()}
     files |= {f"behaviors/{name}.yaml": text.encode() for name, text in others.items()}
     found = check_files(INPUTS, files)[1]
@@ -489,7 +489,7 @@ def test_a_star_above_the_end_is_found() -> None:
         ('{initial: invoke, states: {invoke: {on: {"*": "#c"}, do: {say: H}, onDone: x}, x: {on: {e: "#c"}}}}', True),
     ],
 )  # fmt: skip
-def test_an_end_below_what_takes_it(state: str, found: bool) -> None:
+def test_an_end_below_a_key_that_handles_it(state: str, found: bool) -> None:
     chart = f"initial: a\nstates:\n  a: {state}\n  b: {{after: {{5s: a}}}}\n  c: {{id: c, after: {{5s: a}}}}\n"
     codes = [line.split()[1] for line in lint(chart, quick=of("quick.yaml"))]
     assert ("shadowed-transition:" in codes) == found, codes
@@ -516,7 +516,7 @@ INVOKED = {
 
 
 def endless(states: str) -> list[str]:
-    """What lint says of an endless chain of these states, of which `touched` enters `a` and `c` is quiet."""
+    """Return lint's findings on endless chains of these states; `touched` enters `a`, and `c` is quiet."""
     chart = f"initial: c\ncontext: {{n: 0}}\nstates: {{c: {{on: {{touched: a}}}}, {states}}}\n"
     found = lint(chart, **{name: text for name, text in INVOKED.items() if name in states})
     assert not any(" never comes to rest" in line for line in found) or not rests(chart), found
@@ -524,7 +524,7 @@ def endless(states: str) -> list[str]:
 
 
 def rests(chart: str) -> bool:
-    """Whether the engine comes to rest after the event; many steps within no time are no rest."""
+    """Return whether the engine comes to rest after the event; more than 100 instant steps are no rest."""
     data = {name: parse(name, text.encode())[0] for name, text in {"chart": chart, **INVOKED}.items()}
     read = {name: document.data for name, document in data.items() if document is not None}
     steps: list[Any] = []
@@ -583,11 +583,11 @@ def rests(chart: str) -> bool:
         ("a: {type: parallel, states: {p: {entry: {raise: go}}, q: {on: {go: .y}, initial: x, states: {x: {}, y: {}}}},"
          " on: {touched: c}}", ""),
         ("a: {entry: {raise: out}, initial: x, states: {x: {after: {0s: x}}}, on: {out: c}}", ""),  # left before that
-        ("a: {do: {log: x}, onDone: c, on: {go: {actions: {raise: go}}}}", ""),  # no `go` comes before it is left
+        ("a: {do: {log: x}, onDone: c, on: {go: {actions: {raise: go}}}}", ""),  # left before a `go` comes
         ("a: {after: {0s: c}, initial: x, states: {x: {on: {touched: {}, y: {actions: {raise: y}}}}}}",
          ""),
         ("a: {initial: x, always: b, states: {x: {}}}, b: {initial: y, always: a, states: {y: {}}}",
-         ""),  # `endless-always` says so
+         ""),  # `endless-always` reports it
     ],
 )  # fmt: skip
 def test_endless_chains_of_every_make(states: str, way: str) -> None:
@@ -628,7 +628,7 @@ def test_endless_chains_while_a_guard_stays_false(states: str, way: str) -> None
     assert [f"never comes to rest {way} (" in line for line in endless(states)] == ([True] if way else [])
 
 
-def test_the_error_of_an_endless_chain_names_what_went_round() -> None:
+def test_the_error_of_an_endless_chain_names_its_transitions() -> None:
     quick = {"initial": "a", "states": {"a": {"type": "final"}}}
     for name, way in (
         ("endless-invoke.yaml", "what goes round: `done.invoke.quick` of `work`"),
@@ -683,7 +683,7 @@ def test_reenter_without_a_target_is_found() -> None:
         ("{always: b, initial: x, states: {x: {on: {touched: b}}}, on: {touched: b}}", ""),
     ],
 )  # fmt: skip
-def test_what_comes_too_late_is_found(state: str, found: str) -> None:
+def test_keys_beside_an_instant_always_are_found(state: str, found: str) -> None:
     lines = lint(f"context: {{n: 0}}\nstates:\n  a: {state}\n  b: {{after: {{5s: a}}}}\n")
     assert [line for line in lines if "no-effect" in line] == ([found] if found else [])
 
@@ -698,7 +698,7 @@ def test_what_comes_too_late_is_found(state: str, found: str) -> None:
         ('x: {on: {touched: y}}, y: {type: final}', False),
     ],
 )  # fmt: skip
-def test_the_end_of_an_invocation_that_states_within_take(within: str, found: bool) -> None:
+def test_the_end_of_an_invocation_that_inner_states_handle(within: str, found: bool) -> None:
     chart = (
         f"initial: a\nstates:\n  a: {{invoke: {{behavior: quick, onDone: b}}, initial: x, states: {{{within}}}}}\n"
         "  b: {after: {5s: a}}\n"
@@ -707,7 +707,7 @@ def test_the_end_of_an_invocation_that_states_within_take(within: str, found: bo
     assert [line.partition(" ")[0] for line in lines] == (["3:41"] if found else [])
 
 
-def test_no_event_is_proposed_that_is_no_better_than_none() -> None:
+def test_no_unlike_event_is_proposed() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6
     hint = "(declare it under `events:`, or give a route of lumen.yaml this `event`)"

@@ -1,6 +1,6 @@
-"""Files as editors, word processors and other tools save them: what is wrong is found at its place, and nothing fails.
+"""Files as editors, word processors and other tools save them: each error is found at its place, and nothing crashes.
 
-Each input is a reduction of a public report about another system.
+Each input is reduced from a public report about another system.
 """
 
 import contextlib
@@ -49,11 +49,11 @@ states:
     onDone: idle
     onError: idle
 """
-"""A sound behaviour; the first line of it is empty."""
+"""A valid behaviour, which begins with an empty line."""
 
 
 def project(name: str, content: bytes) -> dict[str, bytes]:
-    """The files of a small project with that content as its behaviour or its motion."""
+    """Return the files of a small project with that content as its behaviour or motion."""
     sound = {TOUR: STATES.encode()}
     return {**BASE, **sound, (WAVE if name.endswith(".motion.yaml") else TOUR): content}
 
@@ -95,7 +95,7 @@ def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
         ("at-iso.yaml", ["4:10 bad-time | write `2026-12-24 18:00`"]),
     ],
 )
-def test_the_report_is_told_at_its_place_with_what_would_be_right(name: str, expected: list[str]) -> None:
+def test_the_error_is_reported_at_its_place_with_a_correction(name: str, expected: list[str]) -> None:
     assert_told(found(name, (INPUTS / name).read_bytes()), expected)
 
 
@@ -110,7 +110,7 @@ NO_BREAKS = {"next line": "\x85", "line separator": "\u2028", "paragraph separat
 
 @for_each("end", BREAKS.values(), ids=BREAKS)
 @for_each("sign", ["", *NO_BREAKS.values()])
-def test_a_line_is_counted_the_same_way_whatever_ends_it_and_stands_in_it(end: str, sign: str) -> None:
+def test_lines_are_counted_alike_with_any_ending_and_content(end: str, sign: str) -> None:
     text = changed("say: Hello", f'say: "Hel{sign}{sign}lo"').decode().replace("onError: idle", "onError: idel")
     content = text.replace("\n", end).encode()
     assert_told(found("tour.yaml", content), ["8:14 unknown-state | did you mean `idle`?"])
@@ -122,7 +122,7 @@ def test_a_line_is_counted_the_same_way_whatever_ends_it_and_stands_in_it(end: s
 
 
 @for_each("sign", NO_BREAKS.values(), ids=NO_BREAKS)
-def test_what_ends_a_line_for_yaml_1_1_alone_is_part_of_a_text(sign: str) -> None:
+def test_a_line_break_of_yaml_1_1_alone_is_part_of_a_text(sign: str) -> None:
     document, diagnostics = parse("a.yaml", f"# note{sign}not: read\na: [x{sign}y, '{sign}', \"\\L\"]\n".encode())
     assert not diagnostics
     assert document is not None
@@ -130,7 +130,7 @@ def test_what_ends_a_line_for_yaml_1_1_alone_is_part_of_a_text(sign: str) -> Non
     assert document.place(("a", 0)).line == 2
 
 
-def test_the_characters_that_stand_in_for_those_breaks_stay_what_they_are_in_a_text() -> None:
+def test_the_placeholders_for_those_breaks_are_kept_in_a_text() -> None:
     text = "a: \ue000\u2028\ue001\x85"
     document, _ = parse("a.yaml", text.encode())
     assert document is not None
@@ -181,7 +181,7 @@ def test_a_character_that_yaml_does_not_allow_is_named_at_its_place(content: byt
     assert_told(found("tour.yaml", content), [expected])
 
 
-def test_an_anchor_stands_for_the_nearest_above() -> None:
+def test_an_alias_refers_to_the_nearest_anchor_above() -> None:
     document, diagnostics = parse("a.yaml", b"a: &x 1\nb: *x\nc: &x [2]\nd: *x\n")
     assert not diagnostics
     assert document is not None
@@ -208,7 +208,7 @@ def test_an_anchor_stands_for_the_nearest_above() -> None:
         ),
     ],
 )
-def test_of_two_words_that_look_equal_it_is_told_how_they_differ(content: bytes, expected: str) -> None:
+def test_the_difference_between_look_alike_words_is_reported(content: bytes, expected: str) -> None:
     assert_told(found("tour.yaml", content), [expected])
 
 
@@ -221,7 +221,7 @@ def test_of_two_words_that_look_equal_it_is_told_how_they_differ(content: bytes,
         ("٣", "write `3`: `٣` is another digit than `3`"),
     ],
 )
-def test_a_number_with_other_signs_is_told_as_it_should_be(value: str, expected: str) -> None:
+def test_a_number_with_look_alike_characters_is_corrected(value: str, expected: str) -> None:
     content = f"keyframes:\n  - {{at: 1s, joints: {{HeadYaw: {value}}}}}\n".encode()
     assert [d.hint[: len(expected)] for d in found("a.motion.yaml", content)] == [expected]
 
@@ -245,7 +245,7 @@ HEARD = """
         (">\n      jump\n      now", []),
     ],
 )
-def test_a_text_that_holds_several_phrases_is_none(phrases: str, hints: list[str]) -> None:
+def test_a_text_of_several_phrases_is_reported(phrases: str, hints: list[str]) -> None:
     content = f"phrases:\n  dance:\n    en: {phrases}{STATES.replace('greet}', 'heard}', 1)}{HEARD}"
     said = [d.hint for d in found("tour.yaml", content.encode()) if d.code == "foreign-pattern"]
     assert said == hints
@@ -273,7 +273,7 @@ def test_a_text_that_holds_several_phrases_is_none(phrases: str, hints: list[str
         ("5 % of [them] cost $5, <b>really</b>, {{ {'a': 1}.a }}", ""),
     ],
 )
-def test_a_hole_of_another_tool_is_told_with_the_form_that_works(text: str, expected: str) -> None:
+def test_a_placeholder_of_another_tool_is_corrected(text: str, expected: str) -> None:
     content = changed("say: Hello", f'say: "{text}"', "context: {visitor: my friend, a: true, c: true}\n")
     said = [f"{d.code} | {d.hint}" for d in found("tour.yaml", content) if d.code != "unused-context-key"]
     assert [each[: len(expected)] for each in said] == [expected] * bool(expected)
@@ -292,7 +292,7 @@ def test_a_hole_of_another_tool_is_told_with_the_form_that_works(text: str, expe
         ("18:00-19:00", "it is one moment that is waited for"),
     ],
 )
-def test_a_time_of_another_tool_is_told_in_the_form_of_at(time: str, hint: str) -> None:
+def test_a_time_of_another_tool_is_corrected_for_at(time: str, hint: str) -> None:
     content = changed("    on: {touched: greet}", f'    on: {{touched: greet}}\n    at: {{"{time}": greet}}')
     assert_told(found("tour.yaml", content), [f"5:10 bad-time | {hint}"])
 
@@ -394,7 +394,7 @@ def test_a_file_that_a_container_mounts_alone_is_written_to(tmp_path: Path, monk
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
-def test_what_is_no_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_target_that_is_no_regular_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     replace_file(Path("/dev/stdout"), b"printed")
     replace_file(Path(os.devnull), b"gone")
     assert capfd.readouterr().out == "printed"
@@ -408,9 +408,7 @@ def test_what_is_no_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixt
 
 
 @pytest.mark.network
-def test_a_recording_that_has_another_name_than_was_wanted_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_recording_under_another_name_prints_that_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     placed(tmp_path, read_files(MINIMAL))
     file = tmp_path / "a.mcap"
     command = ["run", str(tmp_path), "--robot", "recording", "--speed", "max", "--story", "visitor"]
@@ -424,7 +422,7 @@ def test_a_recording_that_has_another_name_than_was_wanted_says_so(
 
 
 def small(root: Path) -> Path:
-    """A project on the disk, with a motion that its behaviour plays."""
+    """Write a small project to the disk; its behaviour plays a motion."""
     return placed(root, read_files(MINIMAL))
 
 
@@ -454,7 +452,7 @@ def test_a_file_whose_name_is_nearly_right_is_named(old: str, new: str, expected
         assert f"{new}:1 not-read | rename it to {meant if meant.endswith('/') else Path(meant).name}" in told
 
 
-def test_a_copy_beside_the_file_that_is_read_is_none_of_the_project(tmp_path: Path) -> None:
+def test_a_copy_in_the_same_folder_is_not_part_of_the_project(tmp_path: Path) -> None:
     root = small(tmp_path)
     for copy in ("motions/wave.yaml.txt", "motions/wave.YAML", "motions/notes.txt", "motions/.wave.yaml.txt"):
         (root / copy).write_text("a")
@@ -483,7 +481,7 @@ def test_a_folder_elsewhere_shows_no_names(tmp_path: Path) -> None:
 
 
 def closed(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
-    """Let the system refuse to list that folder, as `chmod 000` does for everybody but root."""
+    """Let the system refuse to list that folder, as `chmod 000` does for all users except root."""
     listdir = os.listdir
 
     def refuse(path: Path | str = ".") -> list[str]:
@@ -509,7 +507,7 @@ def test_a_folder_that_can_not_be_read_is_not_an_empty_one(
 
 
 @for_each("folder", ["stories", "words"])
-def test_a_closed_folder_that_is_none_of_the_project_is_left_alone(folder: str) -> None:
+def test_a_closed_folder_outside_the_project_is_ignored(folder: str) -> None:
     with TemporaryDirectory() as name, pytest.MonkeyPatch.context() as patch:
         root = small(Path(name))
         (root / folder).mkdir()
@@ -535,7 +533,7 @@ DECOMPOSED = unicodedata.normalize("NFD", CAFE)
 
 
 def french(root: Path, name: str) -> Path:
-    """The small project with `café` in place of `wave`, its file with that name."""
+    """Write the small project with the motion `café` instead of `wave`, in a file called `name`."""
     small(root)
     (root / WAVE).rename(root / "motions" / f"{name}.yaml")
     for file in root.rglob("*.yaml"):
@@ -564,7 +562,7 @@ def test_a_repair_is_written_into_the_file_of_a_mac(tmp_path: Path) -> None:
     assert sorted(root.rglob("*.yaml")) == before
 
 
-def test_of_two_files_that_are_called_alike_one_is_reported(tmp_path: Path) -> None:
+def test_one_of_two_files_with_the_same_name_is_reported(tmp_path: Path) -> None:
     root = french(tmp_path, DECOMPOSED)
     (root / "motions" / f"{CAFE}.yaml").write_bytes((root / "motions" / f"{DECOMPOSED}.yaml").read_bytes())
     if len(list((root / "motions").iterdir())) == 1:
@@ -574,7 +572,7 @@ def test_of_two_files_that_are_called_alike_one_is_reported(tmp_path: Path) -> N
 
 
 def lumen(root: Path, *words: str, **settings: str) -> tuple[int, str]:
-    """The exit code and all that `lumen` prints, with these settings of the environment."""
+    """Run `lumen` with these environment variables; return its exit code and its whole output."""
     environment = {name: value for name, value in os.environ.items() if name not in ("MUJOCO_GL", "DISPLAY")}
     command = [sys.executable, "-m", "lumen", *words]
     done = run_guarded(command, cwd=root, env=environment | settings, capture_output=True, text=True)
@@ -592,9 +590,7 @@ def lumen(root: Path, *words: str, **settings: str) -> tuple[int, str]:
     ],
     ids=["nonsense", "glfw", "disable"],
 )
-def test_pictures_that_can_not_be_drawn_keep_nothing_else_from_running(
-    setting: dict[str, str], why: str, tmp_path: Path
-) -> None:
+def test_without_pictures_everything_else_still_runs(setting: dict[str, str], why: str, tmp_path: Path) -> None:
     placed(tmp_path, read_files(MINIMAL))
     code, told = lumen(tmp_path, "play", "wave", "--speed", "max", **setting)
     assert (code, told.count("\n")) == (0, 2), told
@@ -605,7 +601,7 @@ def test_pictures_that_can_not_be_drawn_keep_nothing_else_from_running(
 
 @pytest.mark.physics
 def test_a_backend_without_its_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    from lumen.robots.simulation import gl  # 0.5 s
+    from lumen.robots.simulation import gl  # imported here: it takes 0.5 s
 
     monkeypatch.setattr(gl, "_loads", lambda library: False)
     assert gl._fault("osmesa") == (
@@ -646,7 +642,7 @@ SETTINGS = {
     ],
     ids=lambda words: words[0],
 )
-def test_settings_that_are_not_needed_keep_nothing_from_running(words: list[str], tmp_path: Path) -> None:
+def test_a_wrong_setting_that_is_not_needed_is_ignored(words: list[str], tmp_path: Path) -> None:
     placed(tmp_path, read_files(MINIMAL))
     code, told = lumen(tmp_path, *words, **SETTINGS)
     assert code == 0, told
@@ -665,7 +661,7 @@ def test_an_unknown_time_zone_of_the_environment_is_named(
     assert not caplog.records
 
 
-def test_without_a_folder_for_temporary_files_it_is_told_which_setting_names_one(
+def test_without_a_temporary_folder_the_error_names_the_setting(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def none(options: object) -> int:

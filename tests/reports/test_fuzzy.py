@@ -1,4 +1,4 @@
-"""Fuzzy controllers of other people's bug reports: each keeps its values, and what is left out is listed."""
+"""Fuzzy controllers from public bug reports: each keeps its values, and omitted parts are listed."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +24,7 @@ INPUTS = Path(__file__).parent / "inputs" / "fuzzy"
 
 
 def read(name: str, *changes: tuple[str, str], encoding: str = "utf-8") -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of an input after some changes of its text, and the findings."""
+    """Read an input file after some changes to its text; return the data and the findings."""
     text = (INPUTS / name).read_text("utf-8")
     for old, new in changes:
         assert old in text, old
@@ -40,13 +40,13 @@ READERS: dict[str, Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagno
 
 
 def value(data: dict[str, Any], **inputs: float) -> float:
-    """The value of the only output."""
+    """Return the value of the only output."""
     [found] = Controller.from_dict(data).evaluate(inputs).values()
     return found
 
 
 def centroid(membership: Callable[[float], float], high: float = 30.0) -> float:
-    """The centroid of a set over 0 to `high`, from its definition."""
+    """Compute the centroid of a set over 0 to `high` from the definition."""
     ys = [high * (i + 0.5) / 100_000 for i in range(100_000)]
     degrees = [membership(y) for y in ys]
     return sum(y * degree for y, degree in zip(ys, degrees, strict=True)) / sum(degrees)
@@ -115,7 +115,7 @@ def test_sections_and_terms_count_by_their_numbers() -> None:
         ("trimf", "trimef", "a term of `temp` is left out: there is no shape `trimef` here"),
     ],
 )
-def test_what_a_fis_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+def test_unread_parts_of_a_fis_are_listed(old: str, new: str, message: str) -> None:
     text = (INPUTS / "two-inputs-one-name.fis").read_text("utf-8")
     _, found = read_fis("two.fis", text.replace(old, new, 1).encode(), "two")
     assert message in [d.message for d in found]
@@ -188,7 +188,7 @@ def test_not_leaves_the_other_outputs_of_the_rule_alone() -> None:
     assert w[0] == pytest.approx(w[1])
 
 
-def test_where_no_rule_fires_an_output_is_in_the_middle_of_its_range() -> None:
+def test_if_no_rule_fires_an_output_is_in_the_middle_of_its_range() -> None:
     data, found = read("nothing-fires.fis")
     assert value(data, x=5) == 15
     assert found == []
@@ -298,7 +298,7 @@ def test_two_variables_in_one_declaration_are_read() -> None:
         ("SIGM -4", "SIGN -4", "the term `low` of `temperature` is left out"),
     ],
 )
-def test_what_a_function_block_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+def test_unread_parts_of_a_function_block_are_listed(old: str, new: str, message: str) -> None:
     _, found = read("range-in-declaration.fcl", (old, new))
     assert [d.message for d in found if d.message.startswith(message)], [d.message for d in found]
 
@@ -348,7 +348,7 @@ def test_an_input_and_an_output_of_an_engine_of_one_name_stay_two() -> None:
         ("default: nan", "default: non", "`non` is no number"),
     ],
 )
-def test_what_an_engine_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+def test_unread_parts_of_an_engine_are_listed(old: str, new: str, message: str) -> None:
     _, found = read_fll("e.fll", ENGINE.replace(old, new, 1).encode(), "e")
     assert message in [d.message for d in found]
 
@@ -357,7 +357,7 @@ POINT = "trapezoid: [1, 1, 1, 1]"
 
 
 def controller(name: str, old: str = "", new: str = "") -> Controller:
-    """A controller of an input, in which `old` is `new`."""
+    """Read a controller from an input file with `old` replaced by `new`."""
     text = (INPUTS / name).read_text("utf-8")
     assert old in text
     return Controller.from_dict(yaml.safe_load(text.replace(old, new)))
@@ -405,7 +405,7 @@ def test_two_sets_of_one_point_share_by_their_degrees() -> None:
     ],
 )
 def test_not_in_a_conclusion_is_a_finding(conclusion: str, said: str) -> None:
-    """The words mean what FuzzyLite means (docs/decisions/110): a rule that is fully true concludes nothing."""
+    """`not` has FuzzyLite's meaning (docs/decisions/110): a rule that is fully true concludes nothing."""
     text = (INPUTS / "not-low.yaml").read_text("utf-8")
     document, found = parse("fuzzy/tip.yaml", text.replace("Tip is not Low", conclusion).encode())
     assert document is not None

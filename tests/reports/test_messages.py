@@ -1,4 +1,4 @@
-"""Ids and floods are those of their senders: nobody else's message is taken for a copy, or lost, or late for them."""
+"""Ids and floods of one sender never make another sender's message a copy, lost or late."""
 
 import logging
 from dataclasses import replace
@@ -30,7 +30,7 @@ LAMP = Route("lamp", KEY, Direction.IN, carried=Carried.COMMAND, must_arrive=Tru
 
 
 class Line:
-    """A dispatcher, and what came through it."""
+    """A dispatcher that records its messages."""
 
     def __init__(self, route: Route = LAMP) -> None:
         self.seen: list[Message] = []
@@ -44,7 +44,7 @@ class Line:
         self.dispatcher.receive(Delivery(self.subscription, KEY, body, said, 1, 1, again, at=float("inf")))
 
     def end(self) -> list[object]:
-        """What was handled."""
+        """End the dispatcher; return the bodies of the handled messages."""
         assert self.dispatcher.end(HANG)
         return [message.body for message in self.seen]
 
@@ -54,16 +54,16 @@ class Line:
     [
         ({"sender": "desk"}, {"sender": "door"}, [1, 1], 0),
         ({"sender": "desk"}, {"sender": ""}, [1, 1], 0),
-        ({"sender": "desk"}, {"sender": "desk", "body": b"2"}, [1], 1),  # it counts from 1 since its restart
+        ({"sender": "desk"}, {"sender": "desk", "body": b"2"}, [1], 1),  # after a restart it counts from 1 again
         ({"sender": "desk"}, {"sender": "desk"}, [1], 1),
         ({"sender": ""}, {"sender": "", "body": b"2"}, [1], 1),
         ({"sender": "desk"}, {"sender": "desk", "body": b"2", "again": True}, [1], 1),
-        ({"sender": "desk"}, {"sender": "desk", "again": True}, [1], 0),  # the broker has it confirmed by nobody
-        ({"sender": "desk", "timestamp": 7}, {"sender": "desk", "timestamp": 7}, [1], 0),  # sent again in an outage
+        ({"sender": "desk"}, {"sender": "desk", "again": True}, [1], 0),  # the broker has no confirmation of it
+        ({"sender": "desk", "timestamp": 7}, {"sender": "desk", "timestamp": 7}, [1], 0),  # sent again after an outage
         ({"sender": "desk", "timestamp": 7}, {"sender": "desk", "timestamp": 9}, [1], 1),
     ],
 )
-def test_a_second_message_of_an_id_is_told_apart_by_its_sender_or_counted_and_refused(
+def test_a_second_message_with_an_id_is_from_another_sender_or_refused(
     first: dict[str, Any], second: dict[str, Any], handled: list[int], dropped: int
 ) -> None:
     line = Line()
@@ -74,7 +74,7 @@ def test_a_second_message_of_an_id_is_told_apart_by_its_sender_or_counted_and_re
     assert len(line.handed) == 2, "each is acknowledged"
 
 
-def test_a_stop_is_handled_whatever_its_id_unless_it_is_a_copy() -> None:
+def test_a_stop_is_handled_with_any_id_unless_it_is_a_copy() -> None:
     line = Line(replace(LAMP, carried=Carried.STOP))
     line.come("desk", "1")
     line.come("desk", "1", b"2")
@@ -98,7 +98,7 @@ def test_the_first_of_many_repeated_ids_is_logged_with_what_to_do(caplog: pytest
 
 
 class Stage:
-    """A hosted recording robot, and modules that send it commands of one id."""
+    """A hosted recording robot, and modules that send it commands with the same id."""
 
     def __init__(self) -> None:
         it = project(messages=messages())
@@ -129,7 +129,7 @@ def test_commands_of_two_senders_with_one_id_are_both_performed() -> None:
     stage.host.close()
 
 
-def test_a_stop_is_performed_whatever_its_id() -> None:
+def test_a_stop_is_performed_with_any_id() -> None:
     stage = Stage()
     stage.send("desk", "say", text="Hello")
     stage.send("desk", "rest")
@@ -137,7 +137,7 @@ def test_a_stop_is_performed_whatever_its_id() -> None:
     stage.host.close()
 
 
-def test_the_sender_of_a_command_is_told_of_its_own_and_others_of_the_newest() -> None:
+def test_a_sender_gets_the_state_of_its_own_command_and_others_of_the_newest() -> None:
     stage = Stage()
     stage.send("desk", "say", text="Hello")
     stage.send("door", "danse")
@@ -152,11 +152,11 @@ def test_the_sender_of_a_command_is_told_of_its_own_and_others_of_the_newest() -
 
 
 FLOOD = 40
-"""How many commands of a stranger come at each tick: 2,000 a second."""
+"""The number of commands from a stranger in each tick: 2,000 a second."""
 
 
 def flooded(stage: Stage, ticks: int) -> None:
-    """A stranger's speech and lights, for so many ticks."""
+    """Send a stranger's speech and lights for that many ticks."""
     for tick in range(ticks):
         for i in range(FLOOD):
             method, more = ("say", {"text": "Buy now"}) if i % 2 else ("leds", {"colours": {"eyes": "red"}})
@@ -167,7 +167,7 @@ def flooded(stage: Stage, ticks: int) -> None:
 
 
 def until_said(stage: Stage, text: str) -> list[str]:
-    """What is said by then, from now on, while the flood goes on; at most 15 s."""
+    """Continue the flood until the robot says `text`, at most 15 s; return the texts said since the call."""
     before = len(stage.said)
     for _ in range(750):
         flooded(stage, 1)
@@ -176,7 +176,7 @@ def until_said(stage: Stage, text: str) -> list[str]:
     return stage.said[before:]
 
 
-def test_what_the_behaviour_says_waits_for_no_stranger_but_the_one_that_speaks() -> None:
+def test_the_behaviours_speech_waits_only_for_the_text_under_way() -> None:
     stage = Stage()
     flooded(stage, 250)
     stage.robot.start("d1", Say("Welcome"))
@@ -187,7 +187,7 @@ def test_what_the_behaviour_says_waits_for_no_stranger_but_the_one_that_speaks()
     stage.host.close()
 
 
-def test_nor_do_the_commands_of_a_brain_elsewhere() -> None:
+def test_the_speech_of_a_remote_brain_waits_only_for_the_text_under_way() -> None:
     stage = Stage()
     stage.host.server.follow(lambda id: id.startswith("session."))
     flooded(stage, 250)
@@ -225,7 +225,7 @@ def test_a_flood_of_one_sender_leaves_room_for_the_commands_of_others(monkeypatc
     assert refused, "some are answered"
     before = len(passed)
     for i in range(10_000):
-        come(f"stranger {i}")  # one under many names
+        come(f"stranger {i}")  # one sender under many names
     assert sum(not delivery.spent for delivery in passed[before:]) <= (MAX_SENDERS + 1) * BURST * USUAL_RATE
     now[0] += 2 * BURST
     come("a lamp")

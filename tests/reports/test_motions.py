@@ -1,4 +1,4 @@
-"""Motions and bodies of other people's bug reports: each keeps its numbers, and what is left out is listed."""
+"""Motions and bodies from public bug reports: each keeps its numbers, and omitted parts are listed."""
 
 from dataclasses import replace
 from math import degrees, radians
@@ -38,7 +38,7 @@ BODY = lumen.load(shipped_root()).body
 
 
 def read(name: str, old: str = "", new: str = "", timeline: str = "") -> tuple[list[dict[str, Any]], list[Diagnostic]]:
-    """The keyframes of an input in which `old` is `new`, and the findings."""
+    """Read an input file with `old` replaced by `new`; return the keyframes and the findings."""
     text = (INPUTS / (name if name.endswith(".xar") else f"{name}.txt")).read_text("utf-8")
     assert old in text, old
     data, found = read_gesture(name, text.replace(old, new).encode(), BODY, timeline=timeline)
@@ -57,13 +57,13 @@ WAVE = [{"at": "1s", "RShoulderPitch": 30, "RHand": 0.9}, {"at": "2s", "RShoulde
         ("box-library.xar", 'unit="1"', 'unit="0"'),
     ],
 )
-def test_a_hand_is_an_opening_whatever_its_unit(name: str, old: str, new: str) -> None:
+def test_a_hand_is_an_opening_with_any_unit(name: str, old: str, new: str) -> None:
     keys, found = read(name, old, new)
     assert keys == WAVE
     assert [d.message[:18] for d in found] == (["`unit` of `RHand` i"[:18]] if "unit" in new else [])
 
 
-def test_an_arm_stays_in_degrees_whatever_its_unit() -> None:
+def test_an_arm_stays_in_degrees_with_any_unit() -> None:
     keys, found = read("box-library.xar", 'unit="0"', 'unit="1"')
     assert keys == WAVE
     assert "keys are read as an angle in degrees" in found[0].message
@@ -127,13 +127,13 @@ def test_a_muted_curve_without_a_key_loses_nothing() -> None:
         ),
     ],
 )
-def test_what_a_xar_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+def test_unread_parts_of_a_xar_are_listed(old: str, new: str, message: str) -> None:
     _, found = read("box-library.xar", old, new)
     assert message in [d.message for d in found]
 
 
 def times(keys: list[dict[str, Any]], joint: str) -> dict[str, float]:
-    """When a joint is where [deg]."""
+    """Return a joint's angles [deg] by their times."""
     return {key["at"]: key[joint] for key in keys if joint in key}
 
 
@@ -178,7 +178,7 @@ def test_a_function_that_nothing_calls_is_listed() -> None:
     assert [(d.message, d.place.line) for d in found] == [("the function `nod` is left out: nothing calls it", 7)]
 
 
-def test_methods_and_what_they_are_handed_are_followed() -> None:
+def test_methods_and_their_arguments_are_followed() -> None:
     robot = """class Robot:
     def __init__(self):
         self.motion = ALProxy("ALMotion", "nao.local", 9559)
@@ -196,7 +196,7 @@ robot.nod(0.3)
     assert found == []
 
 
-def test_functions_without_an_end_are_a_line() -> None:
+def test_recursion_and_doubling_calls_end() -> None:
     ring = b"def a():\n    motion.angleInterpolation('HeadYaw', 0.1, 1.0)\n    b()\ndef b():\n    a()\na()\n"
     data, found = read_gesture("a.py", ring, BODY)
     assert len(data["keyframes"]) == 1
@@ -284,7 +284,7 @@ def test_every_form_of_angles_and_times_is_read(call: str, wanted: list[tuple[st
         "['HeadYaw'], [], []",
     ],
 )
-def test_angles_and_times_that_do_not_fit_are_a_line(call: str) -> None:
+def test_angles_and_times_that_do_not_fit_are_a_one_line_error(call: str) -> None:
     with pytest.raises(ForeignFileError, match="do not fit together"):
         read("spread.py", '["HeadYaw", "HeadPitch"], [0.4, -0.2], [1.0, 1.5]', call)
 
@@ -317,7 +317,7 @@ def test_the_list_of_a_project_names_its_behaviours(tmp_path: Path, capsys: pyte
 
 
 def robot(name: str, *changes: tuple[str, str]) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The body file that an input becomes after some changes of its text, and the findings."""
+    """Import an input file after some changes to its text; return the body file and the findings."""
     text = (INPUTS / name).read_text("utf-8")
     for old, new in changes:
         assert old in text, old
@@ -402,7 +402,7 @@ def test_an_equality_of_a_model_with_a_factor_has_no_motor_either() -> None:
         ('type="revolute"', 'typ="revolute"', "`typ` of `<joint>` is left out"),
     ],
 )
-def test_what_a_urdf_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+def test_unread_parts_of_a_urdf_are_listed(old: str, new: str, message: str) -> None:
     extra = (
         '<joint name="x" type="continuous"><parent link="base_link"/><child link="x"/><limit effort="1" velocity="1"/>'
     )
@@ -426,7 +426,7 @@ def test_what_a_urdf_is_not_read_for_is_listed(old: str, new: str, message: str)
         ('type="hinge"', 'type="hing"', "the joint `a` is a `hing`, and a body's joints turn"),
     ],
 )
-def test_what_a_model_is_not_read_for_is_listed(old: str, new: str, message: str) -> None:
+def test_unread_parts_of_a_model_are_listed(old: str, new: str, message: str) -> None:
     joint = '<joint class="arm" type="hinge" limited="true" name="a" range="0 1"/><joint name="b" range="0 1"/>'
     model = (
         '<mujoco><compiler angle="radian"/><default><default class="arm"><joint axis="0 0 1"/></default></default>'
@@ -468,11 +468,11 @@ def test_a_head_that_only_rolls_can_not_look() -> None:
 PODIUM = (
     '<mujoco><worldbody><site name="stage"/><geom type="box" size="{size} 0.01" pos="0 0 -.01"/></worldbody></mujoco>'
 )
-"""A hall whose ground has edges 0.55 m ahead and 0.75 m aside, if its size is `.55 .75`."""
+"""A hall; with the size `.55 .75`, its ground ends 0.55 m ahead and 0.75 m to the side."""
 
 
 def strays(behavior: str, settings: str = "", size: str = "") -> list[str]:
-    """The place and the message of each walk off the ground that lint finds for NAO in the shipped hall, or another."""
+    """Return place and message of each walk off the ground that lint finds for NAO, in the shipped hall or another."""
     main = "name: Edge\nbehavior: tour\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n"
     files = {"lumen.yaml": f"{main}{settings or 'hall: hall.xml'}\n", "behaviors/tour.yaml": behavior}
     if size:
@@ -494,7 +494,7 @@ def test_a_walk_over_the_edge_is_found_without_a_stage() -> None:
 
 
 def doing(*steps: str) -> str:
-    """A behaviour whose states each do one of these."""
+    """Return a behaviour with one state for each step."""
     states = "".join(f"  s{i}: {{do: {step}, onDone: s{i + 1}, onError: end}}\n" for i, step in enumerate(steps))
     ends = f"  s{len(steps)}: {{}}\n  end: {{}}\non: {{fallen: .end}}\n"
     return f"units: {{angle: deg}}\ninitial: s0\nstates:\n{states}{ends}"
@@ -543,7 +543,7 @@ def test_a_place_without_ground_is_found_without_a_stage() -> None:
 
 
 class OwnRobot:
-    """A robot of someone's own, without any check: it keeps what it is given, and is done at once."""
+    """A user's own robot without checks: it records each command and finishes it at once."""
 
     def __init__(self) -> None:
         self.given: list[RobotCommand] = []
@@ -574,9 +574,7 @@ def limited(name: str) -> tuple[float, float]:
     return BODY.joints[name].minimum, BODY.joints[name].maximum
 
 
-def test_a_robot_of_ones_own_is_never_told_to_look_beyond_its_limits(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_users_own_robot_never_looks_beyond_its_limits(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "behaviors").mkdir()
     (tmp_path / "lumen.yaml").write_text("name: Own\nbehavior: tour\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n")
     (tmp_path / "behaviors/tour.yaml").write_text(
@@ -637,7 +635,7 @@ def test_a_slowed_motion_stays_in_step_with_its_words() -> None:
     assert changes == ("`nod` takes longer: `HeadYaw` needs more time to its key at 1.01 s",)
 
 
-def test_what_is_within_the_limits_is_given_as_it_is() -> None:
+def test_a_command_within_the_limits_is_unchanged() -> None:
     tracks = {"HeadYaw": (key(1.0, 1.0), key(2.0, 0.0))}
     for command in (Look(0.3, 0.1), Perform(MotionDefinition("nod", 2.5, tracks)), Aim({"HeadYaw": 1.0}, 0.5), Wake()):
         assert within_limits(command, BODY) == (command, ())
@@ -648,7 +646,7 @@ def test_what_is_within_the_limits_is_given_as_it_is() -> None:
 
 
 def script(*lines: str, timeline: str = "") -> tuple[list[dict[str, Any]], list[Diagnostic]]:
-    """The keyframes of a script for NAOqi, and the findings."""
+    """Read a script for NAOqi; return the keyframes and the findings."""
     text = "\n".join(("motion = ALProxy('ALMotion')", "nod = [0.2, 0.0]", *lines))
     data, found = read_gesture("loop.py", text.encode(), BODY, timeline=timeline)
     return [{"at": frame["at"], **frame["joints"]} for frame in data["keyframes"]], found
@@ -670,7 +668,7 @@ TWICE = [{"at": f"{at}s", "HeadPitch": angle} for at, angle in (("0.5", 11.4592)
         ("for at in nod:", "    pass", "for i in range(2):", NOD, "else:", "    pass"),
     ],
 )
-def test_a_loop_over_what_is_written_out_repeats(lines: tuple[str, ...]) -> None:
+def test_a_loop_over_literal_values_repeats(lines: tuple[str, ...]) -> None:
     assert script(*lines) == (TWICE, [])
 
 
@@ -718,7 +716,7 @@ def test_the_type_of_each_handle_counts() -> None:
         ('<motor joint="HeadYaw" ctrlrange="-1 1"/>', []),
     ],
 )
-def test_a_servo_that_holds_its_joint_within_less_is_told(motor: str, told: list[str]) -> None:
+def test_a_servo_with_less_than_its_joints_range_is_reported(motor: str, told: list[str]) -> None:
     body = '<body><joint name="HeadYaw" range="-90 90"/><geom size="1"/></body>'
     text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
     found = read_robot("head.xml", text.encode(), "head", "head.xml")[1]
@@ -729,7 +727,7 @@ def test_a_servo_that_holds_its_joint_within_less_is_told(motor: str, told: list
     ("name", "gear", "told"),
     [("HeadYaw", "-1", ["-1"]), ("HeadYaw", "2 0 0", ["2"]), ("HeadYaw", "1", []), ("turn", "-1", [])],
 )
-def test_a_servo_that_counts_in_another_way_than_its_joint_is_told(name: str, gear: str, told: list[str]) -> None:
+def test_a_servo_with_a_gear_is_reported(name: str, gear: str, told: list[str]) -> None:
     body = '<body><joint name="HeadYaw" range="-90 90"/><geom size="1"/></body>'
     motor = f'<position name="{name}" joint="HeadYaw" gear="{gear}"/>'
     text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
@@ -737,6 +735,6 @@ def test_a_servo_that_counts_in_another_way_than_its_joint_is_told(name: str, ge
     assert [d.message.split("`gear` of ")[1].split(":")[0] for d in found if "`gear`" in d.message] == told
 
 
-def test_a_script_with_odd_numbers_and_escapes_says_nothing_of_python(recwarn: pytest.WarningsRecorder) -> None:
+def test_a_script_with_odd_numbers_and_escapes_shows_no_python_warning(recwarn: pytest.WarningsRecorder) -> None:
     assert script("shown = '\\d' if 1in nod else 0", "if True:", NOD)[0] == TWICE[:2]
     assert not recwarn.list

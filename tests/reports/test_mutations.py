@@ -1,5 +1,5 @@
-"""An importer never changes its mind silently: with one word or number of a file changed, or a line left out, either
-the result or the findings differ. What stands within « and » has no meaning for a robot.
+"""No change to an imported file is silent: a changed word or number, or a missing line, changes the result or the
+findings. Text between « and » has no meaning for a robot.
 """
 
 import re
@@ -245,7 +245,7 @@ _FREE = re.compile("«[^»]*»", re.DOTALL)
 
 
 def imported(name: str, text: str) -> Any:
-    """What comes of a file: the result and the findings, or why there is none."""
+    """Import a file; return the result and the findings, or the reason for a refusal."""
     try:
         if name.endswith((".urdf", ".xml")):
             return read_robot(name, text.encode(), "bot", "bot.xml")
@@ -256,7 +256,7 @@ def imported(name: str, text: str) -> Any:
 
 
 def changes(text: str) -> Iterator[tuple[str, str]]:
-    """What is changed, and the text with that change alone."""
+    """Yield a description of each change, and the text with only that change."""
     free = [match.span() for match in _FREE.finditer(text)]
     plain = str.maketrans("", "", "«»")
     for match in _WORD.finditer(text):

@@ -1,4 +1,4 @@
-"""A run never ends with "All well" after a fall, a dropped event, an error of a `do`, or a joint that is not there."""
+"""A run never ends with "All well" after a fall, a dropped event, an error of a `do`, or a missed goal of a joint."""
 
 import json
 from datetime import UTC, datetime, timedelta
@@ -42,7 +42,7 @@ states:
   c: {on: {touched: a}}
 """
 HASTY = "keyframes: [{at: 450ms, joints: {HeadYaw: 1.9}}]\n"
-"""There is time enough from where the head is in `Stand`."""
+"""The time is long enough if the head starts as in `Stand`."""
 HASTY_PLAYED = """\
 initial: a
 states:
@@ -60,7 +60,7 @@ states:
 
 
 def exhibition(folder: Path, behavior: str, story: str, **files: str) -> str:
-    """A minimal project with this behaviour, this story as `visitor`, and further files of `behaviors/` and motions."""
+    """Write a minimal project with this behaviour, the story `visitor`, and further behaviours and motions."""
     root = folder / "show"
     assert main(["new", str(root), "--minimal"]) == 0
     (root / "behaviors" / "hello.yaml").write_text(behavior, "utf-8")
@@ -110,7 +110,7 @@ def test_a_run_in_which_a_timer_is_dropped_ends_with_trouble(
     ("behavior", "story", "code"),
     [
         (FAILS, "steps: [{wait: 10s}]", 1),
-        (FAILS, "steps: [{expect: {state: b}}]", 1),  # `b` follows a `do` that went well, too
+        (FAILS, "steps: [{expect: {state: b}}]", 1),  # `b` also follows a successful `do`
         (FAILS.replace("onError: b", "onError: c"), "steps: [{expect: {state: c}}]", 0),
         (FAILS.replace("onError: b", "onError: c"), "steps: [{wait: 10s}]", 1),
         (FAILS.replace(", onError: b", ""), "steps: [{wait: 10s}]", 1),
@@ -139,10 +139,10 @@ def test_an_error_that_ended_a_do_fails_a_story_that_does_not_expect_it(
     ],
 )
 @pytest.mark.network
-def test_an_action_that_fails_is_no_all_well(
+def test_after_a_failed_action_a_run_does_not_end_well(
     behavior: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Also one of no `do`: an `entry`, or the action of a transition."""
+    """Also an action outside of a `do`: in an `entry` or a transition."""
     root = exhibition(tmp_path, behavior, TOUCH)
     assert run(root, "--story", "visitor") == code
     told = capsys.readouterr().out
@@ -161,7 +161,7 @@ def test_an_error_in_an_invoked_behaviour_is_named_with_its_way(
 
 
 @pytest.mark.physics
-def test_a_fall_is_no_all_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_after_a_fall_a_run_does_not_end_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     root = exhibition(tmp_path, read("walk-over-the-edge.yaml"), WAIT)
     assert run(root, "--story", "visitor", robot="simulation") == 1
     assert "expected the robot on its feet, but it fell" in capsys.readouterr().out
@@ -173,7 +173,7 @@ def test_a_fall_is_no_all_well(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 
 @pytest.mark.physics
-def test_a_joint_that_missed_its_goal_is_no_all_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_after_a_missed_goal_a_run_does_not_end_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     root = exhibition(tmp_path, HASTY_PLAYED, "title: Haste\nsteps: [{expect: {state: b}}]\n", hasty=HASTY)
     assert run(root, "--story", "visitor", robot="simulation") == 1
     assert "in `hasty` a joint missed its goal: `HeadYaw` was " in capsys.readouterr().out
@@ -186,8 +186,8 @@ def test_a_joint_that_missed_its_goal_is_no_all_well(tmp_path: Path, capsys: pyt
 
 @pytest.mark.physics
 @for_each(("limp", "missed"), [((), False), (("RShoulderPitch",), True)])
-def test_a_joint_without_stiffness_is_no_all_well(limp: tuple[str, ...], missed: bool) -> None:
-    """Its arm hangs where the motion ends, but was not where it went."""
+def test_a_joint_without_stiffness_misses_its_goal(limp: tuple[str, ...], missed: bool) -> None:
+    """The hanging arm is at the last goal of the motion, but missed the goals before."""
     project = lumen.load(".")
     robot = set_up("simulation", project, "max").robot
     assert isinstance(robot, SimulatedRobot)
@@ -201,7 +201,7 @@ def test_a_joint_without_stiffness_is_no_all_well(limp: tuple[str, ...], missed:
     robot.close()
 
 
-def test_what_a_robot_elsewhere_missed_comes_with_its_report() -> None:
+def test_a_remote_robots_missed_goal_is_in_its_report() -> None:
     told: list[dict[str, Any]] = []
     reports = CommandReports(told.append, lambda _message, _body: None)
     reports.accept(CommandRecord(Message("", None), "b.c1", at="m1"))
@@ -209,7 +209,7 @@ def test_what_a_robot_elsewhere_missed_comes_with_its_report() -> None:
     assert told[-1] == {"id": "b.c1", "state": "finished", "method": "", "reason": "`HeadYaw` was 1.7 rad away"}
 
 
-def test_a_story_in_a_process_of_its_own_hears_of_troubles() -> None:
+def test_a_story_in_its_own_process_receives_troubles() -> None:
     bus, project = MemoryBus(), exhibits.project()
     heard: list[RunTrouble] = []
     subscriber = TraceSubscriber(project, bus, lambda _event: None)
@@ -228,8 +228,8 @@ def test_a_story_in_a_process_of_its_own_hears_of_troubles() -> None:
 WAKES = "initial: a\nentry: {wake: true}\nstates: {a: {do: [{posture: Stand}], on: {stop: b}}, b: {}}\n"
 
 
-def test_what_a_stopped_robot_refuses_is_told_as_refused(tmp_path: Path) -> None:
-    """After a stop by a person and a start anew, nothing is told as performed that is not."""
+def test_a_command_that_a_stopped_robot_refuses_is_reported_as_refused(tmp_path: Path) -> None:
+    """After a person's stop and a restart, no refused command is reported as performed."""
     project = lumen.load(exhibition(tmp_path, WAKES, WAIT))
     setup = set_up("recording", project, "max")
     trace = RehearsalTrace(setup.clock.now, lambda: project.machine, None)
@@ -256,10 +256,10 @@ def test_what_a_stopped_robot_refuses_is_told_as_refused(tmp_path: Path) -> None
 
 
 @pytest.mark.network
-def test_a_robot_that_is_stopped_and_started_anew_prints_what_it_does_not_perform_as_refused(
+def test_a_stopped_robot_prints_its_commands_as_refused_after_a_restart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The run before was killed 11 minutes ago; a walk to a place is no other case than a posture."""
+    """The previous run was killed 11 minutes ago; a walk to a place is refused like a posture."""
     root = exhibition(tmp_path, WAKES.replace("{posture: Stand}", "{walk: {to: desk}}"), WAIT)
     settings = Path(root, "lumen.yaml")
     settings.write_text(settings.read_text("utf-8") + "places: {desk: {x: 1, y: 0, heading: 0}}\n", "utf-8")
@@ -276,7 +276,7 @@ def test_a_robot_that_is_stopped_and_started_anew_prints_what_it_does_not_perfor
     assert not [line for line in told if line.startswith("robot")]
 
 
-def test_a_brain_prints_what_a_robot_elsewhere_refuses_as_refused() -> None:
+def test_a_brain_prints_what_a_remote_robot_refuses_as_refused() -> None:
     since = datetime(2026, 11, 26, tzinfo=UTC)
     stopped: list[StoppedBy] = [StoppedBy("Ada", since)]
     hold = RemoteHold(lambda: stopped[0] if stopped else None)
@@ -296,7 +296,7 @@ def test_a_brain_prints_what_a_robot_elsewhere_refuses_as_refused() -> None:
     assert hold.refuse(Wake()) == ""
 
 
-def test_a_refusal_that_the_brain_did_not_foresee_is_told_as_one() -> None:
+def test_a_refusal_that_the_brain_did_not_foresee_is_reported() -> None:
     project = exhibits.project()
     trace = RehearsalTrace(lambda: 1.0, lambda: project.machine, None)
     trace.performing(Start("c1", Wake()), 1.0)
@@ -307,7 +307,7 @@ def test_a_refusal_that_the_brain_did_not_foresee_is_told_as_one() -> None:
     ]
 
 
-def test_what_a_person_ends_is_no_trouble(tmp_path: Path) -> None:
+def test_a_run_that_a_person_ends_has_no_trouble(tmp_path: Path) -> None:
     project = lumen.load(exhibition(tmp_path, WAKES, WAIT))
     show = Exhibition(project, set_up("recording", project, "max"))
     with show:
@@ -319,7 +319,7 @@ def test_what_a_person_ends_is_no_trouble(tmp_path: Path) -> None:
         assert show.node.troubles == []
 
 
-def test_the_console_tells_a_refusal_as_one() -> None:
+def test_the_console_shows_a_refusal() -> None:
     entry = {"heard": "error.command.c1", "data": {"reason": f"Ada stopped the robot: {HELD}"}}
     assert text_of(entry) == f"refused: Ada stopped the robot: {HELD}"
     assert text_of(entry, OTHERS["id"]).startswith("ditolak: Ada")
