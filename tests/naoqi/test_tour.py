@@ -16,6 +16,11 @@ def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:
     return play(project, project.stories["visitor"], robot)
 
 
+def guided(run: Run) -> list[str]:
+    """The states that a run entered, without those that depend on when a camera sees a face."""
+    return [state for state in run.entered if not state.startswith("face.")]
+
+
 @pytest.mark.slow
 def test_the_whole_tour_is_the_recording_robots_tour(project: Project) -> None:
     joint = replace(project.routes["joint"], every=0.2)
@@ -24,7 +29,7 @@ def test_the_whole_tour_is_the_recording_robots_tour(project: Project) -> None:
     real, recorded = played(blind, robot), played(blind, RecordingRobot(project.body))
     assert real.failure == ""
     assert real.errors == []
-    assert real.entered == recorded.entered
+    assert guided(real) == guided(recorded)
     assert [text for _, text in real.said] == [text for _, text in recorded.said]
     assert real.played == recorded.played == ["dance", "sing", "photo", "goodbye"]
     assert real.time == pytest.approx(recorded.time, abs=10.0)
