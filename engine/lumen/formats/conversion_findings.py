@@ -49,7 +49,7 @@ class ConversionFindings:
         self._found[Diagnostic(CHANGED, message, place, hint, Severity.WARNING)] = None
 
     def include(self, other: "ConversionFindings") -> None:
-        """What another part of the conversion reported."""
+        """Add the findings of another part of the conversion."""
         self._found |= other._found
 
 

@@ -25,5 +25,5 @@ def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
 
 
 def _is_cyrillic(content: bytes) -> bool:
-    """Whether letters of Windows-1251 stand beside each other as in words, more often than beside Latin ones."""
+    """Whether letters of Windows-1251 occur next to each other, as in words, more often than next to Latin ones."""
     return len(_CYRILLIC_WORD.findall(content)) > len(_LATIN_WORD.findall(content))

@@ -52,7 +52,7 @@ KNOWN: FormatTable = {
         meaningless={"FUNCTION_BLOCK name": "the file's name is the controller's"},
     ),
 }
-"""What of a function block is carried over, by the section."""
+"""The parts of a function block that are carried over, by section."""
 
 _OPERATORS = ("AND", "OR", "ACT", "ACCU")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
@@ -149,7 +149,7 @@ class _FclReader:
         return text[: begins[1].start()]
 
     def tell_outside(self, text: str, sections: list[FclSection]) -> None:
-        """List what is in no section that is read, at its first word."""
+        """List text outside of the sections that are read, at its first word."""
         for begin, end in zip([0, *(s.end for s in sections)], [*(s.offset for s in sections), len(text)], strict=True):
             outside = text[begin:end]
             at = 0
@@ -268,7 +268,7 @@ class _FclReader:
                     self.findings.lost(self.at(statement), f"`{key}` comes twice: the first one counts")
                 settings.setdefault(key, (match[2].strip(), statement))
                 for _, hint in KNOWN[section.kind].losses([key]) if side == "inputs" else ():
-                    self.findings.lost(self.at(statement), f"`{key}` can't be said of an input", hint)
+                    self.findings.lost(self.at(statement), f"`{key}` is not for inputs", hint)
         if side == "outputs":
             self.output(spec, settings)
         ends: list[float] = []
@@ -319,7 +319,7 @@ class _FclReader:
                 case "RANGE":
                     pass
                 case _:
-                    self.findings.lost(self.at(statement), f"`{key} : {said}` can't be said of an output")
+                    self.findings.lost(self.at(statement), f"`{key} : {said}` is not for outputs")
 
     def accumulated(self, section: FclSection, spec: dict[str, Any]) -> None:
         """How conclusions about an output become one: the same for single values, of each term's degrees."""

@@ -1,9 +1,8 @@
 """MATLAB's fuzzy inference systems (`.fis`, and Octave's) as the data of a controller file.
 
 Fuzzy Logic Toolbox, "Save and Load Fuzzy Inference Systems": sections `[System]`, `[Input1]`, `[Output1]`, `[Rules]`; a
-rule is the numbers of its terms, `1 -2, 1 (0.5) : 1`, a minus for `not`, 0 for a variable that is not asked. Octave
-writes hedges behind a point: `1.2` is `very` of the first term. If no rule fires, an output is in the middle of its
-range.
+rule is a row of term numbers, `1 -2, 1 (0.5) : 1`, with a minus for `not` and 0 for an unused variable. Octave writes
+hedges after a point: `1.2` is `very` of the first term. If no rule fires, an output is in the middle of its range.
 """
 
 import re
@@ -71,7 +70,7 @@ _USUAL = {
 
 
 MAX_TERM_NUMBER, MAX_TERM_GAP = 1e6, 10
-"""Numbers of terms beyond that are no terms, and so many missing ones of a variable are listed."""
+"""The limit of a term's number, and the most missing terms of a variable that are listed."""
 
 _TYPES = ("mamdani", "sugeno", "tsukamoto")
 _VARIABLE = Known(read=frozenset(("Name", "Range", "NumMFs", "MF…")))
@@ -87,7 +86,7 @@ KNOWN: FormatTable = {
         meaningless={"AND or OR of a single condition": "nothing is joined"},
     ),
 }
-"""What of a system of MATLAB or Octave is carried over, by the section; `MF…` stands for `MF1`, `MF2`, …"""
+"""The parts of a MATLAB or Octave system that are carried over, by section; `MF…` means `MF1`, `MF2`, …"""
 
 _HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
 """Octave's hedges as powers of a membership: the digits behind the point of a term's number, times ten."""
@@ -132,7 +131,7 @@ def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 def _sections(file: str, text: str, findings: ConversionFindings) -> Iterator[FisSection]:
-    """The sections in their order; a line that belongs to none is listed."""
+    """Yield the sections in their order; a line outside of them is listed."""
     section: FisSection | None = None
     for row, source in enumerate(lines_of(text), 1):
         said = source.strip()
@@ -197,7 +196,7 @@ class _FisReader:
             seen.add(line.key)
 
     def numbered(self, sections: list[FisSection]) -> list[FisSection]:
-        """The sections in the order of their numbers, by which rules count; numbers that leave a gap are listed."""
+        """The sections in the order of their numbers, which rules use; gaps in the numbers are listed."""
         found = sorted(sections, key=lambda section: section.number)
         for number, section in enumerate(found, 1):
             if section.number != number:
@@ -207,7 +206,7 @@ class _FisReader:
         return found
 
     def count(self, section: FisSection, key: str, found: int) -> None:
-        """Report a number of things that is not how many there are."""
+        """Report a count in the file that differs from the number found."""
         line = section.line(key)
         if line and _numbers(line.value) != [float(found)]:
             self.findings.lost(line.place, f"`{key}` is {line.value[:20]}, and there are {found}: all of them count")
@@ -250,7 +249,7 @@ class _FisReader:
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
         if side == "output":
-            spec["default"] = plain((ends[0] + ends[1]) / 2)  # MATLAB's value where no rule fires
+            spec["default"] = plain((ends[0] + ends[1]) / 2)  # MATLAB's value if no rule fires
         if side == "output" and said.get("defuzzifier", "centroid") != "centroid":
             spec["defuzzifier"] = said["defuzzifier"]
         terms = {int(match[1][:6]): line for line in reversed(section.lines) if (match := _MF.fullmatch(line.key))}
@@ -310,7 +309,7 @@ class _FisReader:
         return rule
 
     def propositions(self, side: str, numbers: list[float], line: FisLine) -> list[str] | None:
-        """`variable is [not] term` for each number that is not 0; None, and a finding, where one is no term."""
+        """`variable is [not] term` for each number that is not 0; None, and a finding, if a number has no term."""
         found = []
         for variable, number in zip(self.order[side], numbers, strict=True):
             if not number:
@@ -332,9 +331,9 @@ class _FisReader:
         return found
 
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
-        """A term for the complement of a set, or for a power of its membership: rules of ours have no word for it.
+        """Add a term for the complement of a set, or for a power of its membership, which our rules can't express.
 
-        A hedge of ours in a conclusion changes the degree of the rule, and Octave's changes the set.
+        In a conclusion, a hedge here changes the degree of the rule; in Octave it changes the set.
         """
         kind, values = variable.shapes[term]
         formula = set_formula(kind, values)
@@ -342,7 +341,7 @@ class _FisReader:
         if power != 1.0:
             what += f", a hedge: its membership to the power of {power:g}"
         if not formula:
-            self.findings.lost(line.place, f"this rule is left out: it says {what}, and `{term}` is no set")
+            self.findings.lost(line.place, f"this rule is left out: it uses {what}, and `{term}` is not a set")
             return ""
         raised = formula if power == 1.0 else f"pow({formula}, {power:g})"
         name = f"{'not-' if negated else ''}{term}{'' if power == 1.0 else f'-{power:g}'}".replace(".", "_")
@@ -351,7 +350,7 @@ class _FisReader:
         while name in terms and terms[name] != shape:
             name += "_"
         terms[name] = shape
-        self.findings.changed(line.place, f"{what} is written as a term of its own, `{name}`")
+        self.findings.changed(line.place, f"{what} becomes a separate term, `{name}`")
         return name
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from lumen.formats.unused_names import unused_name
 
 MAX_RENAMED = 1000
-"""Ids of one file that become the same text; more take longer to find a number for."""
+"""Ids of one file that may become the same text; the search for a free number takes longer with more."""
 
 MAX_STATE_LEVELS = 40
 """Of nested states; a YAML file has two levels for each."""

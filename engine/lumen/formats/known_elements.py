@@ -1,6 +1,6 @@
-"""What a table of a format says of XML: attributes and elements that are not carried over, each at its place.
+"""Attributes and elements of XML that are not carried over, found with the table of a format.
 
-In a table the place is `<Key>`; it holds the names of attributes, and of elements as `<Tangent>`.
+The key of an element in the table is `<Key>`; its entry names attributes, and elements as `<Tangent>`.
 """
 
 from collections.abc import Callable
@@ -16,9 +16,9 @@ def tell_losses(
     findings: ConversionFindings,
     within: Callable[[XmlElement], bool] = lambda _: True,
 ) -> None:
-    """List what of an element, and of those within that the table has a place for, is not carried over.
+    """List the parts of an element, and of the elements in it that the table has, that are not carried over.
 
-    Of elements for which `within` is false only the name is looked at.
+    Only the name of an element is checked if `within` is false for it.
     """
     waiting = [element]
     while waiting:

@@ -1,4 +1,4 @@
-"""The sets of MATLAB and Octave as formulas of x: for what is derived of them, a complement or a power."""
+"""The sets of MATLAB and Octave as formulas of x, from which a complement or a power is derived."""
 
 from collections.abc import Callable, Mapping
 

@@ -22,4 +22,4 @@ TABLES: Mapping[str, FormatTable] = {
     "URDF": urdf.KNOWN,
     "MJCF": mjcf_known.KNOWN,
 }
-"""What of each format is read, lost or without meaning, by the kinds of places in a file."""
+"""The names of each format that are read, lost or without meaning, by the kind of place in a file."""

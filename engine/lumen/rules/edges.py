@@ -1,4 +1,4 @@
-"""Walks from where the robot starts against the ground of its hall: beyond the edge it falls."""
+"""Checks walks from the robot's start against the ground of its hall: beyond the edge the robot falls."""
 
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from math import cos, hypot, sin
@@ -19,14 +19,14 @@ WALK_BEYOND_GROUND = Code(
 )
 
 MAX_WAYS = 2_000
-"""Visits to states that are looked at: a behaviour may lead round in very many ways."""
+"""The most visits to states that are followed: the ways through a behaviour can be very many."""
 
 STEP = 0.02
-"""Distance between the points of a walk that are looked at [m]."""
+"""The distance between the points of a walk that are checked [m]."""
 
 
 class PlaceOnGround(NamedTuple):
-    """Where the robot stands [m], and how far it is turned to the left [rad], both since its start."""
+    """The robot's position [m] and its turn to the left [rad], both from its start."""
 
     x: float = 0.0
     y: float = 0.0
@@ -50,12 +50,12 @@ def check(draft: ProjectDraft) -> None:
     """Report walks and places off the ground, if no `stage` keeps the feet on it."""
     settings, body = draft.settings, draft.body
     if settings is None or settings.stage is not None or len(settings.robots) > 1:
-        return  # several robots start at several places
+        return  # several robots start at different places
     if draft.main is None or body is None or body.roles.base.kind is BaseKind.FIXED:
         return
     parts = ground_of(draft, settings.hall)
     if not covered(parts, GroundPoint(0.0, 0.0)):
-        return  # fields of heights and meshes are not read
+        return  # height fields and meshes are not read
     hint = f"the ground goes {reach(parts)}: stay within it, or give lumen.yaml a `stage` that the feet never leave"
     for name, place in settings.places.items():
         if not covered(parts, GroundPoint(place.x, place.y)):
@@ -72,15 +72,15 @@ def check(draft: ProjectDraft) -> None:
 class _Ways:
     """The ways on which a behaviour can lead the robot from its start, each walk once on a way.
 
-    Guards are taken to hold. A walk that may be broken off, or that another behaviour may order, makes it unknown where
-    the robot is: nothing is reported of what follows.
+    Guards are assumed to hold. After a walk that may be interrupted, or that another behaviour may request, the robot's
+    position is unknown: nothing is reported for later walks.
     """
 
     def __init__(self, machine: MachineDefinition, parts: Sequence[Obstacle], places: Mapping[str, HallPlace]) -> None:
         self._machine, self._parts, self._places = machine, parts, places
 
     def strays(self) -> Iterator[Stray]:
-        """Each walk that leaves the ground; a walk comes several times if several ways lead to it."""
+        """Yield each walk that leaves the ground; a walk is repeated if several ways lead to it."""
         waiting: list[tuple[str, PlaceOnGround, frozenset[NodePath]]] = [("", PlaceOnGround(), frozenset())]
         seen = set(waiting)
         while waiting and len(seen) < MAX_WAYS:
@@ -113,14 +113,14 @@ class _Ways:
     def _begun(
         self, steps: Sequence[PlacedAction], pose: PlaceOnGround | None, made: set[NodePath]
     ) -> Generator[Stray, None, PlaceOnGround | None]:
-        """Actions that nothing waits for: after a walk it is unknown where the robot is."""
+        """Follow actions that run without a wait: after a walk among them the position is unknown."""
         after = yield from self._block(steps, pose, made)
         return None if any(_moves(steps)) else after
 
     def _block(
         self, steps: Iterable[PlacedAction], pose: PlaceOnGround | None, made: set[NodePath]
     ) -> Generator[Stray, None, PlaceOnGround | None]:
-        """Where the robot is after some actions, None if that is unknown."""
+        """Follow actions in their order; return the robot's pose after them, None if it is unknown."""
         for step in steps:
             if pose is None:
                 return None
@@ -164,7 +164,7 @@ class _Ways:
             at = self._machine.states[at].parent
 
     def _within(self, state: State) -> Iterable[str]:
-        """The states that are entered with a state; none if several of them walk at once."""
+        """The states that are entered with a state; none if several of them may walk at the same time."""
         if state.kind is not StateKind.PARALLEL:
             return state.initial
         return state.children if sum(map(self._walks, state.children)) <= 1 else ()
@@ -177,5 +177,5 @@ class _Ways:
 
 
 def _moves(steps: Sequence[PlacedAction]) -> Iterator[bool]:
-    """For each action, those within others too, whether it makes the robot walk."""
+    """For each action, nested ones included, whether it makes the robot walk."""
     return (isinstance(step.action, Walk | GoTo | Move) for step in nested(tuple(steps)))

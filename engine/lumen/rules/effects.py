@@ -18,7 +18,7 @@ BAD_SOUND = Code("bad-sound", "motions", WARNING, "a sound file can't be played"
 
 
 _AFTER_ENTRY = ("do", "invoke", "on", "hears", "after", "at", "onDone", "onError", "buttons")
-"""Keys of a state that mean something only while it is active."""
+"""Keys of a state that have an effect only while it is active."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -52,7 +52,7 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report `reenter` where nothing is left that would not be left anyway, and `onError` where nothing can fail."""
+    """Report a `reenter` that exits no additional state, and an `onError` without anything that can fail."""
     for state in machine.states.values():
         for transition in state.transitions:
             path = (*transition.where, "reenter")
@@ -78,7 +78,7 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _leaves_at_once(state: State) -> Transition | None:
-    """The `always` by which a state is left as soon as it is entered, whatever guards say."""
+    """The `always` without a guard by which a state is left as soon as it is entered."""
     if state.kind is not StateKind.ATOMIC or state.parent is None:
         return None
     return next(

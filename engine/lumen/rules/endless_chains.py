@@ -1,4 +1,4 @@
-"""States that lead back to themselves without a guard and without time: by events, `do`, `invoke`, `after: 0s`."""
+"""Finds states that lead back to themselves without a guard or a delay: by events, `do`, `invoke`, `after: 0s`."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -32,19 +32,19 @@ ENDLESS_CHAIN = Code(
 )
 
 MAX_STEPS = 1000
-"""Events and transitions of a chain that are followed, as many as the engine takes without a rest."""
+"""The most events and transitions of a chain that are followed: as many as the engine processes without a rest."""
 
 MAX_STEPS_TO_REST = 20
-"""Events and transitions after which a state that was entered should rest."""
+"""The number of events and transitions after which an entered state should rest."""
 
 MAX_WORK = 30_000
-"""States that are looked at for the chains of one behaviour; what is left then is not followed."""
+"""The most states that are visited for the chains of one behaviour; further chains are not followed."""
 
 MAX_SHOWN_TRANSITIONS = 6
-"""Transitions of a chain that its message names."""
+"""The number of transitions of a chain that its message names."""
 
 MAX_INVOKED = 4
-"""Behaviours within behaviours that are followed."""
+"""The depth of invoked behaviours that are followed."""
 
 _INSTANT = (Assign, CancelSend, If, LogText, Parallel, PublishBody, Raise, Send, Wait)
 
@@ -53,12 +53,12 @@ _Taken = tuple[Transition, str]
 
 
 class _UncertainError(Exception):
-    """What comes next depends on a guard, on a list, or on states that nobody can know."""
+    """The next transition can't be predicted: it depends on a guard, a list, or unknown states."""
 
 
 @dataclass
 class _Survey:
-    """What all chains of a machine share: the order of its states, the situations that were seen, and the work done."""
+    """Shared data of all chains of a machine: the order of its states, the situations seen, and the work done."""
 
     machine: MachineDefinition
     order: Mapping[str, int]
@@ -77,10 +77,10 @@ class _Survey:
 
 @dataclass
 class _Chain:
-    """A machine that is followed for as long as no time passes and nothing is left to chance.
+    """A machine that is followed while no time passes and each next transition is certain.
 
     `active` are the paths of the active states, `begun` those whose `do` and `invoke` have begun; `unknown` are regions
-    beside the active states in which any state may be active.
+    parallel to the active states in which any state may be active.
     """
 
     survey: _Survey
@@ -90,12 +90,12 @@ class _Chain:
     unknown: set[str] = field(default_factory=set)
     internal: tuple[str, ...] = ()
     timers: list[Transition | str] = field(default_factory=list)
-    """Each `after: 0s` and each event that is sent, in their order: they come when no time has passed, yet later."""
+    """Each `after: 0s` and each sent event, in their order: they come after the internal events, in the same moment."""
     taken: list[_Taken] = field(default_factory=list)
     asked: list[tuple[int, str]] = field(default_factory=list)
-    """Guards of `always` that are taken for false, as they are shown, each with how many were taken before."""
+    """Guards of `always` that are assumed false, each with the number of transitions taken before it, and as shown."""
     assigned: int = -1
-    """How many were taken before the last change of the context."""
+    """The number of transitions taken before the last change of the context."""
     over: bool = False
 
     @property
@@ -103,12 +103,12 @@ class _Chain:
         return self.survey.machine
 
     def situation(self) -> tuple[object, ...]:
-        """All that decides what comes next."""
+        """Everything that decides the next transition."""
         timers = tuple(timer if isinstance(timer, str) else id(timer) for timer in self.timers)
         return frozenset(self.active), frozenset(self.begun), self.internal, timers
 
     def stand_around(self, path: str) -> None:
-        """Let the states around that one be active, as if they had been for a while."""
+        """Mark the states around that one as active, as if they had been active for a while."""
         while (outer := self.machine.states[path].parent) is not None:
             if self.machine.states[outer].kind is StateKind.PARALLEL:
                 self.unknown.update(region for region in _regions(self.machine, outer) if region != path)
@@ -148,7 +148,7 @@ class _Chain:
                 self._end(state)
 
     def step(self) -> bool:
-        """Take what is enabled, or the next event; False if it rests, or is over."""
+        """Take the enabled transitions, or those of the next event; return False if the machine rests, or is over."""
         if self.over:
             return False
         self.survey.work += len(self.active)
@@ -165,7 +165,7 @@ class _Chain:
                     self.take([timer] if self._holds(timer) else [], timer.event)
                     return True
                 if any(self.machine.states[path].invoke for path in self.active):
-                    raise _UncertainError  # they hear it, too
+                    raise _UncertainError  # they receive it, too
                 event = timer
             else:
                 return False
@@ -174,7 +174,7 @@ class _Chain:
         return True
 
     def take(self, transitions: Sequence[Transition], event: str) -> None:
-        """Take these at once; of two that leave the same states the inner or the earlier one is taken."""
+        """Take these in one step; of two that leave the same states only the inner or the earlier one."""
         kept: list[Transition] = []
         for transition in transitions:
             rivals = [other for other in kept if self._conflict(transition, other)]
@@ -207,7 +207,7 @@ class _Chain:
             self.unknown.discard(region)
 
     def _begin(self) -> None:
-        """Begin each `do` up to what takes time in it, and what is invoked."""
+        """Begin each `do`, up to its first action that takes time, and each invoked behaviour."""
         for state in [s for s in self._in_order(self.active) if s.path not in self.begun]:
             self.begun.add(state.path)
             for invoke in state.invoke:
@@ -237,7 +237,7 @@ class _Chain:
             path = state.parent or ""
 
     def _is_final(self, path: str) -> bool:
-        """Whether a state has come to its end; raises _UncertainError if a region of it is unknown."""
+        """Whether a state has ended; raises _UncertainError if a region of it is unknown."""
         state = self.machine.states[path]
         if path in self.unknown:
             raise _UncertainError
@@ -263,7 +263,7 @@ class _Chain:
         return found
 
     def _holds(self, transition: Transition) -> bool:
-        """Whether a selected transition is taken; a guard of `always` that only the context decides may be false."""
+        """Whether a selected transition is taken; a guard of `always` that uses only the context may be false."""
         if transition.hears or transition.approve:
             raise _UncertainError
         if transition.guard is None:
@@ -305,10 +305,10 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _beginnings(machine: MachineDefinition) -> Iterator[_Chain]:
-    """The machine as it begins, and what each transition of a state brings about in which it may rest."""
+    """Yield a chain for each transition of a state in which the machine may rest, and one for its beginning."""
     survey = _survey(machine)
     stays: dict[str | None, bool] = {None: True}
-    for state in machine.states.values():  # each behind the one around it
+    for state in machine.states.values():  # each after the one around it
         stays[state.path] = stays[state.parent] and _stays(survey, state)
         for transition in state.transitions if stays[state.path] else ():
             if not transition.event or not (transition.targets or _speaks(transition.actions)):
@@ -332,7 +332,7 @@ def _beginnings(machine: MachineDefinition) -> Iterator[_Chain]:
 
 
 def _stays(survey: _Survey, state: State) -> bool:
-    """Whether a state is still active at the next rest after it was entered, as far as anybody can tell."""
+    """Whether a state is still active at the next rest after it was entered; True if that is uncertain."""
     chain = _Chain(survey)
     try:
         chain.stand_around(state.path)
@@ -352,7 +352,7 @@ def _survey(machine: MachineDefinition) -> _Survey:
 
 
 def _round(chain: _Chain) -> list[_Taken]:
-    """The transitions that lead from a situation back to it, or on and on; empty if it rests, or if nobody can tell."""
+    """The transitions of a round back to a situation, or without end; empty if the chain rests or is uncertain."""
     seen: dict[tuple[object, ...], int] = {}
     try:
         for _ in range(MAX_STEPS):
@@ -367,13 +367,13 @@ def _round(chain: _Chain) -> list[_Taken]:
                 return []
     except _UncertainError:
         return []
-    *before, last = chain.taken  # the events become more and more
+    *before, last = chain.taken  # the number of events grows without end
     back = next((i for i, (other, _) in enumerate(reversed(before)) if other is last[0]), 0)
     return _settled(chain, chain.taken[-back - 1 :])
 
 
 def _settled(chain: _Chain, around: list[_Taken]) -> list[_Taken]:
-    """A round, unless it changes what a guard asks for; another rule has `always` alone from atomic state to state."""
+    """Return a round, unless it changes the context of a guard, or has only `always` of atomic states."""
     asked = _asked(chain, len(around))
     if asked and chain.assigned > len(chain.taken) - len(around):
         return []
@@ -383,12 +383,12 @@ def _settled(chain: _Chain, around: list[_Taken]) -> list[_Taken]:
 
 
 def _asked(chain: _Chain, number: int) -> list[str]:
-    """The guards that the last transitions depend on."""
+    """The guards on which the last transitions depend."""
     return list(dict.fromkeys(shown for before, shown in chain.asked if before >= len(chain.taken) - number))
 
 
 def _is_over_at_once(machine: MachineDefinition, depth: int) -> bool:
-    """Whether a behaviour ends as soon as it begins; raises _UncertainError if that depends on anything."""
+    """Whether a behaviour ends as soon as it begins; raises _UncertainError if that is not certain."""
     chain = _Chain(_survey(machine), depth)
     chain.enter(("",), None)
     for _ in range(MAX_STEPS):
@@ -423,7 +423,7 @@ def _speaks(block: Sequence[PlacedAction], to: str = "") -> bool:
 
 
 def _is_instant(step: PlacedAction) -> bool:
-    """Whether an action of a `do` takes no time by itself."""
+    """Whether an action of a `do` ends at once."""
     return isinstance(step.action, _INSTANT) and (not isinstance(step.action, Wait) or step.action.seconds == 0)
 
 

@@ -30,7 +30,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def ground_of(draft: ProjectDraft, hall: str) -> tuple[Obstacle, ...]:
-    """What the robot can stand on in a hall of the project; nothing if that is unknown."""
+    """The ground of a hall of the project, for the robot's feet; empty if it is unknown."""
     content = draft.files.get(f"models/{hall}") or draft.lent.get(f"models/{hall}")
     return ground(content) if content else ()
 
@@ -41,7 +41,7 @@ def covered(parts: Iterable[Obstacle], point: GroundPoint) -> bool:
 
 
 def reach(parts: Iterable[Obstacle]) -> str:
-    """How far the ground reaches that is under the start."""
+    """The extent of the ground under the start, in words."""
     part = next(part for part in parts if part.distance(GroundPoint(0.0, 0.0)) < 1e-6)
     length, width = part.length + part.round, part.width + part.round
     x, y = (part.x - length, part.x + length), (part.y - width, part.y + width)

@@ -96,7 +96,7 @@ def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> N
 
 
 def _taken_within(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
-    """Ends of what a state invokes that whatever is active within it takes first."""
+    """Report ends of invoked behaviours that the states within always take first."""
     inner = [s for s in machine.states.values() if s.path != state.path and within(s.path, state.path)]
     leaves = [s for s in inner if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
     for end in (t for t in state.transitions if t.where[len(state.where) :][:1] == ("invoke",)):
@@ -113,7 +113,7 @@ def _taken_within(machine: MachineDefinition, state: State, report: DocumentRepo
 
 
 def _takes(transition: Transition, end: Transition) -> bool:
-    """Whether a transition takes the end of something, whatever guards say."""
+    """Whether a transition is always selected by the event of an end."""
     return not (transition.guard or transition.hears or transition.approve) and covers(transition, end)
 
 
@@ -128,7 +128,7 @@ def covers(earlier: Transition, later: Transition) -> bool:
     """Whether every event that the later one waits for comes to the earlier one first.
 
     Among rows of `hears` the words of their phrases decide, except between candidates of one row. The end of a `do`, of
-    states within and of an invoked behaviour is an event too, which `*` and `done` take; the end of a timer is not.
+    nested states and of an invoked behaviour is also an event, which `*` and `done` match; the end of a timer is not.
     """
     if earlier.timed != later.timed:
         return False

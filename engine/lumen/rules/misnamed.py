@@ -1,4 +1,4 @@
-"""Files of the project's folders that nothing reads because their name is nearly right."""
+"""Files of the project's folders that are not read because their names are only nearly right."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from lumen.loading.project import MISSING_FILE, NOT_READ
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report endings in other letters or with another one behind them, and folders with capital letters."""
+    """Report endings with capital letters or followed by another ending, and folders with capital letters."""
     if draft.root is None:
         return
     for folder in ("", *sorted(FOLDERS)):

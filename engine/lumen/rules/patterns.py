@@ -152,9 +152,9 @@ def _foreign(phrase: WrittenPhrase) -> None:
 
 
 def _separator(phrase: WrittenPhrase) -> str:
-    """The sign between alternatives in one text; empty if there is none.
+    """The sign between alternatives in one text; empty if the text holds a single phrase.
 
-    A single comma in a phrase of a list may belong to a sentence: who wrote it knows how to write several phrases.
+    A single comma in a phrase of a list may belong to a sentence: the author already uses a list for several phrases.
     """
     text = phrase.text
     if "\n" in text.strip():

@@ -13,7 +13,7 @@ CROSSES_REGIONS = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report transitions that leave regions in which nothing of them is written."""
+    """Report transitions that leave regions other than their own."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for state in machine.states.values():

@@ -56,7 +56,7 @@ def _idle(block: RuleBlock, report: DocumentReport) -> None:
 
 
 def _hedged(block: RuleBlock, report: DocumentReport) -> None:
-    """Report `not` and `any` in conclusions, and other hedges that count for what is concluded behind them, too."""
+    """Report `not` and `any` in conclusions, and other hedges that also change later conclusions of the rule."""
     for rule in block.rules:
         for i, one in enumerate(rule.consequents):
             said = f"`{one.variable} is {' '.join((*one.hedges, one.term))}`"

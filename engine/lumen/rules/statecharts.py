@@ -38,7 +38,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def within(path: str, other: str) -> bool:
-    """Whether a state is the other one, or lies in it."""
+    """Whether a state is the other one, or is in it."""
     return path == other or not other or path.startswith(f"{other}.")
 
 

@@ -37,7 +37,7 @@ _OF_OTHERS = re.compile(
     r"\{%.*?%\}|\{#.*?#\}|[$#]\{\s*(?P<certain>\w+)\s*\}|(?<!\{)\{\s*(?P<braces>[^\W\d]\w*)\s*\}(?!\})"
     r"|%\((?P<percent>\w+)\)s|%(?P<signs>\w+)%|\$(?P<dollar>\w+)|<(?P<angles>\w+)>|\[(?P<square>\w+)\]"
 )
-"""A value to fill in, or a condition, as Python, JavaScript, Jinja, Liquid or a shell have it: by its name alone."""
+"""A placeholder or a condition in the form of Python, JavaScript, Jinja, Liquid or a shell."""
 _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 
@@ -129,7 +129,7 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _foreign(found: re.Match[str], machine: MachineDefinition) -> tuple[str, str] | None:
-    """A hole as others write it, and what to write; None if it may be meant as a text."""
+    """A placeholder in the form of another tool, and the hint; None if it may be meant as text."""
     if found[0].startswith("{%"):
         return found[0], "texts have no `{% … %}`: write `{{ CONDITION ? 'one text' : 'another' }}`"
     if found[0].startswith("{#"):

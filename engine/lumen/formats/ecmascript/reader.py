@@ -38,8 +38,8 @@ class ScriptNames:
     """What the names in a document stand for.
 
     `context` maps the data model's names to context keys, `kinds` those keys to the kinds they keep (absent: any);
-    `states` maps the ids for `In()` to ours, `events` the names of events that are others here, and `title` is what
-    `_name` is.
+    `states` maps the ids for `In()` to ours, `events` the names of events that differ here; `title` is the value of
+    `_name`.
     """
 
     context: Mapping[str, str] = field(default_factory=dict)

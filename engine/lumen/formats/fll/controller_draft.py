@@ -87,7 +87,7 @@ class ControllerDraft:
             return
         terms = spec.setdefault("terms", {})
         ours = self.fresh(name, terms, place)
-        self.own_terms(spec)[name] = ours  # of two that are called alike FuzzyLite's rules mean the last
+        self.own_terms(spec)[name] = ours  # FuzzyLite's rules mean the last one of a name
         height = None
         if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERM_PARAMETERS[kind]) + 1:
             *values, height = values

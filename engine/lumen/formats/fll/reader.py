@@ -29,7 +29,7 @@ KNOWN: FormatTable = {
         meaningless={"RuleBlock": "the name of a single block, or of one without rules"},
     ),
 }
-"""What of an engine is carried over, by the part."""
+"""The parts of an engine that are carried over, by kind."""
 
 _FLAGS = ("enabled", "lock-range", "lock-previous")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
@@ -70,7 +70,7 @@ class _FllReader(FllLineReader):
                 self.draft.data["description"] = line.value or self.draft.data["description"]
 
     def known(self, part: FllPart) -> None:
-        """List the keys of a part that nothing reads, those that come twice, and flags that are neither of two."""
+        """List the keys of a part that nothing reads, repeated ones, and flags that are neither `true` nor `false`."""
         kind = {"Engine": "an engine", "RuleBlock": "a rule block"}.get(part.head.key, "a variable")
         seen = set[str]()
         for line in part.lines:
@@ -137,7 +137,7 @@ class _FllReader(FllLineReader):
             elif word == "Tsukamoto" and method in WEIGHTED_DEFUZZIFIERS:
                 continue  # our terms imply it
             elif word not in ("Automatic", "TakagiSugeno") or method not in WEIGHTED_DEFUZZIFIERS:
-                self.lost(line, f"`{word}` can't be said of a defuzzifier")
+                self.lost(line, f"`{word}` is not for defuzzifiers")
         return method
 
     def term(self, side: str, variable: str, spec: dict[str, Any], line: FllLine) -> None:

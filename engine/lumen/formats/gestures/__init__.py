@@ -21,8 +21,8 @@ def read_gesture(
 ) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a motion file for that body, and what could not be carried over; by the file's ending.
 
-    `timeline` is the one of a .xar to read, or a function of a .py; with `retime` the motion takes as long as its
-    joints need. Raises ForeignFileError where the file holds no motion.
+    `timeline` names the timeline of a .xar, or the function of a .py; with `retime` the motion lasts as long as its
+    joints need. Raises ForeignFileError if the file holds no motion.
     """
     findings = ConversionFindings()
     curves = _curves(file, content, body, findings, timeline)

@@ -2,8 +2,8 @@
 
 Aldebaran's project format 3: `Timeline fps` > `ActuatorList` > `ActuatorCurve actuator unit` > `Key frame value` >
 `Tangent side abscissaParam ordinateParam interpType`. Degrees, and a hand's opening from 0 to 1; frame / fps is a time.
-Keys before the Start flag (`start_frame`) and behind the End flag (`end_frame`, -1 for none) are not played. A library
-of boxes holds the same as a project.
+Keys before the Start flag (`start_frame`) and after the End flag (`end_frame`, -1 for none) are not played. Box
+libraries have the same form as projects.
 """
 
 from collections.abc import Collection, Iterator
@@ -68,29 +68,29 @@ KNOWN: FormatTable = {
     "<Tangent>": Known(frozenset(("side", "abscissaParam", "ordinateParam", "interpType"))),
     "interpType": Known(frozenset(("bezier", "bezier_auto", "linear", "constant"))),
 }
-"""What of a `.xar` is carried over; boxes other than that of the timeline are listed as a whole."""
+"""The parts of a `.xar` that are carried over; boxes other than the timeline's are listed as a whole."""
 
 Timelines = dict[str, XmlElement]
 
 
 class Flags(NamedTuple):
-    """The frames from which and up to which a timeline is played, and how many of them are a second."""
+    """The first and last frame of a timeline that are played, and the frames per second."""
 
     first: float
     last: float
     fps: float
 
     def time(self, frame: float) -> float:
-        """When a frame is come to [s]; the first one is number 1."""
+        """The time of a frame [s]; the first frame is number 1."""
         return (frame - self.first + 1) / self.fps
 
 
 def read_choregraphe(
     file: str, content: bytes, findings: ConversionFindings, timeline: str = "", hands: Collection[str] = ()
 ) -> JointCurves:
-    """The curves of the timeline of that name; of the only one without a name. Raises ForeignFileError.
+    """The curves of the timeline of that name, or of the only one if no name is given. Raises ForeignFileError.
 
-    `hands` are those of the robot, beside NAO's: their keys are openings.
+    `hands` are the robot's hands besides NAO's: their keys are openings.
     """
     root = parse_xml(file, content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
@@ -121,7 +121,7 @@ def read_choregraphe(
 
 
 def choregraphe_list(content: bytes) -> str:
-    """What to import instead of a `.pml`, which lists the files of a project; empty if it is no such list."""
+    """Name the files to import instead of a `.pml`, the file list of a project; empty if this is no such list."""
     if b"<Package" not in content[:1_000]:
         return ""
     try:
@@ -136,7 +136,7 @@ def choregraphe_list(content: bytes) -> str:
 
 
 def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
-    """List what is unknown in the timeline and in what is around it, and code that goes with it."""
+    """List unknown parts of the timeline and of the boxes around it, and the code that runs with it."""
     way = _way(root, chosen)
     seen = {id(element) for element in way}
     waiting = [chosen]
@@ -167,7 +167,7 @@ def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
 
 
 def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
-    """The Start flag, 1 if there is none, and the End flag, -1 if there is none."""
+    """The Start flag (default 1) and the End flag (default -1)."""
     found = {}
     for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):
         said = timeline.get(flag, f"{none:g}")
@@ -186,7 +186,7 @@ def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
 def _played(
     keys: list[XmlElement], curve: XmlElement, flags: Flags, findings: ConversionFindings
 ) -> Iterator[XmlElement]:
-    """The keys between the flags; that others are not played is listed once for each curve."""
+    """Yield the keys between the flags; the others are listed once per curve."""
     outside = []
     for key in keys:
         frame = number(key.get("frame"))
@@ -276,7 +276,7 @@ def _points(
                 findings.lost(tangent.place, f"`{joint}` moves here by `{kind[:20]}`, which is unknown", hint)
         kinds = {tangent.get("interpType") for tangent in tangents.values()}
         if "constant" in kinds:
-            findings.changed(key.place, f"`{joint}` jumps here; no joint does, so it goes in a line")
+            findings.changed(key.place, f"`{joint}` jumps here; no joint can jump, so it moves in a straight line")
         left = tangents.get("left")
         straight = left is not None and left.get("interpType") in ("linear", "constant")
         into, out = (_handle(tangents.get(side), flags.fps, factor, findings) for side in ("left", "right"))
@@ -284,7 +284,7 @@ def _points(
 
 
 def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> float:
-    """What a key's value is multiplied by: [rad], or a hand's opening, which `unit` does not change."""
+    """The factor of a key's value, for [rad] or a hand's opening; `unit` does not change it."""
     joint, unit, usual = curve.get("actuator"), curve.get("unit"), "1" if hand else "0"
     if unit not in ("", usual):
         meant = "an opening from 0 to 1" if hand else "an angle in degrees"

@@ -2,8 +2,8 @@
 
 NAOqi's ALMotion: `angleInterpolationBezier(names, times, keys)`, each key `[angle, [type, dt, da], [type, dt, da]]`,
 and `angleInterpolation(names, angles, times, isAbsolute)`; times in [s], angles in [rad]. Statements are followed in
-their order, and functions of the file where they are called. If nothing is called, each function that moves joints, or
-returns the lists for it, is a motion of its own.
+their order, and functions of the file at their calls. If nothing is called, each function that moves joints, or
+returns the lists for it, is a separate motion.
 """
 
 import ast
@@ -65,7 +65,7 @@ class _TooManyStepsError(Exception):
 
 
 def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: str, rounds: int) -> JointCurves:
-    """The curves, with loops followed for at most so many rounds."""
+    """The curves, with at most `rounds` rounds of each loop."""
     own = OwnFunctions(tree)
     reading = _Reading(file, findings, tree, own, rounds)
     function = _chosen(file, tree, own, findings, timeline)
@@ -90,7 +90,7 @@ def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: s
 def _chosen(
     file: str, tree: ast.Module, own: OwnFunctions, findings: ConversionFindings, name: str
 ) -> FunctionNode | None:
-    """The function that is the motion; None for what the file does when it is run."""
+    """The function that is the motion; None for the statements that run with the file."""
     gestures = {name: function for name, function in own.all.items() if own.is_gesture(function.body)}
     if name:
         if name not in gestures:
@@ -153,7 +153,7 @@ class _Reading:
         self.called = False
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow statements in their order; what they return, None if that is not written out."""
+        """Follow statements in their order; return their result, None if it is not written out."""
         for statement, branch in statements(body, around, self._items):
             self.steps += 1
             if self.steps > MAX_STEPS:
@@ -169,7 +169,7 @@ class _Reading:
         return None
 
     def _items(self, loop: ast.For) -> list[ast.expr] | None:
-        """What the variable of a loop is in each round; None if that is not written out, or is very much."""
+        """The values of a loop's variable, one per round; None if they are not written out, or are too many."""
         if has_jumps(loop):
             return None
         rounds: list[ast.expr]
@@ -194,7 +194,7 @@ class _Reading:
         return rounds
 
     def enter(self, function: FunctionNode, given: Mapping[str, Any], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow a function with its own variables; what it returns."""
+        """Follow a function with its own variables; return its result."""
         outer, shared = self.values, self.shared
         self.values, self.shared = {**self.globals, **self._defaults(function), **given}, set()
         self.entered.append(function.name)
@@ -205,7 +205,7 @@ class _Reading:
         return result
 
     def _defaults(self, function: FunctionNode) -> dict[str, Any]:
-        """The parameters that a function has without being handed them; unknown ones hide the file's variables."""
+        """The default values of a function's parameters; a parameter without one is None and hides a global."""
         given = function.args
         names = [argument.arg for argument in (*given.posonlyargs, *given.args)]
         pairs = [*zip(reversed(names), reversed(given.defaults), strict=False)]
@@ -232,7 +232,7 @@ class _Reading:
             self.changes.append((changed, statement, branch if followed else Branch.LOOP))
 
     def _called(self, call: ast.Call, statement: ast.stmt, branch: Branch, *, told: bool) -> None:
-        """Carry out a call, or list it; `told` if a value that is not written out is listed there anyway."""
+        """Follow a call, or list it; `told` if one of its values is already listed as not written out."""
         name, shown = attribute(call), written(call).partition("\n")[0][:60]
         if name in ALMOTION_CALLS and self.own.called(call) is None:
             self.used.update(name for argument in call.args for name in _names(argument))
@@ -248,7 +248,7 @@ class _Reading:
                 self.findings.lost(self._place(call), f"`{shown}` is left out", hint)
 
     def _own(self, call: ast.Call, function: FunctionNode, statement: ast.stmt, branch: Branch) -> None:
-        """Follow a function of the file with what it is handed."""
+        """Follow a function of the file with its arguments."""
         if function.name in self.entered:
             self.findings.lost(self._place(call), f"`{function.name}` calls itself: here it does once")
             return
@@ -268,7 +268,7 @@ class _Reading:
                 self.changes.append((frozenset(outside), statement, how))
 
     def _pause(self, call: ast.Call, name: str, branch: Branch) -> None:
-        """What comes later begins that much later, or after all that has begun."""
+        """Delay all later movements by a pause, or until all movements so far have ended."""
         if name == WAIT:
             self.begin = max(self.begin, self.end)
             return
@@ -287,12 +287,12 @@ class _Reading:
         self.begin += float(seconds)
 
     def _is_stiff(self, call: ast.Call) -> bool:
-        """Whether a call makes motors as stiff as they can be."""
+        """Whether a call sets motors to full stiffness."""
         stiffness = self._value(call.args[1]) if len(call.args) > 1 else None
         return all(part == 1 for part in (stiffness if isinstance(stiffness, list) else [stiffness]))
 
     def _value(self, node: ast.expr) -> Any:
-        """The value of what is written out, or of a call that was followed; else None."""
+        """The value of a literal expression, or of a call that was followed; else None."""
         if id(node) in self.returned:
             return self.returned[id(node)]
         try:
@@ -357,7 +357,7 @@ class _Reading:
             return
         for joint, (moments, angles) in zip(joints, rows, strict=True):
             curve = self.curves.setdefault(joint, [])
-            if curve and curve[-1].time < begin:  # it stays where it is until this call begins
+            if curve and curve[-1].time < begin:  # hold the angle until this call begins
                 curve.append(CurvePoint(begin, curve[-1].angle, self._place(node), straight=True))
             for point in self._points(self.named.get(joint, node), joint, moments, angles):
                 curve.append(point._replace(time=begin + point.time))
@@ -449,7 +449,7 @@ def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]
 
 
 def _is_posted(node: ast.AST) -> bool:
-    """Whether the script goes on while the robot moves: `motion.post.…`, or qi's `_async=True`."""
+    """Whether the script continues while the robot moves: `motion.post.…`, or qi's `_async=True`."""
     if not isinstance(node, ast.Call):
         return False
     return ".post." in written(node.func) or any(

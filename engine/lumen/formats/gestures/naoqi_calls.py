@@ -1,4 +1,4 @@
-"""The calls of a Python script for NAOqi: which move joints, which are left out, and which change nothing of a motion.
+"""The calls of a Python script for NAOqi: those that move joints, are left out, or don't change a motion.
 
 The order of joints in a chain is ALMotion's ("Joints", "Effectors & Chains" of NAOqi's documentation).
 """
@@ -77,7 +77,7 @@ KNOWN: FormatTable = {
     "call": CALLS,
     "handle": Known(frozenset(("type", "time", "angle")), meaningless={"after the last key": "no movement follows"}),
 }
-"""What of a script is carried over: calls by name, whoever is called (`get…` stands for all that begin so), and the
+"""The parts of a script that are carried over: calls, by name alone (`get…` means all that begin with `get`), and the
 handles of a key, `[3, -0.1, 0]`."""
 
 

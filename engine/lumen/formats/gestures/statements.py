@@ -21,9 +21,9 @@ class Branch(Enum):
 def statements(
     body: list[ast.stmt], around: Branch, items: Callable[[ast.For], list[ast.expr] | None]
 ) -> Iterator[tuple[ast.stmt, Branch]]:
-    """The simple statements, and functions and classes as a whole; what is asked by a compound one is one, too.
+    """Yield the simple statements, whole functions and classes, and the expressions that open compound statements.
 
-    What handles exceptions counts as an `else`. A loop is as many rounds as `items` finds values for its variable.
+    An exception handler counts as an `else`. A loop has as many rounds as `items` finds values for its variable.
     """
     waiting = [(statement, around) for statement in reversed(body)]
     while waiting:
@@ -84,7 +84,7 @@ FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class OwnFunctions:
-    """The functions and methods that a file defines, by name; of two that are called alike the last one."""
+    """The functions and methods that a file defines, by name; the last one of a name counts."""
 
     def __init__(self, tree: ast.Module) -> None:
         self.plain: dict[str, FunctionNode] = {}
@@ -173,7 +173,7 @@ def lists_of(body: list[ast.stmt]) -> NamedLists | None:
 
 
 def attribute(call: ast.Call) -> str:
-    """The last word of what is called."""
+    """The last part of the name in a call: `move` of `motion.move()`."""
     match call.func:
         case ast.Name(id=name) | ast.Attribute(attr=name):
             return name

@@ -22,7 +22,7 @@ KNOWN: FormatTable = {
     "first line": Known(frozenset(("#WEBOTS_MOTION", "V1.0", "V1.1", "joint"))),
     "pose": Known(frozenset(("time", "angle", "*")), lost={"name": "keyframes of ours have none"}),
 }
-"""What of a `.motion` is carried over: the cells of its lines, by what they are."""
+"""The parts of a `.motion` that are carried over: the cells of its lines, by kind."""
 
 _TIME = re.compile(r"(?:(?:(\d{1,6}):)?(\d{1,6}):)?(\d{1,9})", re.ASCII)
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)

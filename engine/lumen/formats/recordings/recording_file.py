@@ -105,7 +105,7 @@ class RecordingFile:
 
 
 def renamed(wanted: Path, path: Path) -> str:
-    """What to tell of a recording that has another name than the one that was wanted; empty if it has that one."""
+    """Return a notice if a recording could not get the wanted name; empty if it has it."""
     return f"{wanted} is there already: this recording is {path}" if path != wanted else ""
 
 

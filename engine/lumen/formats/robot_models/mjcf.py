@@ -60,13 +60,13 @@ class _MjcfReader:
         self.sites: dict[str, str] = {}
 
     def one_of(self, element: XmlElement, said: str, name: str, words: tuple[str, ...]) -> None:
-        """Report a value that is none of those that MuJoCo reads."""
+        """Report a value that MuJoCo does not accept."""
         if said not in words:
             message = f"`{name}` is `{said[:40]}`: it is read as `{words[-1]}`"
             self.findings.lost(element.place, message, f"MuJoCo reads {', '.join(words)}")
 
     def classed(self, element: XmlElement, childclass: str = "") -> XmlElement:
-        """The element with what its class says; a class that is not there is listed."""
+        """The element with the defaults of its class; a missing class is listed."""
         for name in (element.get("class"), childclass):
             if not self.defaults.has(name):
                 hint = "MuJoCo refuses the model: correct the name, or write the class into `<default>`"
@@ -207,7 +207,7 @@ class _MjcfReader:
             self.findings.changed(motor.place, message, "give the joint this `range` in the body")
 
     def gear(self, motor: XmlElement) -> float:
-        """How far the motor turns for each turn of the joint."""
+        """The turns of the motor for each turn of the joint."""
         return float(word) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
 
     def effort(self, joint: XmlElement, motor: XmlElement | None) -> float | None:

@@ -1,6 +1,6 @@
-"""What of an MJCF goes into a body file. The model itself stays as it is: all else of it is MuJoCo's.
+"""The parts of an MJCF that go into a body file. The model itself is not changed; MuJoCo reads the rest of it.
 
-The names are those of MuJoCo 3 (`mj_printSchema`): one that is in no table is misspelt, and MuJoCo would refuse it.
+The names are those of MuJoCo 3 (`mj_printSchema`): a name in no table is misspelt, and MuJoCo would refuse it.
 """
 
 from lumen.formats.known import FormatTable, Known

@@ -70,7 +70,7 @@ class RobotModel:
 
 
 def follows(follower: str, leader: str) -> tuple[str, str]:
-    """The message and the hint for a joint that another one moves in another way than as its equal."""
+    """The message and the hint for a joint that follows another one with a factor or an offset."""
     message = (
         f"`{follower}` follows `{leader}` times a factor, or shifted: the model moves it, and the body has no motor"
     )

@@ -53,7 +53,7 @@ KNOWN: FormatTable = {
     "<mimic>": Known(frozenset(("joint", "multiplier", "offset"))),
     "<dynamics>": Known(frozenset(("damping", "friction"))),
 }  # fmt: skip
-"""What of a URDF goes into the body file, or into the MJCF that MuJoCo makes of it."""
+"""The parts of a URDF that go into the body file, or into the MJCF that MuJoCo generates."""
 
 _HINGES = ("revolute", "continuous")
 _ORIGIN = (0.0, 0.0, 0.0)

@@ -46,7 +46,7 @@ class ScxmlDataModel:
         self._widen(outline)
 
     def _declare(self, element: XmlElement) -> bool:
-        """Give its id a key; False, and reported, if an earlier one has that id."""
+        """Give the id of a `<data>` a key; report it and return False if an earlier one has that id."""
         id = element.get("id")
         if id in self.keys:
             hint = "give each an id of its own: all of a chart see all data"

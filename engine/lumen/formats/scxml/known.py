@@ -1,4 +1,4 @@
-"""What the importer knows of SCXML (W3C's recommendation of 2015, and the older forms that files still have)."""
+"""The parts of SCXML that the importer knows: W3C's recommendation of 2015, and older forms that files still have."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ ATTRIBUTES: FormatTable = {
     "scxml": Known(
         frozenset(("initial", "name", "datamodel", "binding", "version")),
         {"initialstate": "write `initial`", "profile": "write `datamodel`"},
-        {"exmode": "says how strictly another interpreter reads the file"},
+        {"exmode": "sets how strictly other interpreters read the file"},
     ),
     "state": Known(
         frozenset(("id", "initial", "lumen:root", "lumen:key")),

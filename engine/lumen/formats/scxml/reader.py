@@ -49,7 +49,7 @@ class _ScxmlReader:
         self.transitions = ScxmlTransitionReader(self.outline, self.contents, self.findings)
         self.passed: dict[ForeignState, dict[str, Any]] = {}
         self.invoked: list[tuple[ForeignState, str]] = []
-        """The ids of what is invoked so far, each with its state."""
+        """The state and the id of each invocation so far."""
 
     def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
         root = self.outline.root
@@ -113,7 +113,7 @@ class _ScxmlReader:
         return {"target": self.transitions.named(node, found)} if found else {}
 
     def _plain_way(self, transition: XmlElement) -> None:
-        """Report what a way into a state can't have."""
+        """Report the parts that a transition into a state can't have."""
         for name in ("event", "cond", "type"):
             if name in transition.attributes:
                 message = f"`{name}`: the way into a state is taken without event or condition"
@@ -187,7 +187,7 @@ class _ScxmlReader:
         return data | self._ours(node)
 
     def _ours(self, node: ForeignState) -> dict[str, Any]:
-        """What `<lumen:state>` holds: only Lumen writes it."""
+        """Return the data in `<lumen:state>`, which only Lumen writes."""
         data: dict[str, Any] = {}
         ours = self._own(node.source, "state", {})
         for key, value in ours.items() if isinstance(ours, dict) else (("", ours),):
@@ -222,7 +222,7 @@ class _ScxmlReader:
         return rows
 
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
-        """The row with an id that nothing has which runs at the same time; raises LeftOutError if the id is written."""
+        """The row with an id that nothing else has at the same time; raises LeftOutError if the file gives the id."""
         id = row.get("id", row["behavior"])
         taken = {name for state, name in self.invoked if rivals([state, node], lambda s: str(s.source.tag)) is None}
         if element.get("id") and id in taken:

@@ -35,7 +35,7 @@ class ScxmlStateTree:
         self.events = {
             f"done.state.{id}": f"done.state.{node.name}" for id, node in self.by_id.items() if id != node.name != ""
         }
-        """The ends of states whose ids are others here."""
+        """The end events of states whose ids differ here."""
 
     def _top(self) -> XmlElement:
         """The document itself, or the one state that Lumen wrapped its root in."""

@@ -25,10 +25,10 @@ _SCHEMA_LOCATION = "{http://www.w3.org/2001/XMLSchema-instance}schemaLocation"
 
 
 class UnreadParts:
-    """Goes through one document before it is read.
+    """Prepares one document for the reader.
 
-    What no table has is removed from the tree, values that only differ in case are corrected, and elements of editors
-    are reported in one line for each of their names.
+    Parts that are in no table are removed from the tree, and values that only differ in case are corrected. Elements of
+    editors are reported in one line for each name.
     """
 
     def __init__(self, scxml: XmlElement, findings: ConversionFindings) -> None:
@@ -40,7 +40,7 @@ class UnreadParts:
             for child in element.children
             if _is_foreign(child.tag)
         }
-        """Foreign elements that occur where no action may be: they are none elsewhere either."""
+        """Foreign elements that occur in places without actions: they are never actions."""
         self.notes: dict[str, list[XmlElement]] = {}
         self._element(scxml)
         self._data_model(scxml)
@@ -95,7 +95,7 @@ class UnreadParts:
         element.attributes = found
 
     def _is_read(self, element: XmlElement, child: XmlElement) -> bool:
-        """Whether the reader is handed a child; if not, it is reported."""
+        """Whether the reader gets a child; if not, it is reported."""
         shown, name = plain(element.tag), plain(child.tag)
         if _is_foreign(child.tag):
             local = child.tag.rpartition("}")[2]

@@ -80,7 +80,7 @@ class XStateActionReader:
         return _logged(shown_name(kind, data))
 
     def _params(self, place: str, data: Mapping[str, Any], where: NodePath) -> None:
-        """Report what is not carried over of the other form of an action of XState's own."""
+        """Report the parts of the other form of an XState action that are not carried over."""
         params, where = data.get("params"), (*where, "params")
         if params is not None and not isinstance(params, dict):
             self.lost(where, f"`params` of an {place} is no object", "delete it")
@@ -158,7 +158,7 @@ class XStateActionReader:
         return body
 
     def _recipient(self, kind: str, data: Mapping[str, Any]) -> str:
-        """The actor it goes to, as JSON can name it; empty for the machine itself, as `send` of version 4 has it."""
+        """The actor that receives the event; empty for the machine itself, the default of `send` in version 4."""
         to = data.get("to")
         if to is None and kind == "xstate.send":
             return ""
@@ -234,7 +234,7 @@ class XStateActionReader:
 
 
 class _AbsentError(Exception):
-    """An action of XState's own that is not complete in JSON; the message says what is absent."""
+    """An action of XState's own that is not complete in JSON; the message names the missing part."""
 
 
 def _text(data: Mapping[str, Any], key: str) -> str:

@@ -1,4 +1,4 @@
-"""What the importer knows of XState's machine configurations, of version 5 and of version 4."""
+"""The parts of XState's machine configurations that the importer knows, for versions 5 and 4."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -30,7 +30,7 @@ KNOWN: FormatTable = {
             "strict": "an event that nothing waits for is no error here",
         },
         {
-            "$schema": "names a schema for editors", "version": "says nothing of what it does", "schema": _TYPES,
+            "$schema": "names a schema for editors", "version": "does not change the behaviour", "schema": _TYPES,
             "schemas": _TYPES, "types": _TYPES, "tsTypes": _TYPES, "predictableActionArguments": "it is always so",
             "preserveActionOrder": "it is always so", "order": "the order is that of the file",
         },

@@ -1,4 +1,4 @@
-"""What the events and the actors of one XState file are called here."""
+"""Our names for the events and the actors of one XState file."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -31,16 +31,16 @@ class XStateNames:
         return self.events.get(name) or _BLANKS.sub("_", name.strip())
 
     def actor(self, id: str) -> str:
-        """Our id of something invoked."""
+        """Our id of an actor."""
         return self.actors.get(id) or invoke_id(id)
 
     def _state(self, id: str) -> str:
-        """What the state of that id is called; the id itself if there is none."""
+        """Our name of the state with that id; an id of no state is only cleaned."""
         found = self.outline.resolve(self.outline.root, f"#{id}")
         return (found.name or self.outline.title) if found else invoke_id(id)
 
     def _free(self, kind: str, names: Mapping[str, NodePath]) -> dict[str, str]:
-        """A name for each that a behaviour can have; those that are others are reported."""
+        """Map each name to one that a behaviour can have; changed names are reported."""
         cleaned: Callable[[str], str] = invoke_id if kind == "actor" else lambda name: _BLANKS.sub("_", name.strip())
         found = {name: name for name in names if cleaned(name) == name}
         taken = set(found)
@@ -83,7 +83,7 @@ def _events(where: NodePath, data: Any) -> Iterator[tuple[str, NodePath]]:
 
 
 def _actors(where: NodePath, state: Any) -> Iterator[tuple[str, NodePath]]:
-    """The id of everything that a state, and those within, invoke, and its place."""
+    """The id and the place of each actor that a state, or a state in it, invokes."""
     if not isinstance(state, dict):
         return
     data = state.get("invoke")
