@@ -320,11 +320,11 @@ class Bus(Protocol):
 
 @runtime_checkable
 class BlockableBus(Protocol):
-    """A bus whose broker may refuse to take messages for a while."""
+    """A bus whose broker may accept no messages for a while."""
 
     @property
     def blocked(self) -> str:
-        """What the broker is short of while it takes no messages; empty while it does."""
+        """The resource that the broker lacks while it accepts no messages; empty while it accepts them."""
         ...
 
 

@@ -84,7 +84,7 @@ def test_a_broker_that_is_away_for_long(hall: Hall) -> None:
 def test_a_broker_that_is_short_of_memory(hall: Hall) -> None:
     hall.whole()
     hall.bus.blocked = "memory"
-    assert hall.told("broker") == "the message broker is short of memory, and takes no messages"
+    assert hall.told("broker") == "the message broker is short of memory and accepts no messages"
 
 
 def test_files_that_are_refused(hall: Hall) -> None:

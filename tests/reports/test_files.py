@@ -654,7 +654,7 @@ def test_an_unknown_time_zone_of_the_environment_is_named(
 ) -> None:
     monkeypatch.setenv("TZ", "Nowhere")
     used = local_timezone()
-    assert f"TZ=Nowhere is no time zone that is known here: times of day are those of {used}" in caplog.text
+    assert f"TZ=Nowhere is not a known time zone: times of day are in {used}" in caplog.text
     caplog.clear()
     monkeypatch.setenv("TZ", ":Europe/Berlin")
     assert local_timezone() == "Europe/Berlin"

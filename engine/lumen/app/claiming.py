@@ -34,10 +34,10 @@ def refuse_rivals(presence: Presence) -> None:
 
 
 def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
-    """Raises BusUnreachableError where a rival could not be heard: its broker takes no messages."""
+    """Raises BusUnreachableError if a rival could not answer because the broker accepts no messages."""
     if bus.blocked:
         parts = " or ".join(part for part in ALONE if part in presence.parts)
         raise BusUnreachableError(
-            f"the broker is short of {bus.blocked}, and takes no messages: whether another process is the {parts} of"
-            f" {presence.robot} can't be found out; start again when it has enough (`rabbitmqctl status`)"
+            f"the broker is short of {bus.blocked} and accepts no messages: can't check whether another process is the"
+            f" {parts} of {presence.robot}; start again when the broker has enough (see `rabbitmqctl status`)"
         )

@@ -21,7 +21,7 @@ def local_timezone() -> str:
         offset = datetime.now().astimezone().strftime("%z")
         found = f"UTC{offset[:3]}:{offset[3:5]}"
     if wanted not in ("", found):
-        _log.warning("TZ=%s is no time zone that is known here: times of day are those of %s", wanted, found)
+        _log.warning("TZ=%s is not a known time zone: times of day are in %s", wanted, found)
     return found
 
 

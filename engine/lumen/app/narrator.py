@@ -28,7 +28,7 @@ from lumen.runtime.performer import LEFT_OUT
 from lumen.runtime.troubles import RunTrouble
 
 MAX_TROUBLES = 100
-"""How many troubles of a run are remembered for its end: the first."""
+"""The number of troubles of a run that are kept for its end; later ones are dropped."""
 
 
 class Narrator(Observer):
@@ -102,7 +102,7 @@ class Narrator(Observer):
 
     def refused(self, command: Start, reason: str) -> None:
         wanted = command.command
-        if not isinstance(wanted, Say | Ask):  # what is only said is never refused
+        if not isinstance(wanted, Say | Ask):  # speech is never refused
             self.line("refused", f"{_base(verb_of(wanted).transcript(wanted))}: {reason}")
 
     def answered(self, event: Event) -> None:
@@ -128,7 +128,7 @@ class Narrator(Observer):
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """Remember it for the end of the run; most of them have been told already, as what they are."""
+        """Keep a trouble for the end of the run; only a missed joint goal needs a line here, others already had one."""
         if trouble.kind == "joint":
             self.line("trouble", trouble.what)
         if len(self.troubles) < MAX_TROUBLES:

@@ -87,7 +87,7 @@ class Node:
 
     @property
     def troubles(self) -> list[str]:
-        """What went wrong in the behaviour of this process; a story judges that itself."""
+        """The troubles of the behaviour in this process; a story judges them itself."""
         return list(self._narrator.troubles)
 
     @property

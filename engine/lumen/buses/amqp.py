@@ -66,7 +66,7 @@ class AmqpBus:
 
     @property
     def blocked(self) -> str:
-        """What the broker is short of while it takes no messages; empty while it does."""
+        """The resource that the broker lacks while it accepts no messages; empty while it accepts them."""
         return self._outage.blocked
 
     @property

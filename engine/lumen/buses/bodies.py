@@ -146,9 +146,9 @@ def encode(body: Any) -> bytes:
 
 
 def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") -> Any:
-    """The body in these bytes, JSON or (`text/plain`) the text itself; raises ValueError that says what is wrong.
+    """Return the body in these bytes: JSON, or for `text/plain` the text itself. Raises ValueError with the reason.
 
-    `content_encoding` is what the sender wrote of it, and named if the bytes are not plain UTF-8.
+    `content_encoding` comes from the sender; the reason names it if the bytes are not plain UTF-8.
     """
     if len(data) > MAX_BODY_BYTES:
         raise ValueError(f"it has more than {MAX_BODY_BYTES:,} bytes")
@@ -171,7 +171,7 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
 
 
 def _foreign(data: bytes, content_encoding: str) -> str:
-    """What the bytes are in place of plain UTF-8, and what to send; empty if that can't be seen."""
+    """Name the encoding that was found instead of plain UTF-8, and the remedy; empty if it can't be recognized."""
     if data.startswith(codecs.BOM_UTF8):
         return "it begins with a byte order mark (BOM), which JSON does not have: send UTF-8 without one"
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):

@@ -44,7 +44,7 @@ class BrokerAddress:
         except (ValueError, TypeError, KeyError) as error:
             raise BusAddressError(
                 f"`{shown}` is no address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/VHOST"
-            ) from None  # what stands there may hold the password
+            ) from None  # the original error may quote the password
         options = self.parameters
         options.connection_attempts = 1
         options.socket_timeout = SOCKET_TIMEOUT
@@ -92,9 +92,9 @@ class BrokerAddress:
         return BusUnreachableError(reason) if reason else None
 
     def short_of(self, what: str) -> str:
-        """That the broker takes no messages, since it is short of memory or of room on its disk."""
+        """Return the message for a broker that accepts nothing because it is short of memory or disk space."""
         more = "`rabbitmqctl status` shows its alarms and what it has"
-        return f"the broker at {self} is short of {what}, and takes no messages until it has enough: {more}"
+        return f"the broker at {self} is short of {what} and accepts no messages until it has enough: {more}"
 
     def _unreachable(self, cause: BaseException) -> str:
         if isinstance(cause, exceptions.ConnectionBlockedTimeout):
@@ -118,7 +118,7 @@ class BrokerAddress:
 
 
 def shortage(reason: str) -> str:
-    """What a broker is short of, by the reason that it gives for taking no messages."""
+    """Return the resource that a broker is short of, from the reason that it gives for blocking."""
     return " and ".join(word for word in ("memory", "disk") if word in reason) or "resources"
 
 

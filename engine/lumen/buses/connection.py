@@ -45,11 +45,11 @@ class OutageLog:
 
     @property
     def blocked(self) -> str:
-        """What the broker is short of while it takes no messages; empty while it does."""
+        """The resource that the broker lacks while it accepts no messages; empty while it accepts them."""
         return next(iter(self._blocked.copy().values()), "")
 
     def block(self, connection: str, what: str) -> None:
-        """The broker takes nothing from that connection since it is short of something, or (empty) does again."""
+        """Note that the broker, short of `what`, blocks this connection; an empty `what` ends that."""
         with self._changing:
             before = bool(self._blocked)
             self._blocked.pop(connection, None)
@@ -59,7 +59,7 @@ class OutageLog:
         if after and not before:
             _log.warning("%s", self._address.short_of(what))
         elif before and not after:
-            _log.warning("the broker at %s takes messages again", self._address)
+            _log.warning("the broker at %s accepts messages again", self._address)
 
     def lost(self, connection: str, what: str, error: BaseException) -> None:
         with self._changing:
@@ -70,7 +70,7 @@ class OutageLog:
         _log.log(logging.WARNING if new else logging.INFO, "the broker at %s %s: %r", self._address, what, error)
 
     def warn_once(self, what: str) -> None:
-        """Log a fault of the broker that each connection meets anew."""
+        """Log a fault of the broker once, although every connection meets it."""
         with self._changing:
             new = what not in self._faults
             self._faults.add(what)

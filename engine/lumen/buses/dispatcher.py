@@ -24,7 +24,7 @@ FLUSH_MARK = "lumen.mark"
 MAX_REMEMBERED_IDS = 10_000
 """Messages that must arrive by which a second one of the same id is known."""
 MAX_SHOWN = 40
-"""How many characters of an id or a sender a message shows."""
+"""The number of characters of an id or a sender that a message shows."""
 
 _log = logging.getLogger(__name__)
 
@@ -33,9 +33,9 @@ class Dispatcher:
     """Decodes deliveries and hands them to their handlers in the order received.
 
     `handled` is called with each delivery that is over, `refused` with one that nobody could use, and the reason. Of
-    telemetry only the newest are handed on, as many as the route keeps, while they are young enough; what must arrive
-    and comes twice is handed on once. An id is that of its sender: a second message of the same sender that has an id
-    again, and is no copy of the first, is counted in `repeated` and refused.
+    telemetry only the newest are handed on, as many as the route keeps, while they are young enough. A message that
+    must arrive is handed on once, even if it comes twice. Ids belong to their sender: if a sender uses an id again for
+    a different message, that message is counted in `repeated` and refused.
     """
 
     def __init__(self, handled: Callable[[Delivery], None], refused: Callable[[Delivery, str], None]) -> None:
@@ -106,10 +106,10 @@ class Dispatcher:
         return not late and not (route.keep and subscription.taken - subscription.handled >= route.keep)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Whether it was not handled before; messages of others have no id, and are known by all that they hold.
+        """Whether it was not handled before; a message without an id is recognized by its whole content.
 
-        What the broker or its sender sent again, since it was not confirmed, is no loss. Without a time such a copy
-        can't be told from a new message of a sender that counts its ids anew; a stop is rather handled twice.
+        A copy that the broker or its sender sent again, because it was not confirmed, does not count as lost. If it
+        has no time, it may also be a new message of a sender that restarted its ids; a stop is then handled twice.
         """
         id, sender = delivery.properties.message_id, delivery.properties.app_id
         digest = _digest(delivery)

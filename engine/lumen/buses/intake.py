@@ -21,10 +21,10 @@ Later = Callable[[float, Callable[[], None]], object]
 class Intake:
     """Hands on to `receive` as many deliveries a second as their route takes (`Route.rate`); all on one thread.
 
-    What must arrive is counted by its sender, so that no one's commands are lost among those of others. Of a key
-    without a route all is taken. Of telemetry that is too much the newest waits until there is room (`later`), for it
-    says how things are now; it gives way to a newer one. What must arrive is dropped, and some of it handed to
-    `refused`, with the reason. What is dropped is counted in `drops`, under its key.
+    Messages that must arrive are counted per sender, so that one sender can't crowd out the commands of another. Keys
+    without a route have no limit. If there is too much telemetry, the newest waits until there is room (`later`),
+    because it holds the current values; a newer one replaces it. Too many messages that must arrive are dropped, and
+    some of them handed to `refused`, with the reason. Dropped messages are counted in `drops`, under their key.
     """
 
     def __init__(

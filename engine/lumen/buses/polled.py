@@ -30,7 +30,8 @@ class PolledConnection:
 
     Unlike `BlockingConnection` it waits neither for each message to be sent nor for each confirm to come.
 
-    `blocked` is what the broker is short of while it takes nothing, else empty; `told` is called with each change.
+    `blocked` names the resource that the broker lacks while it accepts nothing, else it is empty; `told` is called
+    with each change.
     """
 
     def __init__(self, parameters: Any, told: Callable[[str], None] = lambda blocked: None) -> None:
@@ -106,7 +107,7 @@ class PolledConnection:
             self.ask(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
-        """Turn until that is so, for as long as the broker may take to answer; one that takes nothing never does."""
+        """Turn until `done`, at most for the broker's time to answer. Raises at once if the broker accepts nothing."""
         deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():
             if self.blocked:

@@ -72,13 +72,13 @@ class BrokerProbe:
         try:
             with self.asking() as channel:
                 channel.send(EXCHANGE, key, properties)
-                channel.basic_qos(prefetch_count=1)  # answered after the message: the broker goes by their order
+                channel.basic_qos(prefetch_count=1)  # the broker answers in order: after the message
         except ChannelClosedByBroker as error:
             return str(error.reply_text) if error.reply_code == ACCESS_REFUSED else ""
-        raise BusUnreachableError(f"the broker at {self.address} took a message that claims to be from `{FORGED_USER}`")
+        raise BusUnreachableError(f"the broker at {self.address} accepted a message in the name of `{FORGED_USER}`")
 
     def taking(self) -> str:
-        """Why the broker takes no messages from anybody, found out by sending one; empty if it does."""
+        """Send a message to check the broker; return why it accepts none from any sender, or an empty text."""
         try:
             self.writing("")
         except BusUnreachableError as error:
@@ -95,7 +95,7 @@ class BrokerProbe:
         return QueueStatus(found.message_count, found.consumer_count)
 
     def misdeclared(self) -> Iterator[str]:
-        """What is wrong with the places for what nobody could use, if they are there; nothing is declared anew."""
+        """Yield the faults of existing side queues and their exchanges; missing ones are not declared."""
         for name, limits in SIDE_QUEUE_LIMITS.items():
             for fault in (self._misdeclared(name, limits, exchange) for exchange in (True, False)):
                 if fault:
@@ -119,7 +119,7 @@ class BrokerProbe:
 
     @contextmanager
     def asking(self) -> Iterator[AskedChannel]:
-        """A channel of its own for questions. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
+        """Open a separate channel for questions. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
         with self._explained(), self._connection.asking() as channel:
             try:
                 yield channel
@@ -127,7 +127,7 @@ class BrokerProbe:
                 self._check_taken()
 
     def _check_taken(self) -> None:
-        """Raise BusUnreachableError if the broker is short of something: it says so first, and may answer even so."""
+        """Raise BusUnreachableError if the broker lacks a resource: it may report that and still answer."""
         if what := self._connection.blocked:
             raise BusUnreachableError(self.address.short_of(what))
 

@@ -81,17 +81,17 @@ class Publisher(BrokerConnection):
 
     @property
     def blocked(self) -> bool:
-        """Whether the broker takes nothing from this connection now."""
+        """Whether the broker accepts no messages from this connection now."""
         connection = self.connection
         return bool(connection and connection.blocked)
 
     @property
     def has_side_queues(self) -> bool:
-        """Whether the broker let us declare the places for what nobody could use."""
+        """Whether the broker let us declare the side queues for unusable messages."""
         return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
-        if self.connection.blocked:  # what is sent now would be used late: in the outbox its time to live counts
+        if self.connection.blocked:  # a message sent now would be used late: in the outbox its time to live counts
             self.connection.turn(IDLE_TIME)
             self.outbox.drops.tell()
             return not self.ending.is_set()
@@ -250,4 +250,4 @@ class Publisher(BrokerConnection):
                 self._outage.warn_once(declared_otherwise(error.reply_text))
             else:
                 why = error.reply_text
-                _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, why)
+                _log.info("the broker at %s refused a declaration for `%s`: %s", self.address, name, why)

@@ -54,7 +54,7 @@ SIDE_QUEUE_LIMITS: Mapping[str, Mapping[str, Any]] = {
 }
 """The side queues, each with its arguments."""
 OTHERWISE = 406
-"""AMQP's code for what is there and was declared with other arguments."""
+"""AMQP's code for a queue or an exchange that exists with other arguments."""
 _OTHER_ARGUMENT = re.compile(
     r"inequivalent arg '([^']+)' for (exchange|queue) '([^']+)' in vhost .*: received (.*) but current is (.*)"
 )
@@ -119,9 +119,9 @@ def declare_side_queues(channel: AskedChannel) -> None:
 
 
 def declared_otherwise(reply: str) -> str:
-    """What is wrong with an exchange or a queue that somebody declared with other arguments, and what to do.
+    """Describe how an existing exchange or queue differs from the declaration, and the remedy.
 
-    `reply` is what the broker answers if Lumen declares it.
+    `reply` is the broker's answer to Lumen's declaration.
     """
     found = _OTHER_ARGUMENT.search(reply)
     if not found:
@@ -129,8 +129,8 @@ def declared_otherwise(reply: str) -> str:
     argument, kind, name, wanted, there = found.groups()
     delete = f"rabbitmqctl delete_queue {name}" if kind == "queue" else f"rabbitmqadmin delete exchange name={name}"
     return (
-        f"somebody declared the {kind} `{name}` otherwise (its `{argument}` is {there}, not {wanted}), so that what"
-        f" belongs there is lost: delete it (`{delete}`), and restart what uses it"
+        f"the {kind} `{name}` was declared with other arguments (its `{argument}` is {there}, not {wanted}), so that"
+        f" its messages are lost: delete it (`{delete}`), and restart the programs that use it"
     )
 
 

@@ -38,7 +38,7 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """What was dropped: too many came, a fault of ours met them, an id came again, or they could not be sent."""
+        """The dropped messages: too many, met by a fault of ours, with a repeated id, or impossible to send."""
         sent = self.publisher.outbox.drops, self.publisher.unsendable
         heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated
         return self.consumer.intake.drops, *heard, *sent

@@ -71,7 +71,7 @@ class ValidatedBus:
 
     @property
     def blocked(self) -> str:
-        """What the broker is short of while it takes no messages; empty while it does, and without a broker."""
+        """The resource that the broker lacks while it accepts no messages; empty otherwise, and without a broker."""
         return self._bus.blocked if isinstance(self._bus, BlockableBus) else ""
 
     @property

@@ -87,7 +87,7 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
         faults = list(probe.misdeclared())
         yield from (Finding("dead letters", "error", fault) for fault in faults)
         if not faults:
-            yield Finding("dead letters", "ok", f"what nobody can use is kept in {SIDE_QUEUES}")
+            yield Finding("dead letters", "ok", f"unusable and undeliverable messages are kept in {SIDE_QUEUES}")
 
 
 def _embedded(options: argparse.Namespace, url: str, project: Project | None) -> Iterator[Finding]:

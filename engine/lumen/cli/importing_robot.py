@@ -80,7 +80,7 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
 
 
 def _refused(path: Path) -> list[Diagnostic]:
-    """What MuJoCo has against an MJCF, which stays as it is; nothing if MuJoCo is not installed."""
+    """Return MuJoCo's error for an MJCF, which is not changed; nothing if MuJoCo is not installed."""
     try:
         from lumen.robots.simulation import installed  # noqa: F401
         from lumen.robots.simulation.urdf_conversion import mjcf_fault

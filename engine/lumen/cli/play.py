@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
 def _played(
     project: Project, motion: MotionDefinition, speed: str, video: Path | None, size: tuple[int, int]
 ) -> dict[str, Any]:
-    """How it went. Raises UsageError where the robot can't."""
+    """Play the motion; return the result. Raises UsageError if the robot can't."""
     player = _Player(project, speed, video, size)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
     late = _slowed(motion, project.body)
@@ -119,7 +119,7 @@ class _Player:
         self._film = Film(video, self.robot, "close", size=size) if video else None
 
     def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> str:
-        """Perform to the end, which is `duration` [s] ahead; return a fall or what joint missed its goal.
+        """Perform to the end, which is `duration` [s] ahead; return a fall or the joint that missed its goal.
 
         Raises UsageError if the robot can't, with its reason.
         """

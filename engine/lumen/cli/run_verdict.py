@@ -5,13 +5,14 @@ from typing import Any, NamedTuple
 
 WELL, FAILED, TROUBLED, EARLY, INTERRUPTED = "well", "failed", "troubled", "early", "interrupted"
 MAX_TROUBLES = 5
-"""How many troubles the summary of a run lists."""
+"""The number of troubles that the summary of a run lists."""
 
 
 class RunVerdict(NamedTuple):
     """How it `ended`: well, failed, troubled, early (before its story did), interrupted; `lived` and `took` in [s].
 
-    A story judges what goes wrong and fails; without one the run is troubled, and `failure` is the first trouble.
+    With a story, the story judges the troubles and may fail; without one a run with troubles is `troubled`, and
+    `failure` is the first of them.
     """
 
     ended: str
@@ -27,7 +28,7 @@ class RunVerdict(NamedTuple):
 
     @staticmethod
     def listed(troubles: Sequence[str]) -> list[str]:
-        """Return the lines of a summary that say what went wrong."""
+        """Return the troubles as lines of a summary."""
         more = len(troubles) - MAX_TROUBLES
         return [*troubles[:MAX_TROUBLES], *([f"… and {more} more such troubles"] if more > 0 else [])]
 

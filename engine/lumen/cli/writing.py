@@ -16,7 +16,7 @@ def write_result(text: str, output: Path | None, *, folders: bool = False) -> No
 
 
 def write_file(content: bytes, output: Path, *, folders: bool = False) -> None:
-    """Write a file as a whole; raises UsageError where it can't be, and then leaves what is there as it was."""
+    """Write a file as a whole. If that fails, raise UsageError and leave an existing file unchanged."""
     try:
         if folders:
             output.parent.mkdir(parents=True, exist_ok=True)

@@ -52,7 +52,7 @@ class BusLink:
 
     @property
     def trouble(self) -> str:
-        """Why the bus takes no messages; empty where it does."""
+        """Why the bus accepts no messages; empty while it accepts them."""
         return AWAY if self.reached is not None and not self.up else self._trouble
 
     @property

@@ -11,7 +11,7 @@ KINDS: Mapping[str, str] = {
     "fallen": "the robot fell and does not get up",
     "stopped": "somebody stopped the robot",
     "lost": "the robot, the brain or a module is gone, or back",
-    "broker": "the message broker can't be reached, or takes no messages",
+    "broker": "the message broker can't be reached, or accepts no messages",
     "refused": "saved files were refused, or taken back",
     "start": "the exhibition could not start, or was ended by an error",
     "crashed": "it ended without notice, or a part of it gave up",

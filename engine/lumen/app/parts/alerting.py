@@ -120,7 +120,7 @@ class AlertPart(Part, Observer):
         blocked, before = self._bus.blocked, self._blocked
         self._blocked = blocked
         if blocked and not before:
-            self._desk("broker", f"the message broker is short of {blocked}, and takes no messages", "blocked")
+            self._desk("broker", f"the message broker is short of {blocked} and accepts no messages", "blocked")
         if not self._bus.away:
             self._away = None
         elif self._away is None:

@@ -63,10 +63,10 @@ class RemoteBody:
 
 
 class RemoteHold(Observer):
-    """Whether a robot elsewhere lets the behaviour move it: where a person stopped it, from a hand on its head on.
+    """Predicts whether a robot in another process refuses to move because a person stopped it.
 
-    `stopped` is what the process of the robot publishes of itself, which may be a second old. So what this one can't
-    be sure of is sent, and the robot decides.
+    `stopped` returns the state that the robot's process publishes, which may be a second old. In doubt a command is
+    sent, and the robot decides. A hand on the robot's head allows movement again.
     """
 
     def __init__(self, stopped: Callable[[], StoppedBy | None]) -> None:
@@ -77,7 +77,7 @@ class RemoteHold(Observer):
             self._let = event.name != "stop"
 
     def refuse(self, command: RobotCommand) -> str:
-        """Return why the robot will refuse this command; empty if it may not."""
+        """Return the reason why the robot will refuse this command; empty if it may accept it."""
         stopped = None if self._let or not row_of(command).moves else self._stopped()
         return stopped.reason if stopped else ""
 

@@ -67,7 +67,7 @@ def listen(folder: Path) -> tuple[socket.socket, LocalAddress]:
     if not hasattr(socket, "AF_UNIX"):
         listener = socket.create_server(("127.0.0.1", 0))
         return listener, LocalAddress(port=listener.getsockname()[1], key=key)
-    folder = folder.absolute()  # others read the address in other folders
+    folder = folder.absolute()  # processes in other folders read the address
     if len(os.fsencode(folder / SOCKET_NAME)) > MAX_SOCKET_PATH_BYTES:
         folder = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX))
     path = folder / SOCKET_NAME
