@@ -14,14 +14,14 @@ from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, RobotCommand
 
 MAX_FITS = 50
-"""How often a change may make another one necessary; each comes nearer to what the body can do."""
+"""The most rounds of changes: one change may make another necessary, each closer to the body's abilities."""
 
 SPEED_MARGIN = 1.005
-"""A part more than the time that a joint needs: rounding must not make it too fast again."""
+"""The factor on the time that a joint needs: rounding must not make it too fast again."""
 
 
 class BoundedCommand(NamedTuple):
-    """A command that a body can perform, and what was changed, for the log; the same command if nothing was."""
+    """A command that a body can perform, and the changes, for the log; without changes it is the same command."""
 
     command: RobotCommand
     changes: tuple[str, ...] = ()
@@ -30,7 +30,7 @@ class BoundedCommand(NamedTuple):
 def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
     """The nearest command that keeps the limits of the joints, coupled ones included, and their speeds.
 
-    Joints that the body lacks, and what is no number, are left to the robot, which refuses them.
+    Joints that the body lacks, and values that are not numbers, are left to the robot, which refuses them.
     """
     match command:
         case Look(yaw, pitch):
@@ -83,7 +83,7 @@ def _shown(joint: str, angle: float, body: Body) -> str:
 
 
 def _kept(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
-    """The motion inside the limits, and slowed where a joint needs more time; what was changed, once for each joint."""
+    """The motion within the limits, slower if a joint needs more time; and the changes, once for each joint."""
     if not all(isfinite(x) for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle)):
         return motion, ()
     changes: dict[str, str] = {}
@@ -110,7 +110,7 @@ def _kept(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple
 
 
 def _cut(keys: tuple[Keyframe, ...], excess: Excess) -> tuple[Keyframe, ...]:
-    """The keys with the one of an excess at the limit, or, if only the way to it goes too far, without its handles."""
+    """The keys with the excess moved to the limit; if only the curve between two keys exceeds it, without handles."""
     i = bisect_left([key.time for key in keys], excess.key.time)
     if i == len(keys) or keys[i].time != excess.key.time:
         beside = replace(keys[min(i, len(keys) - 1)], time=excess.key.time, angle=excess.limit)
@@ -130,7 +130,7 @@ def _level(key: Keyframe) -> Keyframe:
 
 
 def slowed(motion: MotionDefinition, fast: Iterable[Excess]) -> MotionDefinition:
-    """The motion with more time before the keys that come too soon, for all joints and cues: they stay in step."""
+    """The motion with more time before the keys that come too soon; all joints and cues shift together."""
     times = [0.0, *sorted({key.time for keys in motion.tracks.values() for key in keys})]
     factors = [1.0] * len(times)
     for excess in fast:

@@ -1,4 +1,4 @@
-"""Addresses of brokers and servers (RFC 3986): what of them may be shown, and which signs have to be written as %XX."""
+"""Addresses of brokers and servers (RFC 3986): the parts that may be shown, and the signs that need %XX."""
 
 import re
 from urllib.parse import quote, unquote, urlsplit
@@ -6,9 +6,9 @@ from urllib.parse import quote, unquote, urlsplit
 _FILE = re.compile(r"(?<=[?&])ca=[^&]*")
 """The parameter that names a file, whose path may hold an `@`."""
 _PORT = re.compile(r"(\[[^\]]*\]|[^:/?#\[\]]*):(?!\d*(?:[/?#]|$))(.*)", re.DOTALL)
-"""A host and what is no port behind it: that may be a password of which the host was forgotten."""
+"""A host followed by a text that is not a port: it may be a name and a password whose host is missing."""
 _ENDING = "/?#[]"
-"""What ends a host, or makes one of numbers: a name or a password has to write these as %XX."""
+"""The signs that end a host, or enclose a numeric one: a name or a password must write them as %XX."""
 
 
 def credentials_of(url: str) -> str:
@@ -28,13 +28,13 @@ def public(url: str) -> str:
 
 
 def unescaped(url: str) -> str:
-    """How to write the signs of a name or a password that end it too early; empty if there are none."""
+    """The spelling of signs that end a name or a password too early; empty if there are none."""
     signs = [sign for sign in _ENDING if sign in credentials_of(url)]
     return ", ".join(f"{quote(sign, safe='')} for `{sign}`" for sign in signs)
 
 
 def fault_of_broker(url: str) -> str:
-    """Why this is no address of a broker, with what would be right; empty if it may be one."""
+    """The fault of an address that can't be a broker's, with the remedy; empty for a possible address."""
     if signs := unescaped(url):
         return f"in a name or a password write {signs}, and behind the host %40 for `@`"
     try:
@@ -45,7 +45,7 @@ def fault_of_broker(url: str) -> str:
     if not host:
         return "there is no host in it"
     try:
-        parts.port  # noqa: B018  it raises if it is none
+        parts.port  # noqa: B018  it raises if the port is not valid
     except ValueError:
         return "its port is no number from 0 to 65535"
     if parts.fragment:

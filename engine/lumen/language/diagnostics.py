@@ -196,7 +196,7 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Whether one is the other with few letters changed: many that are in the same order are chance."""
+    """Whether few letters differ: words that differ more may share letters in the same order by chance."""
     word, meant = word.lstrip("-"), meant.lstrip("-")  # of options
     if word.startswith(meant) or meant.startswith(word):
         return True

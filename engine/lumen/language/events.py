@@ -44,10 +44,10 @@ FALLEN = "fallen"
 """The event of a robot that has fallen."""
 
 HELD = "hold its head, or say `lumen resume`"
-"""How the reason ends for which a robot that is held still refuses to move."""
+"""The end of the reason with which a robot that a person keeps still refuses to move."""
 
 MISSED = "missed"
-"""The field of `done.command.ID` that says which joints did not come to the angles of a motion."""
+"""The field of `done.command.ID` that names the joints that missed the angles of a motion."""
 
 ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
 """What is raised when the robot has come to one of the places, when it is no longer there, and where it can't tell.

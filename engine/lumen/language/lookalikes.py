@@ -1,4 +1,4 @@
-"""Characters that look like those of a keyboard and are others: letters of other alphabets, invisible ones, minuses."""
+"""Characters that look like those of a keyboard but differ: letters of other alphabets, invisible ones, minuses."""
 
 import unicodedata
 from collections.abc import Iterator
@@ -28,12 +28,12 @@ def difference(word: str, other: str) -> str:
 
 
 def other_sign(text: str) -> str:
-    """Why a number is none although it looks like one; empty if each of its characters is one that a keyboard types."""
+    """Describe the first look-alike character of a text that should be a number; empty if it has none."""
     return next(_odd(text), "")
 
 
 def _odd(text: str) -> Iterator[str]:
-    """Each character that a keyboard types otherwise, once, and what it is."""
+    """Yield a description of each look-alike character, once."""
     for sign in dict.fromkeys(text):
         if typed(sign) == sign or sign.isascii():
             continue

@@ -12,7 +12,7 @@ _BREAK = re.compile("(\r\n|\n|\r)")
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines without their breaks; a text that ends with a break has an empty line behind it, as in an editor."""
+    """The lines without their breaks; a break at the end of the text adds an empty line, as in an editor."""
     return _BREAK.split(text)[::2] if "\r" in text else text.split("\n")
 
 

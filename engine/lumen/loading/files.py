@@ -112,12 +112,12 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
 
 
 def composed(file: str) -> str:
-    """The name by which a file is known: a Mac may have saved the accents of it as characters of their own."""
+    """The composed form of a file's name: a Mac may have saved its accents as separate characters."""
     return normalize("NFC", file) if file == normalize("NFD", file) else file
 
 
 def on_disk(root: Path, file: str) -> Path:
-    """Where a file of a project is, whichever way its accents were saved."""
+    """The path of a file in a project, with its accents as they were saved."""
     path, decomposed = root / file, root / normalize("NFD", file)
     return decomposed if not path.exists() and decomposed.exists() else path
 
@@ -166,7 +166,7 @@ def _within(folder: str) -> Iterator[str]:
 
 
 def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
-    """The files of a folder, none if it is not there; what begins with a dot belongs to an editor. Raises OSError."""
+    """The files of a folder, without dotfiles, which belong to editors; none if it is missing. Raises OSError."""
     try:
         listed = os.listdir(folder)
     except FileNotFoundError:
@@ -177,7 +177,7 @@ def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
 
 
 def _reason(error: OSError) -> bytes:
-    """Why a file or a folder can't be read, in words."""
+    """The reason why a file or a folder can't be read, in words."""
     if isinstance(error, NotADirectoryError):
         return b"it is a file, and should be a folder"
     if isinstance(error, FileNotFoundError):

@@ -1,4 +1,4 @@
-"""Files that are there and not read because their name is nearly right: `wave.yaml.txt`, `wave.YAML`, `Motions/`."""
+"""Files that are not read because their names are only nearly right: `wave.yaml.txt`, `wave.YAML`, `Motions/`."""
 
 import os
 import re
@@ -12,14 +12,14 @@ _ENDING = re.compile(r"(?P<stem>.+?)\s*\.(?:(?P<yaml>ya?ml)|(?P<other>md|json|xm
 
 
 class Misnamed(NamedTuple):
-    """A file or folder as it is called, and as it should be, both from the project's root."""
+    """The path of a file or folder as it is and as it should be, both from the project's root."""
 
     there: str
     meant: str
 
 
 def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
-    """The files of a folder of the project whose ending is nearly one that is read, and folders with other letters."""
+    """Yield files of a project folder whose ending is nearly right, and folders with capital letters."""
     endings, listed = endings_in(folder), _listed(root, folder)
     for name in listed:
         path = f"{folder}/{name}" if folder else name
@@ -34,7 +34,7 @@ def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
 
 
 def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
-    """What was probably meant to be the file of that name in a folder of the project."""
+    """Return the misnamed file that was probably meant to have that name in a folder of the project."""
     above = ["", *map(str, reversed(PurePosixPath(folder).parents[:-1])), folder]
     found = (each for one in above for each in misnamed_in(root, one))
     fits = (
@@ -46,7 +46,7 @@ def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
 
 
 def _listed(root: Path, folder: str) -> list[str]:
-    """What is in a folder of the project; nothing of one that lies elsewhere."""
+    """The names in a folder of the project; none if the folder is outside of the project."""
     try:
         inside = (root / folder).resolve().is_relative_to(root.resolve())
         return sorted(os.listdir(root / folder)) if inside else []

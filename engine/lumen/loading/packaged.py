@@ -30,7 +30,7 @@ def project_above(here: Path) -> Path | None:
 
 
 def misnamed_main_file(folder: Path) -> str:
-    """The file in that folder that was probably meant to be its lumen.yaml; empty if there is none."""
+    """The file in that folder that was probably meant to be its lumen.yaml; empty if no name is similar."""
     try:
         names = sorted(os.listdir(folder))
     except OSError:

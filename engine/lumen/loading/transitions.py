@@ -184,7 +184,7 @@ class TransitionReader:
 
 
 _Nested = TypeVar("_Nested")
-"""A state of ours, or of a foreign chart; it has a `parent`."""
+"""A state with a `parent`, in a behaviour or in a foreign chart."""
 
 
 def rivals(states: Sequence[_Nested], kind: Callable[[Any], str]) -> tuple[_Nested, _Nested] | None:

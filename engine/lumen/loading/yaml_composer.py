@@ -42,9 +42,10 @@ _OLD_BREAKS = "\x85\u2028\u2029"
 
 
 def shielded(text: str) -> tuple[str, Mapping[int, str]]:
-    """The text with other characters in place of those that only YAML 1.1 reads as line breaks; how to undo it.
+    """Replace the characters that only YAML 1.1 reads as line breaks; return the text and the map to undo it.
 
-    Places stay: each character becomes one. The others are of the private use area, and not in the text.
+    Places stay the same: one character replaces one. The new ones come from the private use area and are not in the
+    text.
     """
     old = [sign for sign in _OLD_BREAKS if sign in text]
     if not old:

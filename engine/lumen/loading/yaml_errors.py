@@ -28,7 +28,7 @@ _SMALLER = "split it, or use fewer levels and aliases"
 _CONFLICT = re.compile(r"(<{7}|={7}|>{7})(?= |$)")
 _NOT_ALLOWED = yaml.reader.Reader.NON_PRINTABLE
 _MOST_NULS = 0.2
-"""The share of bytes that are zero from which on a file is taken for UTF-16 without a mark at its beginning."""
+"""The share of zero bytes above which a file is read as UTF-16 without a mark at its beginning."""
 
 
 def merge_conflict(file: str, text: str) -> Diagnostic | None:
@@ -63,7 +63,7 @@ def _is_utf16(content: bytes) -> bool:
 
 
 def not_allowed(file: str, text: str) -> Diagnostic | None:
-    """What to say of a text with a character that YAML does not allow (5.1), None if it has none."""
+    """The finding for a character that YAML does not allow (5.1); None if there is no such character."""
     found = _NOT_ALLOWED.search(text)
     if found is None:
         return None
@@ -119,14 +119,14 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 
 def _unknown_alias(file: str, error: UnknownAliasError) -> Diagnostic:
-    """What to say of `*name` without `&name` above it: a slip in the name, or a text that begins with `*`."""
+    """The finding for `*name` without `&name` above it: a slip in the name, or a text that begins with `*`."""
     mark, name = error.mark, error.name
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + len(name) + 2)
     quotes = f'put quotes around it if it is a text: "*{name}"'
     hint = mean(f"*{name}", f"*{near}") if (near := nearest(name, error.known)) else quotes
     if error.known and not near:
         hint = f"{quotes}; the anchors above are {', '.join(f'`&{known}`' for known in error.known[:8])}"
-    return YAML_SYNTAX.at(place, f"there is no anchor `&{name}` above for `*{name}` to stand for", hint)
+    return YAML_SYNTAX.at(place, f"there is no anchor `&{name}` above `*{name}`", hint)
 
 
 def _begins_late(error: Any, lines: Sequence[str]) -> bool:

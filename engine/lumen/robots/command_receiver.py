@@ -38,7 +38,7 @@ from lumen.upkeep.threads import MessageGuard
 
 MAX_WAITING_COMMANDS = 1_000
 MAX_WAITING_OWN = 1_000
-"""How many more may wait that are of the behaviour."""
+"""The number of commands of the behaviour that may wait in addition."""
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
@@ -52,7 +52,7 @@ ID_TAKEN = "its sender gave another command that id before: give each an id of i
 RESTARTED = "the robot was restarted since it began that"
 
 OWN = "b"
-"""What stands before the number in the id of a command of a brain elsewhere."""
+"""The prefix of the ids of commands from a brain in another process."""
 
 _log = logging.getLogger(__name__)
 
@@ -65,7 +65,7 @@ class _Arrival(NamedTuple):
 
 
 class CommandReceiver:
-    """Takes what modules send to the robot's keys for commands, under the ids `m1`, `m2`, …, and `b1`, … of a brain.
+    """Receives the commands that modules send to the robot's keys, as `m1`, `m2`, …, and those of a brain, as `b1`, ….
 
     Messages may come on any thread; the robot is touched by `begin` alone. Everybody gets an answer, as `Reports` has
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
@@ -73,8 +73,8 @@ class CommandReceiver:
     never one too many, nor too late. A command with an `id` is performed once, however often its sender sends it;
     another one with that id is refused, unless it stops the robot. `clock` [s] measures how long they have waited;
     `begins` is called for each that begins, `refused` with the method and the reason for each that may not, `hurry`
-    when `begin` should be called soon, since something came that stops the robot. What moves the robot may not where a
-    person stopped it (`hold`).
+    when `begin` should be called soon, because a message came that stops the robot. Commands that move the robot are
+    refused while a person keeps it still (`hold`).
     """
 
     def __init__(

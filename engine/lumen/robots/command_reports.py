@@ -20,9 +20,9 @@ _ANSWERS = {"done": FINISHED, "error": FAILED, "cancelled": CANCELLED}
 class CommandRecord:
     """A command from the bus, `asker` the message that brought it.
 
-    `id` is the one that its sender gave it, empty where it gave none, as the modules of 2015; `at` is what the robot
-    calls it. It moves these `parts` of the body for about so long (`takes` [s]). `body` is that of the command, None
-    where only the id is known.
+    `id` comes from its sender, and is empty if the sender gave none, as the modules of 2015; `at` is the robot's id.
+    The command moves these `parts` of the body for about `takes` [s]. `body` is that of the command, None if only the
+    id is known.
     """
 
     asker: Message
@@ -76,7 +76,7 @@ class CommandReports:
         return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
     def find(self, id: str, sender: str) -> CommandRecord | None:
-        """The record of the command that this sender, or one that is not known, gave that id."""
+        """The record of the command to which this sender, or an unknown one, gave that id."""
         return self._known.get((sender, id)) or self._known.get((None, id))
 
     def asked(self, id: str, sender: str) -> CommandRecord | None:
@@ -85,7 +85,7 @@ class CommandReports:
         return self.find(id, sender) or next(others, None)
 
     def remember(self, record: CommandRecord) -> None:
-        """From now on who sends this again gets a report of how it stands; without a `body` that is anyone."""
+        """Remember a command, so that its sender gets a report if it comes again; without a `body`, any sender."""
         if record.id:
             sender = None if record.body is None else record.asker.sender
             self._known[sender, record.id] = record
@@ -102,9 +102,9 @@ class CommandReports:
             self.change(record, STARTED)
 
     def answered(self, kind: str, at: str, reason: str) -> bool:
-        """The robot said `done`, `error` or `cancelled`; whether it was of one of ours.
+        """Report the robot's `done`, `error` or `cancelled`; return whether it is for a command from the bus.
 
-        The reason of `done` is which joint missed its goal.
+        The reason of `done` names the joint that missed its goal.
         """
         record = self._running.pop(at, None)
         if record is None or kind not in _ANSWERS:

@@ -1,9 +1,9 @@
 """Who moves what: commands wait until the parts of the body that they need are free.
 
 Head, arms, legs, voice, LEDs and ears each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
-everything. Of the others, those of the behaviour come before those of other modules; among these they wait by rank,
-then in the order they came. A body supplies the activities; this keeps the order, the ownership and the answers, and is
-the same for every robot that executes commands itself.
+everything. Of the others, those of the behaviour come before those of other modules; in each group they wait by
+rank, then in the order they came. A body supplies the activities; this module keeps the order, the ownership and the
+answers, and is the same for every robot that executes commands itself.
 """
 
 from collections import deque
@@ -18,7 +18,7 @@ from lumen.ports import RobotCommand
 from lumen.robots.command_table import row_of
 
 FOREIGN = "m"
-"""What stands before the number in the id of a command that is not of the behaviour."""
+"""The prefix of the ids of commands that are not from the behaviour."""
 MAX_UNREAD_STARTS = 1_000
 """Of how many commands that began it is known at most, where nobody asks."""
 
@@ -37,11 +37,11 @@ class Activity(Protocol):
 
 @runtime_checkable
 class Misses(Protocol):
-    """An activity that may end without all joints having come to their goals."""
+    """An activity that may end before all joints have reached their goals."""
 
     @property
     def missed(self) -> str:
-        """Which did not, in words; empty if all did."""
+        """The joints that missed their goals, in words; empty if none did."""
         ...
 
 

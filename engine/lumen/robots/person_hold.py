@@ -21,7 +21,7 @@ class StoppedBy(NamedTuple):
 
     @property
     def reason(self) -> str:
-        """Why a command that moves the robot is refused."""
+        """The reason why a command that moves the robot is refused."""
         return f"{self.by} stopped the robot: {HELD}"
 
 

@@ -46,13 +46,13 @@ class Observer:
         """A command is about to be performed."""
 
     def refused(self, command: Start, reason: str) -> None:
-        """A command that the behaviour asks for is not performed: a person keeps the robot still."""
+        """A command of the behaviour is not performed because a person keeps the robot still."""
 
     def answered(self, event: Event) -> None:
         """The robot answered a command, or noticed something; the behaviour has not heard of it yet."""
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """Something happened after which a run has not gone well."""
+        """A trouble occurred: the run no longer counts as successful."""
 
 
 class BehaviorLoop:
@@ -283,7 +283,7 @@ class BehaviorLoop:
                 self._recover(error, now)
 
     def _tell_of(self, command: Command, now: float) -> None:
-        """Tell what is about to be performed, or why it is not."""
+        """Notify the observers of a command that is about to be performed, or of its refusal."""
         reason = self.performer.refusal(self.project, command)
         if reason and isinstance(command, Start):
             for observer in self.observers:

@@ -62,7 +62,7 @@ class Performer:
         self._log_of_changes = OnceLog(_log)
 
     def refusal(self, project: Project, command: Command) -> str:
-        """Return the reason why the robot may not begin this one; empty if it may, or if no robot performs it."""
+        """Return the reason why the robot may not begin a command; empty if it may, or if no robot performs it."""
         match command:
             case Start(_, Play(name)):
                 return self.refuse(Perform(project.motions[name])) if name in project.motions else ""
@@ -126,7 +126,7 @@ class Performer:
                 self._begin(id, self._within_limits(wanted, body), now)
 
     def _within_limits(self, command: RobotCommand, body: Body) -> RobotCommand:
-        """The nearest command that this body can perform: no robot is given another one."""
+        """The nearest command that this body can perform; robots get only such commands."""
         bounded = within_limits(command, body)
         self._log_of_changes(bounded.changes)
         return bounded.command

@@ -46,9 +46,9 @@ class InputRecorder(Protocol):
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
 
-    Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, the
-    event or timer is dropped and logged, and `dropped` is called with what and why: a message that a step can't bear
-    must not end the exhibition.
+    If a step fails, `rescue` may continue with another bundle, under which the event happens again. Without one, the
+    event or timer is dropped and logged, and `dropped` is called with it and the reason: a message that makes a step
+    fail must not end the exhibition.
 
     `observe` is shown every step in the order taken, and `steps` counts them: the first of a run is 1. `epoch` is when
     time 0 was [s since 1970], `timezone` where the clock on the wall hangs. A `recorder` keeps what is needed to take

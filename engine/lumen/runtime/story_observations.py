@@ -88,9 +88,7 @@ def expects_fall(story: Story, machine: MachineDefinition) -> bool:
 
 
 def expects_error(story: Story, machine: MachineDefinition) -> bool:
-    """Whether a story is about an error of a `do`: it says with `robot` what fails, or expects a state that only an
-    error leads to.
-    """
+    """Whether a story is about an error of a `do`: its `robot` sets a failure, or it expects a state of errors only."""
     transitions = [t for m in (machine, *machine.invoked.values()) for s in m.states.values() for t in s.transitions]
     names = {path: state.name for m in (machine, *machine.invoked.values()) for path, state in m.states.items()}
     failed, other = set[str](), set[str]()

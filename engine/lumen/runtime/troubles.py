@@ -1,4 +1,4 @@
-"""Troubles of a run: whatever became of it since, it did not go well."""
+"""Troubles of a run: after one of them the run does not count as successful, even if it recovers."""
 
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
@@ -11,7 +11,7 @@ from lumen.language.machines import MachineDefinition
 TroubleKind = Literal["fall", "dropped", "do", "joint"]
 
 _ENDED = {"error.do.": "`do`", "error.invoke.": "`invoke`"}
-"""What an error ended, by how its name begins."""
+"""The action that an error ended, by the prefix of the error's name."""
 
 
 class RunTrouble(NamedTuple):
@@ -24,7 +24,8 @@ class RunTrouble(NamedTuple):
 def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrouble]:
     """Yield the errors that ended a `do`, an `invoke` or other actions in this step, invoked behaviours included.
 
-    What was cancelled, or refused since a person keeps the robot still, ended as somebody wanted.
+    Errors of a command that was cancelled, or refused because a person keeps the robot still, are left out: they were
+    wanted.
     """
     if not (step.raised or step.invoked):
         return
@@ -52,7 +53,7 @@ def _wanted(reason: str) -> bool:
 
 
 def trouble_of_answer(event: Event) -> RunTrouble | None:
-    """Return the trouble that a robot's answer, or what it noticed, reports."""
+    """Return the trouble that an answer or an observation of the robot reports."""
     if event.name == FALLEN:
         return RunTrouble("fall", "the robot fell")
     missed = event.data.get(MISSED) if isinstance(event.data, dict) else None

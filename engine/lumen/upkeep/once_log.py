@@ -1,10 +1,10 @@
-"""Warnings that come again and again, logged once."""
+"""Repeated warnings, logged once."""
 
 import logging
 from collections.abc import Iterable
 
 MAX_LINES = 1_000
-"""How many lines are remembered, and so logged, at most."""
+"""The most different lines that are logged; further ones are dropped."""
 
 
 class OnceLog:

@@ -8,7 +8,7 @@ BURST = 5.0
 MAX_KEYS = 10_000
 """Keys that are counted at a time; beyond that counting begins anew."""
 MAX_SENDERS = 16
-"""How many senders of a key are counted apart at a time; all further ones are counted as one."""
+"""The most senders of a key that are counted separately at a time; further ones are counted as one."""
 
 
 class RateLimiter:
@@ -20,7 +20,7 @@ class RateLimiter:
         self._senders: dict[str, dict[str, float]] = {}
 
     def apart(self, key: str, sender: str) -> str:
-        """The key under which this sender's are counted: its own, unless too many others sent in the last `BURST`."""
+        """The key under which a sender's messages are counted: a separate one, unless too many others sent recently."""
         if len(self._senders) > MAX_KEYS:
             self._senders.clear()
         now, senders = self._clock(), self._senders.setdefault(key, {})

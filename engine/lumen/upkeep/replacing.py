@@ -1,4 +1,4 @@
-"""Saving a file as a whole or not at all: the content is written beside it, and then takes its place."""
+"""Saves a file as a whole or not at all: the content is written to a new file, which then replaces the old one."""
 
 import errno
 import os
@@ -10,10 +10,10 @@ from pathlib import Path
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Save the content under a path; raises OSError, and leaves what is there as it was.
+    """Save the content under a path. If that fails, raise OSError and leave an existing file unchanged.
 
-    A file that is there keeps its owner and rights, and a link stays a link: the file that it leads to is replaced. A
-    device or a pipe is written to, and so is a file that no other may replace: one of another owner, or a mounted one.
+    An existing file keeps its owner and rights. A link stays a link: its target is replaced. Devices and pipes are
+    written to directly, and so are files that can't be replaced: those of another owner, and mounted ones.
     """
     try:
         there = os.stat(path)
@@ -33,7 +33,7 @@ def replace_file(path: Path, content: bytes) -> None:
     except OSError as error:
         if error.errno != errno.EBUSY:
             raise
-        _overwrite(target, content)  # a file that a container has been given alone
+        _overwrite(target, content)  # a single file that is mounted into a container
     finally:
         with suppress(OSError):
             draft.unlink()

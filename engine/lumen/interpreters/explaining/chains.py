@@ -249,7 +249,7 @@ class Chain:
         return Link(kind, text, one.step.snapshot.epoch + one.at, place, id, values or {}, number)
 
     def _refusal(self, number: int, id: str) -> str:
-        """Why a command was refused, as the end of a text; empty if the robot began it."""
+        """The reason why a command was refused, as the end of a text; empty if the robot began it."""
         for one in self.history.steps[number + 1 :] if id else ():
             answer = answer_of(one.step.event) if one.step.event and not one.step.event.sendid else None
             if answer and answer.id == id:

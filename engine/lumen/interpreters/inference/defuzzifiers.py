@@ -47,9 +47,9 @@ def defuzzifier(
 
 
 def midpoints(variable: Variable) -> list[float]:
-    """Where an output's set is sampled: the middles of `resolution` equal parts of its range.
+    """The points at which an output's set is sampled: the middles of `resolution` equal parts of its range.
 
-    The top of a set that lies between two of them, such as a single point, is one more.
+    The top of a set that lies between two of them, such as a single point, is added.
     """
     step = (variable.maximum - variable.minimum) / variable.resolution
     points = [variable.minimum + (i + 0.5) * step for i in range(variable.resolution)]
@@ -58,7 +58,7 @@ def midpoints(variable: Variable) -> list[float]:
 
 
 def _between(term: Term, points: list[float], variable: Variable) -> Iterator[float]:
-    """Corners of a term at which it is true, and at no point beside them."""
+    """Yield the corners at which a term is above 0, if it is 0 at the sampled points next to them."""
     if term.kind in (*VALUE_TERMS, "function"):
         return
     shape = membership(NUMBERS, term)

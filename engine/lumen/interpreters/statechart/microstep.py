@@ -110,7 +110,7 @@ def count_microstep(context: ExecutionContext) -> None:
 
 
 def _round(transitions: tuple[Transition, ...]) -> str:
-    """The last transitions back to the one that comes again, each as what selects it and its state."""
+    """The last round of transitions, each shown with its event and its state."""
     last = next((i for i in range(2, len(transitions) + 1) if transitions[-i] is transitions[-1]), 1)
     taken = transitions[len(transitions) - min(last, MAX_SHOWN_TRANSITIONS + 1) + 1 :]
     ways = [f"`{t.event or 'always'}` of {f'`{t.source}`' if t.source else 'the behaviour'}" for t in taken]

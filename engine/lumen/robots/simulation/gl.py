@@ -34,9 +34,10 @@ def choose() -> str:
 
 
 def _settle() -> tuple[str, str]:
-    """The choice, the user's if there is one, and why it can't draw; mujoco chooses again if it was imported before.
+    """Choose a backend, the user's if one is set; return it and the reason if it can't draw.
 
-    What the environment asks for and what is not there leaves the physics, without pictures.
+    If a backend that the environment requests is missing, only the physics works, without pictures. If mujoco was
+    imported before, its choice is repeated.
     """
     wanted = os.environ.get("MUJOCO_GL", "").strip().lower()
     late = not wanted and sys.modules.get("mujoco.rendering.classic.gl_context")
@@ -51,7 +52,7 @@ def _settle() -> tuple[str, str]:
 
 
 def _fault(backend: str) -> str:
-    """Why mujoco and dm_control can't be imported with that backend; empty if they can, or are not installed."""
+    """The reason why mujoco and dm_control can't be imported with that backend; empty if not installed, or none."""
     screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform != "linux"
     if backend in _WITH_SCREEN and not screen:
         return f"MUJOCO_GL={backend} draws on a screen, and there is none: {_REMEDY}"
@@ -67,7 +68,7 @@ def _fault(backend: str) -> str:
             return ""
         return f"MUJOCO_GL={backend} needs {error.name}, which is not installed: {_REMEDY}"
     except Exception as error:
-        # PyOpenGL and the drivers raise whatever comes to hand, an AttributeError if a library is missing.
+        # PyOpenGL and the drivers raise exceptions of any type, such as AttributeError if a library is missing.
         return f"MUJOCO_GL={backend} does not work here ({' '.join(str(error).split())[:120]}): {_REMEDY}"
     return ""
 

@@ -82,11 +82,11 @@ class Motors:
         return "" if name in self._world.body.hands else "rad "
 
     def lag(self, name: str) -> float:
-        """How far what is sent to that joint's servo lay from where it was wanted, in the last period [rad]."""
+        """The distance from the joint's goal to the angle that was sent to its servo in the last period [rad]."""
         return self._short.item(self.index[name])
 
     def held_back(self, name: str) -> float:
-        """How far that joint is from where its servo was sent [rad]: something is in its way, or it is too weak."""
+        """The distance of a joint from the angle sent to its servo [rad]: it is obstructed, or too weak."""
         i = self.index[name]
         return abs(self._world.angles.item(i) - self.command.item(i))
 

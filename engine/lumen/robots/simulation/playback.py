@@ -19,8 +19,8 @@ APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
 _START_POSTURE_TOLERANCE = 0.05
 
 LATE, BLOCKED, BLOCKED_ON_THE_WAY = 0.05, 0.2, 0.4
-"""How far from a key a joint may be sent, and how far from there it may be at a motion's end, and at a key before
-[rad; hands 0..1]."""
+"""Tolerances [rad; hands 0..1]: of the angle sent to a joint at a key, and of the joint from that angle at the end of a
+motion and at the keys before."""
 
 
 class MotionPlayback:
@@ -52,7 +52,7 @@ class MotionPlayback:
 
     @property
     def missed(self) -> str:
-        """Which joints did not come to their keys, by how much at worst and when; empty if all did."""
+        """The joints that missed their keys, with the largest distance and its time; empty if none did."""
         far = sorted(self._missed.items(), key=lambda item: -item[1][0])
         parts = (f"`{joint}` was {by:.2g} {self._motors.unit(joint)}away at {at:.2f} s" for joint, (by, at) in far)
         return f"in `{self._motion.name}` a joint missed its goal: {', '.join(parts)}" if far else ""
@@ -102,7 +102,7 @@ class MotionPlayback:
         return True
 
     def _note_keys(self, t: float) -> None:
-        """Note the joints whose keys have passed, and that are not there: they can't move faster, or not at all."""
+        """Note the joints that are not at a key that has passed: they can't move faster, or not at all."""
         while self._keys and self._keys[0][0] <= t:
             _, joint = self._keys.pop(0)
             self._note(joint, self._motors.lag(joint), LATE, t)

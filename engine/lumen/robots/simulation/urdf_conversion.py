@@ -57,7 +57,7 @@ def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
 
 
 def mjcf_fault(path: Path) -> str:
-    """Why MuJoCo can't build the robot of an MJCF file; empty if it can."""
+    """The reason why MuJoCo can't build the robot of an MJCF file; empty if it can."""
     try:
         mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
