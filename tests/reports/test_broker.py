@@ -232,6 +232,8 @@ BODY = '{"x": 160, "y": 120}'
         (BODY.encode("utf-16-le"), JSON, "utf-16", "it is UTF-16: send UTF-8"),
         (BODY.encode("utf-16-be"), JSON, "", "it is UTF-16: send UTF-8"),
         ("hello".encode("utf-16-le"), TEXT, "", "it is UTF-16: send UTF-8"),
+        (BODY.encode("utf-32"), JSON, "", "it is UTF-32: send UTF-8"),
+        (b"\x00\x01\x02\x03", JSON, "", "it is not JSON"),
         (gzip.compress(BODY.encode()), JSON, "gzip", "it is compressed with gzip: send it as it is"),
         (gzip.compress(BODY.encode()), "", "", "it is compressed with gzip: send it as it is"),
         (gzip.compress(b"hello"), TEXT, "gzip", "it is compressed with gzip: send it as it is"),

@@ -286,6 +286,8 @@ def test_a_placeholder_of_another_tool_is_corrected(text: str, expected: str) ->
         ("2026-12-24T18:00:00Z", "write `2026-12-24 18:00`; times are in the project's time zone"),
         ("2026-12-24t8:00+01:00", "write `2026-12-24 08:00`; times are in the project's time zone"),
         ("0 18 * * 1-5", "this is a line of cron: write `mon-fri 18:00`"),
+        ("0 18 * * 0-7", "this is a line of cron: write `18:00`"),
+        ("2026-99-99T99:99Z", "write `2026-12-24 18:00`"),
         ("30 9,14 * * *", "this is a line of cron: write `09:30, 14:30`"),
         ("0 0 18 ? * MON-FRI", "this is a line of cron: write `mon-fri 18:00`"),
         ("*/5 * * * *", "this is a line of cron: days stand before times"),
@@ -392,6 +394,43 @@ def test_a_file_that_a_container_mounts_alone_is_written_to(tmp_path: Path, monk
     replace_file(file, b"new")
     assert file.read_bytes() == b"new"
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+@for_each("number", [errno.EACCES, errno.EROFS])
+def test_a_file_in_a_folder_without_room_for_another_is_written_to(number: int) -> None:
+    """For example a writable file in a folder that only its owner may write."""
+    with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        file = Path(folder, "a")
+        file.write_bytes(b"a longer text")
+
+        def refused(*given: object) -> None:
+            raise OSError(number, os.strerror(number))
+
+        patch.setattr(replacing, "_write", refused)
+        replace_file(file, b"new")
+        assert file.read_bytes() == b"new"
+        with pytest.raises(OSError, match=os.strerror(number)):
+            replace_file(Path(folder, "b"), b"new")
+
+
+def test_a_file_that_may_not_be_written_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "a"
+    file.write_bytes(b"kept")
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    with pytest.raises(PermissionError):
+        replace_file(file, b"new")
+    assert file.read_bytes() == b"kept"
+
+
+def test_a_folder_called_dev_holds_files_like_any_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "robots" / "dev" / "a"
+    file.parent.mkdir(parents=True)
+    file.write_bytes(b"old")
+    before = file.stat().st_ino
+    monkeypatch.chdir(tmp_path)
+    replace_file(Path("robots/dev/a"), b"new")
+    assert file.read_bytes() == b"new"
+    assert file.stat().st_ino != before
 
 
 def test_a_target_that_is_no_regular_file_is_written_to(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -203,8 +203,20 @@ def test_recursion_and_doubling_calls_end() -> None:
     assert [d.message for d in found] == ["`a` calls itself: here it does once"]
     doubling = "".join(f"def f{n}():\n    f{n + 1}()\n    f{n + 1}()\n" for n in range(30))
     last = "def f30():\n    motion.angleInterpolation('HeadYaw', 0.1, 1.0)\nf0()\n"
-    with pytest.raises(ForeignFileError, match="without an end"):
+    with pytest.raises(ForeignFileError, match="more than 20,000 steps"):
         read_gesture("a.py", (doubling + last).encode(), BODY)
+
+
+def test_a_loop_over_a_long_list_is_followed_only_as_far_as_it_is_short() -> None:
+    """Such a loop would take hours: it is read as one whose rounds are not known."""
+    call = "motion.angleInterpolation('HeadYaw', 0.1, 1.0)"
+    loop = f"for i in range(900):\n    x = [{'0,' * 2_000}]\n    {call}\n"
+    data, found = read_gesture("a.py", loop.encode(), BODY)
+    assert len(data["keyframes"]) == 1
+    assert "this is in a loop: here the robot does it once" in [d.message for d in found]
+    data, found = read_gesture("a.py", loop.replace("900", "3").encode(), BODY)
+    assert len(data["keyframes"]) == 3
+    assert found == []
 
 
 def test_calls_that_are_left_out_are_listed_at_their_places() -> None:

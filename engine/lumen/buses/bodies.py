@@ -152,7 +152,7 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
     """
     if len(data) > MAX_BODY_BYTES:
         raise ValueError(f"it has more than {MAX_BODY_BYTES:,} bytes")
-    if 0 in data[:2]:
+    if _is_utf_16(data):
         raise ValueError(UTF_16)
     try:
         text = data.decode()
@@ -170,10 +170,18 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
         raise ValueError("it holds an integer of thousands of digits") from error
 
 
+def _is_utf_16(data: bytes) -> bool:
+    """Whether each second byte of the beginning is zero, and no other one: ASCII in UTF-16 without a mark."""
+    even, odd = data[0:8:2], data[1:8:2]
+    return bool(odd) and any(all(letters) and not any(zeros) for letters, zeros in ((even, odd), (odd, even)))
+
+
 def _foreign(data: bytes, content_encoding: str) -> str:
     """Name the encoding that was found instead of plain UTF-8, and the remedy; empty if it can't be recognized."""
     if data.startswith(codecs.BOM_UTF8):
         return "it begins with a byte order mark (BOM), which JSON does not have: send UTF-8 without one"
+    if data.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
+        return "it is UTF-32: send UTF-8"
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return UTF_16
     if data.startswith(b"\x1f\x8b"):

@@ -131,6 +131,7 @@ class _FclReader:
         self.accu: dict[str, str] = {}
         self.ranges: dict[str, tuple[str, FclStatement]] = {}
         self.declarations: list[tuple[str, str, FclStatement]] = []
+        self.declared: set[str] = set()
 
     def place(self, offset: int, length: int = 1) -> Place:
         row, column = self.lines.line(offset), self.lines.column(offset)
@@ -201,9 +202,10 @@ class _FclReader:
                 self.findings.lost(self.at(statement), "this can't be read", "a declaration reads: a, b : REAL;")
                 continue
             names = [name.strip() for name in match["names"].split(",")]
-            for twice in {name for _, name, _ in self.declarations}.intersection(names):
+            for twice in self.declared.intersection(names):
                 message = f"`{twice}` is declared twice: the variables of both are read as one"
                 self.findings.changed(self.at(statement), message, "give the other one a name of its own")
+            self.declared.update(names)
             self.declarations += [(section.kind, name, statement) for name in names]
             if match["range"]:
                 self.ranges.update((name, (match["range"], statement)) for name in names)

@@ -249,7 +249,7 @@ class _FisReader:
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
         if side == "output":
-            spec["default"] = plain((ends[0] + ends[1]) / 2)  # MATLAB's value if no rule fires
+            spec["default"] = plain(ends[0] / 2 + ends[1] / 2)  # MATLAB's value if no rule fires
         if side == "output" and said.get("defuzzifier", "centroid") != "centroid":
             spec["defuzzifier"] = said["defuzzifier"]
         terms = {int(match[1][:6]): line for line in reversed(section.lines) if (match := _MF.fullmatch(line.key))}

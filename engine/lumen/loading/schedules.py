@@ -111,7 +111,12 @@ def _iso(text: str) -> str:
     if (found := _ISO.fullmatch(text.strip())) is None:
         return ""
     zone = "; times are in the project's time zone, `timezone` in lumen.yaml: convert it" if found[3] else ""
-    return f"write `{found[1]} {found[2].zfill(5)}`{zone}"
+    written = f"{found[1]} {found[2].zfill(5)}"
+    try:
+        read_schedule(written)
+    except MisreadTimeError:
+        written = "2026-12-24 18:00"  # the form alone
+    return f"write `{written}`{zone}"
 
 
 _CRON_DAYS = dict(zip("01234567", ("sun", *WEEKDAYS), strict=True))
@@ -127,6 +132,7 @@ def _cron(text: str) -> str:
     hint = "this is a line of cron: days stand before times, as in `mon-fri 18:00`"
     if not (minute.isdigit() and re.fullmatch(r"[0-9]+(,[0-9]+)*", hour) and (day, month) in (("*", "*"), ("?", "*"))):
         return hint
+    weekday = "*" if weekday in ("0-6", "0-7", "1-7") else weekday
     days = re.sub("[0-7]", lambda found: _CRON_DAYS[found[0]], weekday.lower()).strip("*?")
     times = ", ".join(f"{int(each):02}:{int(minute):02}" for each in hour.split(","))
     written = f"{days} {times}".strip()

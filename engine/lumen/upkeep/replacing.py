@@ -8,21 +8,28 @@ import stat
 from contextlib import suppress
 from pathlib import Path
 
+_IN_PLACE = (errno.EBUSY, errno.EACCES, errno.EPERM, errno.EROFS)
+"""Errors of a folder that does not allow a new file, or of a file that is a mount."""
+
 
 def replace_file(path: Path, content: bytes) -> None:
     """Save the content under a path. If that fails, raise OSError and leave an existing file unchanged.
 
     An existing file keeps its owner and rights. A link stays a link: its target is replaced. Devices and pipes are
-    written to directly, and so are files that can't be replaced: those of another owner, and mounted ones.
+    written to directly, and so are files that can't be replaced: those of another owner, mounted ones, and those in a
+    folder that can't be written. A file without the right to be written is not replaced.
     """
     try:
         there = os.stat(path)
     except FileNotFoundError:
         there = None
-    if (there and not stat.S_ISREG(there.st_mode)) or path.parts[1:2] in (("dev",), ("proc",)):
+    system = path.is_absolute() and path.parts[1:2] in (("dev",), ("proc",))
+    if (there and not stat.S_ISREG(there.st_mode)) or system:
         path.write_bytes(content)
         return
     target = Path(os.path.realpath(path))
+    if there and not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
     draft = target.with_name(f".lumen-{secrets.token_hex(6)}.new")
     try:
         _write(draft, content)
@@ -31,9 +38,9 @@ def replace_file(path: Path, content: bytes) -> None:
         else:
             os.replace(draft, target)
     except OSError as error:
-        if error.errno != errno.EBUSY:
+        if not there or error.errno not in _IN_PLACE:
             raise
-        _overwrite(target, content)  # a single file that is mounted into a container
+        _overwrite(target, content)  # mounted into a container, or in a folder that can't be written
     finally:
         with suppress(OSError):
             draft.unlink()

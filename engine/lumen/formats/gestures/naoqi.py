@@ -32,6 +32,8 @@ from lumen.language.diagnostics import Place, did_you_mean
 BEZIER, LINEAR = 3, 1
 MAX_STEPS = 20_000
 """Statements that are followed: functions that call each other may be endless."""
+MAX_PARTS = 1_000_000
+"""Parts of these statements beyond those of the file: a long list that a loop sets anew costs as much each time."""
 MAX_ROUNDS = 1_000
 """Rounds of a loop that are followed."""
 
@@ -52,7 +54,8 @@ def read_naoqi(file: str, text: str, findings: ConversionFindings, timeline: str
         except _TooManyStepsError as error:
             if rounds:
                 continue
-            raise broken(error.place, "too-large", "its functions call each other without an end") from None
+            message = f"it takes more than {MAX_STEPS:,} steps: do its functions call each other for ever?"
+            raise broken(error.place, "too-large", message) from None
         break
     findings.include(found)
     return curves
@@ -148,18 +151,21 @@ class _Reading:
         self.begin = self.end = 0.0
         self.entered: list[str] = []
         self.returned: dict[int, Any] = {}
-        self.steps = 0
+        self.steps = self.parts = 0
+        self.most_parts = MAX_PARTS + sum(1 for _ in ast.walk(tree))
+        self.sizes: dict[int, int] = {}
         self.follows_calls = True
         self.called = False
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
         """Follow statements in their order; return their result, None if it is not written out."""
         for statement, branch in statements(body, around, self._items):
-            self.steps += 1
-            if self.steps > MAX_STEPS:
-                raise _TooManyStepsError(self._place(statement))
             if isinstance(statement, FunctionNode):
                 continue
+            self.steps += 1
+            self.parts += self._size(statement)
+            if self.steps > MAX_STEPS or self.parts > self.most_parts:
+                raise _TooManyStepsError(self._place(statement))
             if isinstance(statement, ast.ClassDef):
                 self.run([inner for inner in statement.body if not isinstance(inner, FunctionNode)], branch)
                 continue
@@ -167,6 +173,12 @@ class _Reading:
             if isinstance(statement, ast.Return) and branch is Branch.ALWAYS:
                 return self._value(statement.value) if statement.value else None
         return None
+
+    def _size(self, statement: ast.stmt) -> int:
+        """How many parts a statement has."""
+        if id(statement) not in self.sizes:
+            self.sizes[id(statement)] = sum(1 for _ in ast.walk(statement))
+        return self.sizes[id(statement)]
 
     def _items(self, loop: ast.For) -> list[ast.expr] | None:
         """The values of a loop's variable, one per round; None if they are not written out, or are too many."""
