@@ -198,7 +198,8 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 def _is_slip(word: str, meant: str) -> bool:
     """Whether few letters differ: words that differ more may share letters in the same order by chance."""
     word, meant = word.lstrip("-"), meant.lstrip("-")  # of options
-    if word.startswith(meant) or meant.startswith(word):
+    short, long = sorted((word, meant), key=len)
+    if long.startswith(short) or long.endswith(short):
         return True
     if "." in meant and "." not in word and _is_slip(word, meant.rpartition(".")[2]):
         return True  # the last part of a name alone
