@@ -59,6 +59,12 @@ states:
 """
 
 
+@pytest.fixture(autouse=True)
+def wide(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Print each line whole."""
+    monkeypatch.setenv("COLUMNS", "300")
+
+
 def exhibition(folder: Path, behavior: str, story: str, **files: str) -> str:
     """Write a minimal project with this behaviour, the story `visitor`, and further behaviours and motions."""
     root = folder / "show"
