@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from lumen.interpreters.expressions import ExpressionError, Scope
-from lumen.interpreters.talk.hearing import Taken, hearing_of, said_in
+from lumen.interpreters.talk.hearing import Hearing, Taken, hearing_of, said_in
 from lumen.language.machines import MachineDefinition
 
 RowGuard = Callable[[Scope], bool]
@@ -18,10 +18,11 @@ RowGuard = Callable[[Scope], bool]
 class RowBlock:
     """The rows of one state; `own` are the guards that they have themselves, by the numbers of the rows."""
 
-    __slots__ = ("_any", "_machine", "_own")
+    __slots__ = ("_any", "_hearing", "_machine", "_own")
 
     def __init__(self, machine: MachineDefinition, own: Mapping[int, RowGuard | None]) -> None:
         self._machine, self._own, self._any = machine, own, next(iter(own))
+        self._hearing: Hearing | None = None  # not made before somebody speaks
 
     def guards(self, number: int) -> tuple[RowGuard, RowGuard]:
         """The guard of a row, and its guard when it is late."""
@@ -44,7 +45,10 @@ class RowBlock:
         return -1
 
     def _order(self, scope: Scope, late: bool) -> tuple[Taken, ...]:
-        return hearing_of(self._machine).order(self._any, said_in(scope.event), scope.context)[late]
+        hearing = self._hearing
+        if hearing is None:
+            hearing = self._hearing = hearing_of(self._machine)
+        return hearing.order(self._any, said_in(scope.event), scope.context)[late]
 
     def _is_true(self, taken: Taken, scope: Scope) -> bool:
         guard = self._own[taken.number]

@@ -42,8 +42,10 @@ class RowOrder(NamedTuple):
 
 def said_in(event: Any) -> str:
     """Return the text of an event in the form that expressions see, or an empty text."""
-    data = event.get("data") if isinstance(event, Mapping) else None
-    text = data.get("result") if isinstance(data, Mapping) else None
+    try:  # each row asks: faster than to look at the types first
+        text = event["data"]["result"]
+    except (KeyError, TypeError):
+        return ""
     return text if isinstance(text, str) else ""
 
 
