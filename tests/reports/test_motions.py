@@ -1,5 +1,6 @@
 """Motions and bodies from public bug reports: each keeps its numbers, and omitted parts are listed."""
 
+import gc
 from dataclasses import replace
 from math import degrees, radians
 from pathlib import Path
@@ -13,6 +14,7 @@ from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.formats.robot_models import read_robot
+from lumen.interpreters import bounds
 from lumen.interpreters.bounds import within_limits
 from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.language.commands import Look, Wake
@@ -20,6 +22,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
 from lumen.language.mirrors import mirror_of
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
+from lumen.language.robots import Body
 from lumen.language.roles import JointRole
 from lumen.language.skills import lack_of
 from lumen.loading.bodies import build_body
@@ -655,6 +658,34 @@ def test_a_command_within_the_limits_is_unchanged() -> None:
     assert within_limits(Aim({"HeadYaw": 9.0, "nose": 9.0}, 3.0), BODY).command == Aim(
         {"HeadYaw": limited("HeadYaw")[1], "nose": 9.0}, 1.0
     )
+
+
+def test_a_motion_is_analysed_once_for_each_body(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[tuple[str, Body]] = []
+    analysed = bounds._analysed
+
+    def counted(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
+        calls.append((motion.name, body))
+        return analysed(motion, body)
+
+    monkeypatch.setattr(bounds, "_analysed", counted)
+    near = MotionDefinition("near", 2.5, {"HeadYaw": (key(1.0, 1.0), key(2.0, 0.0))})
+    far = MotionDefinition("far", 2.5, {"HeadYaw": (key(1.0, 9.0), key(2.0, 0.0))})
+    bounds.analyse([near, far], BODY)
+    assert [name for name, _ in calls] == ["near", "far"]
+    first, second = (within_limits(Perform(far), BODY) for _ in range(2))
+    assert first == second
+    assert first.changes
+    assert within_limits(Perform(near), BODY) == (Perform(near), ())
+    assert len(calls) == 2
+    within_limits(Perform(replace(far)), BODY)
+    other = replace(BODY, name="another")
+    assert within_limits(Perform(far), other) == first
+    assert calls[2:] == [("far", BODY), ("far", other)]
+    number = len(bounds._analyses)
+    del near, far, first, second
+    gc.collect()
+    assert len(bounds._analyses) <= number - 2, "an analysis ends with its motion"
 
 
 def script(*lines: str, timeline: str = "") -> tuple[list[dict[str, Any]], list[Diagnostic]]:

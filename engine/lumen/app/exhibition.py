@@ -26,6 +26,7 @@ from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.errors import UsageError
+from lumen.interpreters.bounds import analyse
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import PROGRAM, MessageOrigin
@@ -119,6 +120,7 @@ class Exhibition:
 
             self.node.brain.recover = recover
             if story is None:
+                analyse(project.motions.values(), project.body)
                 self.node.parts.append(RecordsPart(directory.records, behavior))
                 if directory.home:
                     self.node.robot.foreign.record = directory.records.write

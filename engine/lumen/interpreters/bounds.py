@@ -1,5 +1,6 @@
 """Commands brought within the limits and speeds of a body, in one place for every robot that performs them."""
 
+import weakref
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -54,6 +55,12 @@ def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
             return BoundedCommand(command)
 
 
+def analyse(motions: Iterable[MotionDefinition], body: Body) -> None:
+    """Analyse motions before they are played: a dense one takes longer than a tick of the robot's loop."""
+    for motion in motions:
+        _kept(motion, body)
+
+
 def nearest_angles(wanted: Mapping[str, float], body: Body) -> dict[str, float]:
     """The nearest angles [rad] inside the limits of these joints, and inside the coupled ones among them."""
     near = dict(wanted)
@@ -82,7 +89,30 @@ def _shown(joint: str, angle: float, body: Body) -> str:
     return f"{angle:.3g}" if joint in body.hands else f"{degrees(angle):.1f} deg"
 
 
+class _Analysis(NamedTuple):
+    """What a motion becomes within the limits of a body; `inside` is None if it stays as it is."""
+
+    body: Body
+    inside: MotionDefinition | None
+    changes: tuple[str, ...]
+
+
+_analyses: dict[int, _Analysis] = {}
+"""The newest analysis of each motion that exists, by its identity: its tracks can't be hashed."""
+
+
 def _kept(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
+    """The motion within the limits and the changes, analysed once for each motion object and body."""
+    found = _analyses.get(id(motion))
+    if found is None or found.body is not body:
+        inside, changes = _analysed(motion, body)
+        if found is None:
+            weakref.finalize(motion, _analyses.pop, id(motion), None).atexit = False
+        found = _analyses[id(motion)] = _Analysis(body, inside if changes else None, changes)
+    return found.inside or motion, found.changes
+
+
+def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
     """The motion within the limits, slower if a joint needs more time; and the changes, once for each joint."""
     if not all(isfinite(x) for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle)):
         return motion, ()

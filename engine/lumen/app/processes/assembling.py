@@ -28,6 +28,7 @@ from lumen.app.reload.alerting import RefusalPart
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
+from lumen.interpreters.bounds import analyse
 from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -78,6 +79,8 @@ def assemble(
 
     presence = presence_of(project, bus, tuple(names), said)
     node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
+    if setup or BRAIN in names:
+        analyse(project.motions.values(), project.body)
     folder, records = home_of(run_directory.root, project.one_of_several), run_directory.records
     watch = AlertPart(alerts, bus, folder, names, presence, lambda: records.trouble) if alerts else None
     ring = run_directory.home is not None and story is None

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from lumen.app.reload.requests import status_key
+from lumen.interpreters.bounds import analyse
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import fingerprint, read_files
@@ -64,6 +65,8 @@ class BundleFollower:
             try:
                 files = self._files(wanted)  # what the brain has not judged is not read here
                 project = check_files(self._root, files)[0] if files else None
+                if project is not None:
+                    analyse(project.motions.values(), project.body)
             finally:
                 sys.setswitchinterval(usual)
             if project is not None:

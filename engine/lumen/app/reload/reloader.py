@@ -21,6 +21,7 @@ from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, faul
 from lumen.app.status import LastReload
 from lumen.buses.validated import by_key
 from lumen.errors import BusError, UsageError
+from lumen.interpreters.bounds import analyse
 from lumen.interpreters.changes import changes, live
 from lumen.language.causes import Cause
 from lumen.language.events import Event
@@ -170,12 +171,13 @@ class Reloader:
         self._queue.tick(now)
 
     def _judge(self, saved: SavedFiles) -> Validation:
-        """On the watcher's thread: routes that come with the files are made ready here, where nobody has to wait."""
+        """On the watcher's thread: routes and motions of the files are made ready here, where nobody has to wait."""
         validation = Validation(saved, "")
         try:
             validation = self._validator(saved)
             if validation.good and validation.project:
                 self._bus.prepare(by_key(validation.project))
+                analyse(validation.project.motions.values(), validation.project.body)
                 self._records.store(saved.files)
         except BusError as error:
             return replace(validation, fault=f"the bus refuses its routes: {error}")
