@@ -49,7 +49,7 @@ def test_git_takes_nothing_of_it_whoever_comes_first(first: str, tmp_path: Path)
         case "memory":
             Store(folder / "memory.db").visitors()
         case "commands":
-            DeduplicationLog(folder / "commands.jsonl").note("1")
+            DeduplicationLog(folder / "commands.jsonl").note("1", "desk")
     assert len(list(folder.iterdir())) >= 2
     assert staged(tmp_path) == ""
 

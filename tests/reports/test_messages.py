@@ -1,7 +1,10 @@
 """Ids and floods of one sender never make another sender's message a copy, lost or late."""
 
+import json
 import logging
+import time
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,10 +17,11 @@ from lumen.buses.properties import MessageProperties
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.buses.validated import validated
 from lumen.language.causes import MessageOrigin
-from lumen.language.commands import Rest, Say
+from lumen.language.commands import Rest, Say, Stop
 from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
-from lumen.ports import Message
-from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS
+from lumen.ports import Message, RobotCommand
+from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, RESTARTED
+from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RobotHost
 from lumen.upkeep.ratelimit import BURST, MAX_SENDERS, RateLimiter
@@ -103,7 +107,10 @@ class Stage:
     def __init__(self) -> None:
         it = project(messages=messages())
         self.robot, self.bus = RecordingRobot(BODY), validated(connect("memory://"), it)
-        self.host = RobotHost(it, self.robot, self.bus, self.robot)
+        self.begun: list[RobotCommand] = []
+        self.host = RobotHost(
+            it, self.robot, self.bus, self.robot, started=lambda command, _id: self.begun.append(command)
+        )
         self.answers = Collector()
         self.bus.subscribe("lumen.me", self.answers)
 
@@ -113,6 +120,19 @@ class Stage:
         for _ in range(400):
             self.robot.advance(0.02)
             self.host.tick(self.robot.time)
+
+    def receive(self, body: dict[str, Any], sender: str, id: str = "", at: float = 0.0) -> None:
+        """Receive a message as from a bus, at the next tick."""
+        self.host.server._orders._receive(Message("avatar.NAO.command", body, "lumen.me", "", id, sender, at))
+
+    def tick(self) -> None:
+        self.robot.advance(0.02)
+        self.host.tick(self.robot.time)
+
+    @property
+    def stops(self) -> int:
+        """The number of begun commands that stop the robot."""
+        return sum(isinstance(command, Rest | Stop) for command in self.begun)
 
     @property
     def said(self) -> list[str]:
@@ -134,6 +154,70 @@ def test_a_stop_is_performed_with_any_id() -> None:
     stage.send("desk", "say", text="Hello")
     stage.send("desk", "rest")
     assert any(isinstance(command, Rest) for _, command in stage.robot.performed)
+    stage.host.close()
+
+
+@for_each("method", ["stop", "stopMove", "rest"])
+def test_a_stop_with_the_same_id_and_body_is_performed_again(method: str) -> None:
+    stage = Stage()
+    body = {"method": method, "id": "stop"}
+    for sender, id, at in [
+        ("panel", "m1", 1000.0),
+        ("panel", "m2", 1060.0),
+        ("panel", "m2", 1090.0),
+        ("desk", "m1", 1.0),
+    ]:
+        stage.receive(body, sender, id, at)
+        stage.tick()
+    assert stage.stops == 4
+    stage.host.close()
+
+
+def test_a_stop_that_the_bus_delivers_again_is_performed_once() -> None:
+    stage = Stage()
+    for _ in range(2):
+        stage.receive({"method": "stop", "id": "stop"}, "panel", "m1", 1000.0)
+        stage.tick()
+    assert stage.stops == 1
+    assert stage.answers.bodies[-1] == {"id": "stop", "state": "finished", "method": "stop"}
+    for _ in range(2):  # without an id of the message, it may be a new one
+        stage.receive({"method": "stop", "id": "again"}, "panel")
+        stage.tick()
+    assert stage.stops == 3
+    stage.host.close()
+
+
+@for_each(
+    ("line", "refused"),
+    [
+        (["1", "desk"], {"desk"}),
+        (["1", ""], {""}),
+        (["1"], {"desk", "door", ""}),  # an older version did not record the sender
+    ],
+)
+def test_after_a_restart_an_id_is_taken_for_its_sender_and_never_for_a_stop(
+    line: list[str], refused: set[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "commands.jsonl"
+    for sender in ("desk", "door", ""):
+        file.write_text(json.dumps([time.time(), *line]) + "\n", "utf-8")
+        stage = Stage()
+        stage.host.server.recall(DeduplicationLog(file))
+        stage.receive({"method": "say", "id": "1", "parameter": {"text": "Hello"}}, sender, "m1")
+        stage.tick()
+        assert (stage.begun == []) == (sender in refused)
+        assert (stage.answers.bodies[-1].get("reason") == RESTARTED) == (sender in refused)
+        stage.receive({"method": "stop", "id": "1"}, sender, "m2")
+        stage.tick()
+        assert stage.stops == 1
+        stage.host.close()
+
+
+def test_the_sender_of_a_begun_command_is_recorded(tmp_path: Path) -> None:
+    stage = Stage()
+    stage.host.server.recall(DeduplicationLog(tmp_path / "commands.jsonl"))
+    stage.send("desk", "say", text="Hello")
+    assert [command[1:] for command in DeduplicationLog(tmp_path / "commands.jsonl").before] == [("1", "desk")]
     stage.host.close()
 
 

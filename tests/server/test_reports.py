@@ -218,23 +218,23 @@ def test_a_ledger_keeps_the_newest_and_a_line_that_was_cut_short_harms_nobody(tm
     file = tmp_path / "commands"
     ledger = DeduplicationLog(file)
     for i in range(2_500):
-        ledger.note(f"n\n{i}")
+        ledger.note(f"n\n{i}", "desk")
     assert len(file.read_bytes().splitlines()) <= 2_000
     with file.open("ab") as end:
         end.write(b'"n\xff')
-    assert DeduplicationLog(file).before[-1] == "n\n2499"
+    assert DeduplicationLog(file).before[-1][1:] == ("n\n2499", "desk")
     assert len(DeduplicationLog(file).before) >= 999
 
 
 def test_what_was_begun_long_before_a_restart_may_come_again(tmp_path: Path) -> None:
     file = tmp_path / "commands"
     file.write_text(f'[{time.time() - DEDUPLICATION_WINDOW - 1}, "1"]\n[{time.time() - 5}, "2"]\n"3"\n', "utf-8")
-    assert DeduplicationLog(file).before == ("2",)
+    assert [command[1:] for command in DeduplicationLog(file).before] == [("2", None)]
 
 
 def test_a_disk_that_takes_nothing_is_told_of_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "home").write_text("a file, and no folder")
     ledger = DeduplicationLog(tmp_path / "home" / "commands")
     for id in ("a", "b"):
-        ledger.note(id)
+        ledger.note(id, "desk")
     assert [record.getMessage().count("can't be kept in") for record in caplog.records] == [1]

@@ -67,7 +67,7 @@ class CommandQueries:
         if record is None:
             record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN_COMMAND)
             if cancelled:
-                self._reports.remember(record)
+                self._reports.remember(record, None)
         elif cancelled and not record.over:
             self._robot.cancel(record.at)
         self._reports.repeat(record, message)

@@ -71,10 +71,12 @@ class CommandReceiver:
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
     begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
     never one too many, nor too late. A command with an `id` is performed once, however often its sender sends it;
-    another one with that id is refused, unless it stops the robot. `clock` [s] measures how long they have waited;
-    `begins` is called for each that begins, `refused` with the method and the reason for each that may not, `hurry`
-    when `begin` should be called soon, because a message came that stops the robot. Commands that move the robot are
-    refused while a person keeps it still (`hold`).
+    another one with that id is refused. What stops the robot is performed each time that it is sent, with any id; only
+    a message that the bus delivers a second time is not.
+
+    `clock` [s] measures how long they have waited; `begins` is called for each that begins, `refused` with the method
+    and the reason for each that may not, `hurry` when `begin` should be called soon, because a message came that stops
+    the robot. Commands that move the robot are refused while a person keeps it still (`hold`).
     """
 
     def __init__(
@@ -114,8 +116,9 @@ class CommandReceiver:
         What rests or stops the robot is not noted: that may be done twice.
         """
         self._log_of_begun = begun_before
-        for id in begun_before.before:
-            self._reports.remember(CommandRecord(Message("", None), id, state=FAILED, reason=RESTARTED))
+        for begun in begun_before.before:
+            record = CommandRecord(Message("", None), begun.id, state=FAILED, reason=RESTARTED)
+            self._reports.remember(record, begun.sender)
 
     @property
     def waiting(self) -> bool:
@@ -234,18 +237,20 @@ class CommandReceiver:
         """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
         message = arrival.message
         record = CommandRecord(message, own_id(message.body), method_of(message.body), body=message.body)
+        stopping = stops(message.body)
         if record.method in CommandQueries.METHODS:
             self._queries.answer(message)
             return
         if known := self._reports.find(record.id, message.sender):
-            if known.body is None or known.body == message.body:
+            performed = _delivered_again(known.asker, message) if stopping else known.body in (None, message.body)
+            if performed:
                 self._reports.repeat(known, message)
                 return
-            if not stops(message.body):
+            if not stopping:
                 self.drops.add(message.key, ID_TAKEN)
                 self._refuse(message, ID_TAKEN)
                 return
-        self._reports.remember(record)
+        self._reports.remember(record, message.sender)
         try:
             self._check_age(arrival)
             if overtaken:
@@ -286,7 +291,7 @@ class CommandReceiver:
         if self._reports.running >= MAX_RUNNING_COMMANDS and not own and not isinstance(command, Rest | Stop):
             raise RobotRefusedError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
         if record.id and not isinstance(command, Rest | Stop):
-            self._log_of_begun.note(record.id)
+            self._log_of_begun.note(record.id, record.asker.sender)
         if isinstance(command, Aim | Live):
             self._robot.start(self._number(), command)
             self._reports.change(record, FINISHED)
@@ -347,3 +352,8 @@ class CommandReceiver:
             send()
         except BusError as error:
             _log.warning("an answer to a command was not sent: %s", error)
+
+
+def _delivered_again(known: Message, message: Message) -> bool:
+    """Whether this is the known message itself, delivered a second time; without an id, it counts as a new one."""
+    return bool(message.id) and (known.id, known.time, known.body) == (message.id, message.time, message.body)

@@ -84,10 +84,9 @@ class CommandReports:
         others = (record for record in reversed(self._known.values()) if record.id == id)
         return self.find(id, sender) or next(others, None)
 
-    def remember(self, record: CommandRecord) -> None:
-        """Remember a command, so that its sender gets a report if it comes again; without a `body`, any sender."""
+    def remember(self, record: CommandRecord, sender: str | None) -> None:
+        """Remember a command, so that its sender gets a report if it comes again; any sender if `sender` is None."""
         if record.id:
-            sender = None if record.body is None else record.asker.sender
             self._known[sender, record.id] = record
             if len(self._known) > MAX_REMEMBERED_COMMANDS:
                 self._known.pop(next((key for key, old in self._known.items() if old.over), next(iter(self._known))))

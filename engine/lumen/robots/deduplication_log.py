@@ -7,6 +7,7 @@ import time
 from collections import deque
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 from lumen.upkeep.private_folder import private_folder
 
@@ -20,8 +21,19 @@ DEDUPLICATION_WINDOW = 60.0
 _log = logging.getLogger(__name__)
 
 
+class BegunCommand(NamedTuple):
+    """A command that was begun `at` [s since 1970], by the `id` that its `sender` gave it.
+
+    `sender` is None in a file of an older version, which did not record it.
+    """
+
+    at: float
+    id: str
+    sender: str | None = None
+
+
 class DeduplicationLog:
-    """The ids of commands in a file, one to a line, each written before its command is begun; without a file none.
+    """The begun commands in a file, one to a line, each written before its command is begun; without a file none.
 
     `before` are those of the process before that are younger than `DEDUPLICATION_WINDOW`, the oldest first: who counts
     its commands from 1 at each start may do so. The system has what is written, so that a process that is killed loses
@@ -31,33 +43,33 @@ class DeduplicationLog:
     def __init__(self, file: Path | None = None) -> None:
         self._file, self._lines, self._warned = file, 0, False
         since = time.time() - DEDUPLICATION_WINDOW
-        self.before = tuple(id for at, id in self._read() if at >= since)
+        self.before = tuple(command for command in self._read() if command.at >= since)
 
-    def note(self, id: str) -> None:
-        """This command is begun now."""
+    def note(self, id: str, sender: str) -> None:
+        """Record that this command of that sender is begun now."""
         if self._file is None:
             return
         if self._lines >= 2 * MAX_LOGGED_IDS:
             self._shorten()
-        self._write(_line(time.time(), id), os.O_APPEND)
+        self._write(_line(BegunCommand(time.time(), id, sender)), os.O_APPEND)
         self._lines += 1
 
-    def _read(self) -> list[tuple[float, str]]:
-        """When each was begun (Unix), and its id; a line that was cut short is none."""
-        found: deque[tuple[float, str]] = deque(maxlen=MAX_LOGGED_IDS)
+    def _read(self) -> list[BegunCommand]:
+        """Return the commands in the file, except for a line that was cut short."""
+        found: deque[BegunCommand] = deque(maxlen=MAX_LOGGED_IDS)
         if self._file is not None:
             with suppress(OSError), self._file.open(encoding="utf-8", errors="replace") as lines:
                 for line in lines:
                     self._lines += 1
                     with suppress(ValueError, TypeError, OverflowError, RecursionError):
-                        at, id = json.loads(line)
-                        found.append((float(at), str(id)))
+                        at, id, *rest = json.loads(line)
+                        found.append(BegunCommand(float(at), str(id), str(rest[0]) if rest else None))
         return list(found)
 
     def _shorten(self) -> None:
         self._lines = 0
         kept = self._read()
-        self._write("".join(_line(at, id) for at, id in kept), os.O_TRUNC)
+        self._write("".join(_line(command) for command in kept), os.O_TRUNC)
         self._lines = len(kept)
 
     def _write(self, text: str, how: int) -> None:
@@ -75,5 +87,6 @@ class DeduplicationLog:
                 _log.warning("which commands were begun can't be kept in %s: %s", self._file, error.strerror)
 
 
-def _line(at: float, id: str) -> str:
-    return json.dumps([round(at, 3), id]) + "\n"
+def _line(command: BegunCommand) -> str:
+    sender = [] if command.sender is None else [command.sender]
+    return json.dumps([round(command.at, 3), command.id, *sender]) + "\n"

@@ -29,7 +29,10 @@ from lumen.robots.robot_routes import (
 from lumen.robots.sense_codec import decode_reading
 
 RESEND_PERIOD = 1.0
-"""How long a command may stay unanswered before it is sent again [s]: the robot performs it once all the same."""
+"""How long a command may stay unanswered before it is sent again [s].
+
+The robot performs it once all the same, unless it stops the robot: to stop twice is safe.
+"""
 COMMAND_ANSWER_TIMEOUT = 5.0
 """How long one may stay without any answer [s]: it failed then, and is not wanted any more."""
 OUTCOME_QUERY_PERIOD = 5.0
