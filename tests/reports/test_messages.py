@@ -20,7 +20,7 @@ from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Say, Stop
 from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
 from lumen.ports import Message, RobotCommand
-from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, RESTARTED
+from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RobotHost
@@ -104,8 +104,9 @@ def test_the_first_of_many_repeated_ids_is_logged_with_what_to_do(caplog: pytest
 class Stage:
     """A hosted recording robot, and modules that send it commands with the same id."""
 
-    def __init__(self) -> None:
+    def __init__(self, keep: int | None = None) -> None:
         it = project(messages=messages())
+        it = replace(it, routes={**it.routes, "command": replace(it.routes["command"], keep=keep)})
         self.robot, self.bus = RecordingRobot(BODY), validated(connect("memory://"), it)
         self.begun: list[RobotCommand] = []
         self.host = RobotHost(
@@ -218,6 +219,30 @@ def test_the_sender_of_a_begun_command_is_recorded(tmp_path: Path) -> None:
     stage.host.server.recall(DeduplicationLog(tmp_path / "commands.jsonl"))
     stage.send("desk", "say", text="Hello")
     assert [command[1:] for command in DeduplicationLog(tmp_path / "commands.jsonl").before] == [("1", "desk")]
+    stage.host.close()
+
+
+def test_the_waiting_commands_of_the_behaviour_shut_out_no_stop_and_no_other_module() -> None:
+    stage = Stage(keep=3)
+    stage.host.server.follow(lambda id: id.startswith("session."))
+    say = {"method": "say", "parameter": {"text": "Hello"}}
+    for i in range(MAX_WAITING_OWN + 1):
+        stage.receive({**say, "id": f"session.d{i}"}, "brain")
+    assert stage.answers.bodies == [
+        {"id": "session.d1000", "state": "failed", "method": "say", "reason": "1000 commands are waiting already"}
+    ]
+    for i in range(4):
+        stage.receive({**say, "id": f"p{i}"}, "panel")
+    assert [(body["id"], body["reason"]) for body in stage.answers.bodies[1:]] == [
+        ("p3", "3 commands are waiting already")
+    ]
+    stage.receive({"method": "stop", "id": "s1"}, "panel")
+    stage.receive({"method": "rest", "id": "session.s2"}, "brain")
+    stage.tick()
+    assert stage.stops == len(stage.begun) == 2
+    stage.receive({**say, "id": "p4"}, "panel")
+    stage.tick()
+    assert stage.begun[2:] == [Say("Hello")], "there is room again"
     stage.host.close()
 
 

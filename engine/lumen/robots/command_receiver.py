@@ -37,8 +37,9 @@ from lumen.upkeep.once_log import OnceLog
 from lumen.upkeep.threads import MessageGuard
 
 MAX_WAITING_COMMANDS = 1_000
+"""The number of commands of other modules that may wait."""
 MAX_WAITING_OWN = 1_000
-"""The number of commands of the behaviour that may wait in addition."""
+"""The number of commands of the behaviour that may wait beside them."""
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
@@ -69,10 +70,12 @@ class CommandReceiver:
 
     Messages may come on any thread; the robot is touched by `begin` alone. Everybody gets an answer, as `Reports` has
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
-    begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
-    never one too many, nor too late. A command with an `id` is performed once, however often its sender sends it;
-    another one with that id is refused. What stops the robot is performed each time that it is sent, with any id; only
-    a message that the bus delivers a second time is not.
+    begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live. Those of the
+    behaviour are counted apart. What stops the robot is never one too many, nor too late.
+
+    A command with an `id` is performed once, however often its sender sends it; another one with that id is refused.
+    What stops the robot is performed each time that it is sent, with any id; only a message that the bus delivers a
+    second time is not.
 
     `clock` [s] measures how long they have waited; `begins` is called for each that begins, `refused` with the method
     and the reason for each that may not, `hurry` when `begin` should be called soon, because a message came that stops
@@ -94,6 +97,7 @@ class CommandReceiver:
         self.hold = PersonHold()
         self.is_brains: Callable[[str], bool] = lambda _id: False
         self._came: deque[_Arrival] = deque()
+        self._own_waiting = self._others_waiting = 0
         self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
         self._coming = threading.Lock()
         self._closed = False
@@ -133,7 +137,7 @@ class CommandReceiver:
         for arrival in self._taken(self._aims):
             with self.guard(arrival.message.key):
                 self._aim(arrival)
-        came = self._taken(self._came)
+        came = self._taken_commands()
         last = max((i for i, arrival in enumerate(came) if stops_all(arrival.message.body)), default=-1)
         before, after = came[: last + 1], came[last + 1 :]
         for arrival in [a for a in before if stops(a.message.body)]:
@@ -184,7 +188,7 @@ class CommandReceiver:
             undo()
         with self._coming:
             self._closed = True
-        for arrival in self._taken(self._came):
+        for arrival in self._taken_commands():
             self._refuse(arrival.message, ENDED)
         self._reports.end()
         self.drops.tell(all=True)
@@ -196,14 +200,17 @@ class CommandReceiver:
 
     def _receive(self, message: Message) -> None:
         """On whichever thread the bus has."""
+        stopping, own = stops(message.body), self.is_brains(own_id(message.body))
         with self._coming:
-            refusal = ENDED if self._closed else self._full(message)
+            refusal = ENDED if self._closed else "" if stopping else self._full(own=own)
             if not refusal:
                 self._came.append(_Arrival(message, self._clock()))
+                self._own_waiting += own and not stopping
+                self._others_waiting += not own and not stopping
         if refusal:
             self.drops.add(message.key, refusal)
             self._refuse(message, refusal)
-        elif stops(message.body):
+        elif stopping:
             self._hurry()
 
     def _receive_aim(self, message: Message) -> None:
@@ -213,13 +220,18 @@ class CommandReceiver:
     def _taken(waiting: deque[_Arrival]) -> list[_Arrival]:
         return [waiting.popleft() for _ in range(len(waiting))]
 
-    def _full(self, message: Message) -> str:
-        """Why there is no room for this one; empty where there is."""
-        waiting, most = len(self._came), MAX_WAITING_COMMANDS
-        if self.is_brains(own_id(message.body)):
-            most += MAX_WAITING_OWN
-        elif not stops(message.body):
+    def _taken_commands(self) -> list[_Arrival]:
+        with self._coming:
+            self._own_waiting = self._others_waiting = 0
+            return self._taken(self._came)
+
+    def _full(self, *, own: bool) -> str:
+        """Why there is no room for one more, of the behaviour (`own`) or of other modules; empty if there is room."""
+        if own:
+            waiting, most = self._own_waiting, MAX_WAITING_OWN
+        else:
             route = self._project.routes.get(COMMAND_ROUTE)
+            waiting, most = self._others_waiting, MAX_WAITING_COMMANDS
             most = min(most, route.keep if route and route.keep else most)
         return f"{waiting} commands are waiting already" if waiting >= most else ""
 
