@@ -16,10 +16,12 @@ from lumen.buses.intake import Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.buses.validated import validated
+from lumen.interpreters import bounds
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Say, Stop
+from lumen.language.motions import MotionDefinition
 from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
-from lumen.ports import Message, RobotCommand
+from lumen.ports import Message, Perform, RobotCommand
 from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.recording import RecordingRobot
@@ -243,6 +245,19 @@ def test_the_waiting_commands_of_the_behaviour_shut_out_no_stop_and_no_other_mod
     stage.receive({**say, "id": "p4"}, "panel")
     stage.tick()
     assert stage.begun[2:] == [Say("Hello")], "there is room again"
+    stage.host.close()
+
+
+def test_a_motion_that_comes_with_each_play_is_analysed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    analysed: list[MotionDefinition] = []
+    monkeypatch.setattr(bounds, "_analysed", lambda motion, _body: analysed.append(motion) or (motion, ()))
+    stage = Stage()
+    nod, bow = ({"name": name, "duration": 1.0, "tracks": {"HeadYaw": [[0.5, 0.1]]}} for name in ("nod", "bow"))
+    for i, motion in enumerate([nod, bow, nod, bow]):
+        stage.receive({"method": "perform", "id": f"p{i}", "parameter": {"motion": motion}}, "brain")
+        stage.tick()
+    assert [command.motion.name for command in stage.begun if isinstance(command, Perform)] == ["nod", "bow"] * 2
+    assert [motion.name for motion in analysed] == ["nod", "bow"]
     stage.host.close()
 
 

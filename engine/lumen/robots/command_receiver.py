@@ -15,6 +15,7 @@ from lumen.errors import BusError, RobotError, RobotRefusedError
 from lumen.interpreters.bounds import within_limits
 from lumen.language.commands import Language, Rest, Say, Stop, Wake
 from lumen.language.events import MISSED, Event
+from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Live, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
@@ -44,6 +45,8 @@ MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
 MAX_RUNNING_COMMANDS = 100
+MAX_REMEMBERED_MOTIONS = 20
+"""How many of the last motions are remembered with their analysis."""
 MAX_BACKLOG = 15.0
 """How long about a command may have to wait for those before it [s]; what comes then is refused."""
 MAX_SPEECH = 60.0
@@ -110,6 +113,7 @@ class CommandReceiver:
         self._numbers, self._own_numbers = count(1), count(1)
         self._language = ""
         self._log_of_begun = DeduplicationLog()
+        self._motions: deque[MotionDefinition] = deque(maxlen=MAX_REMEMBERED_MOTIONS)
         self._undo: dict[str, tuple[str, Callable[[], None]]] = {}
         for route in (COMMAND_ROUTE, STOP_ROUTE, AIM_ROUTE):
             self._undo[route] = self._listen(route)
@@ -293,6 +297,8 @@ class CommandReceiver:
         own = self.is_brains(record.id)
         if reason := self.hold.admit(command, behavior=own):
             raise RobotRefusedError(reason)
+        if isinstance(command, Perform):
+            command = Perform(self._remembered(command.motion))
         bounded = within_limits(command, self._project.body)
         command = bounded.command
         self._log_of_changes(bounded.changes)
@@ -316,6 +322,14 @@ class CommandReceiver:
         self._reports.accept(record)
         self._robot.start(record.at, command)
         self._begins(command, record.id)
+
+    def _remembered(self, motion: MotionDefinition) -> MotionDefinition:
+        """Return the remembered motion that is equal: a brain in another process sends a motion with each play."""
+        for known in self._motions:
+            if known == motion:
+                return known
+        self._motions.append(motion)
+        return motion
 
     def _check_backlog(self, record: CommandRecord, command: RobotCommand) -> None:
         """Raises RobotRefusedError where it would wait for too long: nobody wants it any more by then."""
