@@ -35,10 +35,20 @@ def states(count: int) -> str:
     return json.dumps({"id": "m", "states": {f"s{i}": {"on": {"e": f"s{(i + 1) % count}"}} for i in range(count)}})
 
 
+def invocations(count: int) -> str:
+    return scxml('<state id="a">', '<invoke src="b"/>' * count, "</state>")
+
+
+def invoking_states(count: int) -> str:
+    return scxml(*(f'<state id="a{i}"><invoke src="b"/></state>' for i in range(count)))
+
+
 SHAPES: dict[str, tuple[str, Callable[[int], str]]] = {
     "a transition of many targets": ("scxml", targets),
     "a state of many events": ("json", events),
     "many states": ("json", states),
+    "many invocations": ("scxml", invocations),
+    "many states that invoke": ("scxml", invoking_states),
 }
 
 

@@ -18,7 +18,6 @@ from lumen.formats.unused_names import unused_name
 from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import RESUME_WORDS
-from lumen.loading.transitions import rivals
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -48,8 +47,10 @@ class _ScxmlReader:
         self.contents = ScxmlActionReader(self.context, self.findings)
         self.transitions = ScxmlTransitionReader(self.outline, self.contents, self.findings)
         self.passed: dict[ForeignState, dict[str, Any]] = {}
-        self.invoked: list[tuple[ForeignState, str]] = []
-        """The state and the id of each invocation so far."""
+        self.given = {element.get("id") for element in scxml.walk() if element.tag == "invoke"}
+        """The ids that the file gives to invocations."""
+        self.invoked: dict[str, _ActiveTogether] = {}
+        """The states of the invocations so far, by the id of the invocation."""
 
     def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
         root = self.outline.root
@@ -172,7 +173,8 @@ class _ScxmlReader:
         data: dict[str, Any] = {}
         afters = self._afters(node)
         for key, tag in (("entry", "onentry"), ("exit", "onexit")):
-            blocks = [e for e in node.source.of(tag) if e not in afters[tag]]
+            own_blocks = set(map(id, afters[tag]))
+            blocks = [e for e in node.source.of(tag) if id(e) not in own_blocks]
             if actions := [action for block in blocks for action in self.contents.block(block.children)]:
                 data[key] = actions
             self._several(blocks)
@@ -224,14 +226,17 @@ class _ScxmlReader:
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
         """The row with an id that nothing else has at the same time; raises LeftOutError if the file gives the id."""
         id = row.get("id", row["behavior"])
-        taken = {name for state, name in self.invoked if rivals([state, node], lambda s: str(s.source.tag)) is None}
-        if element.get("id") and id in taken:
+
+        def is_taken(name: str) -> bool:
+            return name in self.invoked and self.invoked[name].meets(node)
+
+        if element.get("id") and is_taken(id):
             raise LeftOutError(f"a second one has the id `{id}`")
         if not element.get("id"):
-            taken |= {other.get("id") for other in self.scxml.walk() if other.tag == "invoke"}
-            if (free := unused_name(id, taken.__contains__, len(taken))) != id:
+            many = len(self.given) + len(self.invoked)
+            if (free := unused_name(id, lambda name: name in self.given or is_taken(name), many)) != id:
                 id = row["id"] = free
-        self.invoked.append((node, id))
+        self.invoked.setdefault(id, _ActiveTogether()).add(node)
         return row
 
     def _several(self, blocks: list[XmlElement]) -> None:
@@ -244,12 +249,15 @@ class _ScxmlReader:
         """The `<send>`, `<cancel>` and events that an `after` of ours was written as."""
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
         name = node.name or self.outline.title
+        exits: dict[str, list[XmlElement]] = {}
+        for block in (b for b in node.source.of("onexit") if len(b.children) == 1):
+            exits.setdefault(block.children[0].get("sendid"), []).append(block)
         for block in node.source.of("onentry"):
             send = block.children[0] if len(block.children) == 1 else None
             if send is None or send.tag != "send" or not send.get("id").startswith("after."):
                 continue
             text = send.get("id").removeprefix("after.").removesuffix(f".{name}")
-            cancels = [b for b in node.source.of("onexit") if [c.get("sendid") for c in b.children] == [send.get("id")]]
+            cancels = exits.get(send.get("id"), [])
             whole = set(send.attributes) == {"event", "id", "delay"} and not send.children
             whole = whole and milliseconds(send.get("delay")) == milliseconds(text)
             if f"after.{text}.{name}" == send.get("event") == send.get("id") and cancels and whole:
@@ -265,6 +273,34 @@ class _ScxmlReader:
             except (LeftOutError, ScriptError) as error:
                 self.findings.lost(element.place, f"the data of `{node.name}`: {error}")
         return None
+
+
+class _ActiveTogether:
+    """A set of states, which finds whether a further one can be active together with one of them.
+
+    Two states can if one is in the other, or if they are in different regions of a parallel state.
+    """
+
+    def __init__(self) -> None:
+        self._states: set[ForeignState] = set()
+        self._around: dict[ForeignState, set[ForeignState]] = {}
+        """The states around these, each with its children in which they are."""
+
+    def add(self, state: ForeignState) -> None:
+        self._states.add(state)
+        while state.parent is not None:
+            self._around.setdefault(state.parent, set()).add(state)
+            state = state.parent
+
+    def meets(self, state: ForeignState) -> bool:
+        if state in self._states or state in self._around:
+            return True
+        while (parent := state.parent) is not None:
+            others = len(self._around.get(parent, ())) - (state in self._around.get(parent, ()))
+            if parent in self._states or (others and parent.source.tag == "parallel"):
+                return True
+            state = parent
+        return False
 
 
 def _with_entry(data: dict[str, Any], late: list[ActionData]) -> dict[str, Any]:
