@@ -1,5 +1,7 @@
 """Transitions from one region into another: they leave and enter the whole parallel state."""
 
+from itertools import islice
+
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
@@ -11,17 +13,32 @@ CROSSES_REGIONS = Code(
     "a transition leads into another region, so that all regions are left and begin anew",
 )  # fmt: skip
 
+MAX_SHOWN_REGIONS = 6
+"""The number of regions that the hint names."""
+
 
 def check(draft: ProjectDraft) -> None:
     """Report transitions that leave regions other than their own."""
     for name, machine in draft.behaviors.items():
-        report = draft.report("behaviors", name)
+        report, regions = draft.report("behaviors", name), _regions(machine)
         for state in machine.states.values():
             for transition in state.transitions:
-                _crossing(machine, transition, report)
+                _crossing(machine, transition, regions, report)
 
 
-def _crossing(machine: MachineDefinition, transition: Transition, report: DocumentReport) -> None:
+def _regions(machine: MachineDefinition) -> dict[str, dict[str, str]]:
+    """The regions of each parallel state, with their names."""
+    states = machine.states
+    return {
+        path: {child: states[child].name for child in state.children if states[child].kind is not StateKind.HISTORY}
+        for path, state in states.items()
+        if state.kind is StateKind.PARALLEL
+    }
+
+
+def _crossing(
+    machine: MachineDefinition, transition: Transition, regions_of: dict[str, dict[str, str]], report: DocumentReport
+) -> None:
     """A parallel state is never the domain of a transition (SCXML's findLCCA), so the state around it is."""
     path: str | None = transition.source
     while path is not None:
@@ -32,12 +49,15 @@ def _crossing(machine: MachineDefinition, transition: Transition, report: Docume
         path = parallel.parent
     else:
         return
-    regions = [child for child in parallel.children if machine.states[child].kind is not StateKind.HISTORY]
-    entered = {region for region in regions for target in inside if within(target, region)}
-    explicit = transition.reenter and transition.source == path
-    if parallel.kind is not StateKind.PARALLEL or explicit or len(entered) == len(regions):
+    if parallel.kind is not StateKind.PARALLEL or (transition.reenter and transition.source == path):
         return
-    others = [f"`{machine.states[r].name}`" for r in regions if r not in entered]
+    regions = regions_of[path]
+    entered = {_child(machine, path, target) for target in inside} & regions.keys()
+    if len(entered) == len(regions):
+        return
+    others = [f"`{name}`" for name in islice((regions[r] for r in regions if r not in entered), MAX_SHOWN_REGIONS)]
+    if len(regions) - len(entered) > MAX_SHOWN_REGIONS:
+        others.append("others")
     whole = f"`{parallel.name}`" if parallel.name else "the behaviour"
     target = machine.states[inside[0]].name
     region = "one region" if transition.source == path else "another region"
@@ -47,3 +67,10 @@ def _crossing(machine: MachineDefinition, transition: Transition, report: Docume
         f" `{target}` waits for instead, `actions: {{raise: …}}`"
     )
     report(CROSSES_REGIONS, transition.where, message, hint)
+
+
+def _child(machine: MachineDefinition, path: str, below: str) -> str:
+    """The child of a state in which a state below it is."""
+    while (parent := machine.states[below].parent) is not None and parent != path:
+        below = parent
+    return below
