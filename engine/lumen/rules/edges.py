@@ -78,6 +78,7 @@ class _Ways:
 
     def __init__(self, machine: MachineDefinition, parts: Sequence[Obstacle], places: Mapping[str, HallPlace]) -> None:
         self._machine, self._parts, self._places = machine, parts, places
+        self._entered: dict[str, Iterable[str]] = {}
 
     def strays(self) -> Iterator[Stray]:
         """Yield each walk that leaves the ground; a walk is repeated if several ways lead to it."""
@@ -167,13 +168,17 @@ class _Ways:
         """The states that are entered with a state; none if several of them may walk at the same time."""
         if state.kind is not StateKind.PARALLEL:
             return state.initial
-        return state.children if sum(map(self._walks, state.children)) <= 1 else ()
+        if state.path not in self._entered:
+            self._entered[state.path] = state.children if sum(map(self._walks, state.children)) <= 1 else ()
+        return self._entered[state.path]
 
     def _walks(self, path: str) -> bool:
         """Whether anything in a state may make the robot walk."""
-        inside = [s for name, s in self._machine.states.items() if name == path or name.startswith(f"{path}.")]
-        blocks = [block for s in inside for block in (s.entry, s.do, s.exit, *(t.actions for t in s.transitions))]
-        return any(s.invoke for s in inside) or any(any(_moves(block)) for block in blocks)
+        state = self._machine.states[path]
+        blocks = (state.entry, state.do, state.exit, *(t.actions for t in state.transitions))
+        return (
+            bool(state.invoke) or any(any(_moves(block)) for block in blocks) or any(map(self._walks, state.children))
+        )
 
 
 def _moves(steps: Sequence[PlacedAction]) -> Iterator[bool]:

@@ -1,5 +1,6 @@
 """Guards: those that are always or never true, and transitions that an earlier one leaves nothing for."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -97,19 +98,27 @@ def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> N
 
 def _taken_within(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
     """Report ends of invoked behaviours that the states within always take first."""
-    inner = [s for s in machine.states.values() if s.path != state.path and within(s.path, state.path)]
+    ends = [t for t in state.transitions if t.where[len(state.where) :][:1] == ("invoke",)]
+    inner = list(_below(machine, state)) if ends else []
     leaves = [s for s in inner if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
-    for end in (t for t in state.transitions if t.where[len(state.where) :][:1] == ("invoke",)):
+    for end in ends if len(leaves) <= MAX_COMPARED_CANDIDATES else ():
         takers = [
             next((t for s in inner if within(leaf.path, s.path) for t in s.transitions if _takes(t, end)), None)
-            for leaf in leaves[:MAX_COMPARED_CANDIDATES]
+            for leaf in leaves
         ]
         first = takers[0] if takers else None
-        if first is not None and None not in takers and len(leaves) <= MAX_COMPARED_CANDIDATES:
+        if first is not None and None not in takers:
             message = f"this is never taken: what is active within `{state.name}` always takes the event, before it"
             hint = f"name the events there instead of `{first.event}`"
             related = [(first.where, "this is taken")]
             report(SHADOWED_TRANSITION, end.where, message, hint, related=related)
+
+
+def _below(machine: MachineDefinition, state: State) -> Iterator[State]:
+    """The states in a state, in document order."""
+    for path in state.children:
+        yield machine.states[path]
+        yield from _below(machine, machine.states[path])
 
 
 def _takes(transition: Transition, end: Transition) -> bool:
