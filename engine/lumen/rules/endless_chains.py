@@ -1,6 +1,6 @@
 """Finds states that lead back to themselves without a guard or a delay: by events, `do`, `invoke`, `after: 0s`."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from lumen.interpreters.expressions.tree import Identifier, walk
@@ -40,6 +40,15 @@ MAX_STEPS_TO_REST = 20
 MAX_WORK = 30_000
 """The most states that are visited for the chains of one behaviour; further chains are not followed."""
 
+STATES_PER_WORK = 10
+"""The number of states, regions or actions that are looked at in the time of one visit."""
+
+TRANSITIONS_PER_WORK = 10
+"""The number of transitions that are compared with an event in the time of one visit."""
+
+EVENTS_PER_WORK = 100
+"""The number of waiting events that are copied in the time of one visit."""
+
 MAX_SHOWN_TRANSITIONS = 6
 """The number of transitions of a chain that its message names."""
 
@@ -53,26 +62,111 @@ _Taken = tuple[Transition, str]
 
 
 class _UncertainError(Exception):
-    """The next transition can't be predicted: it depends on a guard, a list, or unknown states."""
+    """The next transition can't be predicted: it depends on a guard, a list, or unknown states.
+
+    Also raised if following a chain further would take more than MAX_WORK.
+    """
 
 
-@dataclass
 class _Survey:
-    """Shared data of all chains of a machine: the order of its states, the situations seen, and the work done."""
+    """Shared data of all chains of a machine: the order of its states, the situations seen, and the work done.
 
-    machine: MachineDefinition
-    order: Mapping[str, int]
-    """The place of each path in the document."""
-    seen: set[tuple[object, ...]] = field(default_factory=set)
-    work: int = 0
-    _selecting: dict[str, list[Transition]] = field(default_factory=dict)
+    Answers about a state or a transition are kept, since each chain asks for them again.
+    """
 
-    def selecting(self, region: str) -> list[Transition]:
-        """The transitions of all states in a region that an event selects."""
-        if region not in self._selecting:
-            states = (state for path, state in self.machine.states.items() if within(path, region))
-            self._selecting[region] = [t for state in states for t in state.transitions if t.event and not t.timed]
-        return self._selecting[region]
+    def __init__(self, machine: MachineDefinition, ends: dict[tuple[int, int], bool | None]) -> None:
+        self.machine = machine
+        self.ends = ends
+        """Whether an invoked machine ends as soon as it begins, by its `id()` and the depth; None if uncertain."""
+        self.order = {path: number for number, path in enumerate(machine.states)}
+        """The place of each path in the document."""
+        self.seen: set[tuple[object, ...]] = set()
+        self.work = 0
+        self.children = {path: frozenset(state.children) for path, state in machine.states.items()}
+        self._regions: dict[str, list[str]] = {}
+        self._inside: dict[str, tuple[list[Transition], bool]] = {}
+        self._heard: dict[tuple[str, str], bool] = {}
+        self._rows: dict[tuple[str, str], list[Transition]] = {}
+        self._timers: dict[str, list[Transition]] = {}
+        self._left: dict[str, bool] = {}
+        self._domains: dict[int, str] = {}
+        self._final: dict[str, list[str]] = {}
+
+    def spend(self, work: int) -> None:
+        """Count work; raise _UncertainError if it is more than MAX_WORK in total."""
+        self.work += work
+        if self.exhausted:
+            raise _UncertainError
+
+    @property
+    def exhausted(self) -> bool:
+        return self.work > MAX_WORK
+
+    def regions(self, path: str) -> list[str]:
+        """The regions of a parallel state."""
+        if path not in self._regions:
+            states = self.machine.states
+            self._regions[path] = [c for c in states[path].children if states[c].kind is not StateKind.HISTORY]
+        return self._regions[path]
+
+    def is_heard(self, region: str, event: str) -> bool:
+        """Whether an event selects a transition of any state in a region."""
+        if (region, event) not in self._heard:
+            rows, _ = self._in(region)
+            self.spend(len(rows) // TRANSITIONS_PER_WORK)
+            self._heard[region, event] = any(_selects(row, event) for row in rows)
+        return self._heard[region, event]
+
+    def speaks_at_exit(self, region: str) -> bool:
+        """Whether an `exit` of any state in a region raises or sends an event."""
+        return self._in(region)[1]
+
+    def _in(self, region: str) -> tuple[list[Transition], bool]:
+        """The transitions of all states in a region that an event selects, and whether an exit there speaks."""
+        if region not in self._inside:
+            rows, speaks, waiting = list[Transition](), False, [region]
+            while waiting:
+                state = self.machine.states[waiting.pop()]
+                waiting.extend(state.children)
+                rows += (t for t in state.transitions if t.event and not t.timed)
+                speaks = speaks or _speaks(state.exit)
+            self._inside[region] = rows, speaks
+        return self._inside[region]
+
+    def rows(self, path: str, event: str) -> list[Transition]:
+        """The transitions of a state that an event selects."""
+        if (path, event) not in self._rows:
+            transitions = self.machine.states[path].transitions
+            self.spend(len(transitions) // TRANSITIONS_PER_WORK)
+            self._rows[path, event] = [row for row in transitions if _selects(row, event)]
+        return self._rows[path, event]
+
+    def timers(self, path: str) -> list[Transition]:
+        """Each `after: 0s` of a state."""
+        if path not in self._timers:
+            rows = reversed(self.machine.states[path].transitions)
+            names = {t.event: t for t in rows if t.timed and t.delay == 0}
+            self._timers[path] = list(reversed(names.values()))
+        return self._timers[path]
+
+    def is_left_at_once(self, path: str) -> bool:
+        """Whether an `after: 0s` of a state has a target."""
+        if path not in self._left:
+            self._left[path] = any(t.delay == 0 and t.targets for t in self.machine.states[path].transitions)
+        return self._left[path]
+
+    def domain(self, transition: Transition) -> str:
+        """The state that a transition does not leave."""
+        if id(transition) not in self._domains:
+            self._domains[id(transition)] = _domain(self.machine, transition)
+        return self._domains[id(transition)]
+
+    def final(self, path: str) -> list[str]:
+        """The final states among a state and its children."""
+        if path not in self._final:
+            states = self.machine.states
+            self._final[path] = [p for p in (*states[path].children, path) if states[p].kind is StateKind.FINAL]
+        return self._final[path]
 
 
 @dataclass
@@ -111,7 +205,10 @@ class _Chain:
         """Mark the states around that one as active, as if they had been active for a while."""
         while (outer := self.machine.states[path].parent) is not None:
             if self.machine.states[outer].kind is StateKind.PARALLEL:
-                self.unknown.update(region for region in _regions(self.machine, outer) if region != path)
+                regions = self.survey.regions(outer)
+                self.survey.spend(len(regions) // STATES_PER_WORK)
+                self.unknown.update(regions)
+                self.unknown.discard(path)
             self.active.add(outer)
             path = outer
         self.begun |= self.active
@@ -130,19 +227,19 @@ class _Chain:
         before = -1
         while before < len(found):
             before = len(found)
+            self.survey.spend(before // STATES_PER_WORK)
             for path in tuple(found):
                 state = states[path]
                 if state.kind is StateKind.PARALLEL:
-                    found.update(_regions(self.machine, path))
-                elif state.kind is StateKind.COMPOUND and found.isdisjoint(state.children):
+                    found.update(self.survey.regions(path))
+                elif state.kind is StateKind.COMPOUND and found.isdisjoint(self.survey.children[path]):
                     for first in state.initial:
                         add(first, path)
         for state in self._in_order(found):
             if state.kind is StateKind.HISTORY or state.for_each:
                 raise _UncertainError
             self.active.add(state.path)
-            names = {t.event: t for t in reversed(state.transitions) if t.timed and t.delay == 0}
-            self.timers += reversed(names.values())
+            self.timers += self.survey.timers(state.path)
             self._note(state.entry)
             if state.kind is StateKind.FINAL:
                 self._end(state)
@@ -151,7 +248,8 @@ class _Chain:
         """Take the enabled transitions, or those of the next event; return False if the machine rests, or is over."""
         if self.over:
             return False
-        self.survey.work += len(self.active)
+        waiting = len(self.internal) + len(self.timers)
+        self.survey.spend(len(self.active) + waiting // EVENTS_PER_WORK)
         event, found = "", self.selected("")
         if not found:
             if not self.internal:
@@ -177,12 +275,13 @@ class _Chain:
         """Take these in one step; of two that leave the same states only the inner or the earlier one."""
         kept: list[Transition] = []
         for transition in transitions:
+            self.survey.spend(len(kept) // STATES_PER_WORK)
             rivals = [other for other in kept if self._conflict(transition, other)]
             if all(transition.source != o.source and within(transition.source, o.source) for o in rivals):
                 kept = [*(other for other in kept if other not in rivals), transition]
         transitions = kept
         self.taken += [(transition, event) for transition in transitions]
-        moves = [(t, _domain(self.machine, t)) for t in transitions if t.targets]
+        moves = [(t, self.survey.domain(t)) for t in transitions if t.targets]
         for _, domain in moves:
             self._leave(domain)
         for transition in transitions:
@@ -191,33 +290,39 @@ class _Chain:
             self.enter(transition.targets, domain)
 
     def _conflict(self, one: Transition, other: Transition) -> bool:
-        inner, outer = _domain(self.machine, one), _domain(self.machine, other)
-        return bool(one.targets and other.targets) and (within(inner, outer) or within(outer, inner))
+        if not (one.targets and other.targets):
+            return False
+        inner, outer = self.survey.domain(one), self.survey.domain(other)
+        return within(inner, outer) or within(outer, inner)
 
     def _leave(self, domain: str) -> None:
-        leaving = [s for s in self._in_order(self.active) if s.path != domain and within(s.path, domain)]
+        self.survey.spend((len(self.active) + len(self.unknown) + len(self.timers)) // STATES_PER_WORK)
+        leaving = self._in_order(path for path in self.active if path != domain and within(path, domain))
         for state in reversed(leaving):
             self._note(state.exit)
-            self.active.discard(state.path)
-            self.begun.discard(state.path)
-            self.timers = [timer for timer in self.timers if isinstance(timer, str) or timer.source != state.path]
-        for region in [region for region in self.unknown if within(region, domain)]:
-            if any(within(path, region) and _speaks(state.exit) for path, state in self.machine.states.items()):
-                raise _UncertainError
-            self.unknown.discard(region)
+        left = {state.path for state in leaving}
+        self.active -= left
+        self.begun -= left
+        self.timers = [timer for timer in self.timers if isinstance(timer, str) or timer.source not in left]
+        regions = {region for region in self.unknown if within(region, domain)}
+        if any(map(self.survey.speaks_at_exit, regions)):
+            raise _UncertainError
+        self.unknown -= regions
 
     def _begin(self) -> None:
         """Begin each `do`, up to its first action that takes time, and each invoked behaviour."""
         for state in [s for s in self._in_order(self.active) if s.path not in self.begun]:
             self.begun.add(state.path)
             for invoke in state.invoke:
+                self.survey.spend(1)
                 other = self.machine.invoked.get(invoke.behavior)
-                if other is None or any(_speaks((*s.entry, *s.do, *s.exit), PARENT) for s in other.states.values()):
+                if other is None:
                     raise _UncertainError
-                if _is_over_at_once(other, self.depth - 1):
+                if _is_over_at_once(other, self.depth - 1, self.survey.ends):
                     self.internal += (f"done.invoke.{invoke.id}",)
             instant = 0
             while instant < len(state.do) and all(_is_instant(step) for step in nested((state.do[instant],))):
+                self.survey.spend(1)
                 instant += 1
             self._note(state.do[:instant])
             if state.do and instant == len(state.do):
@@ -242,24 +347,27 @@ class _Chain:
         if path in self.unknown:
             raise _UncertainError
         if state.kind is StateKind.PARALLEL:
-            return all(map(self._is_final, _regions(self.machine, path)))
-        final = (p for p in (*state.children, path) if self.machine.states[p].kind is StateKind.FINAL)
-        return any(p in self.active for p in final)
+            self.survey.spend(len(self.survey.regions(path)) // STATES_PER_WORK)
+            return all(map(self._is_final, self.survey.regions(path)))
+        return not self.active.isdisjoint(self.survey.final(path))
 
     def selected(self, event: str) -> list[Transition]:
         """The first transition of each innermost state that the event selects."""
-        states, found = self.machine.states, list[Transition]()
-        if event and any(_selects(t, event) for region in self.unknown for t in self.survey.selecting(region)):
+        states, found, asked = self.machine.states, list[Transition](), set[str]()
+        self.survey.spend(len(self.unknown) // STATES_PER_WORK)
+        if event and any(self.survey.is_heard(region, event) for region in self.unknown):
             raise _UncertainError
         for leaf in self._in_order(self.active):
-            if self.active.isdisjoint(leaf.children) and self.unknown.isdisjoint(leaf.children):
-                path: str | None = leaf.path
-                while path is not None:
-                    rows = (t for t in states[path].transitions if _selects(t, event))
-                    if (first := next(filter(self._holds, rows), None)) is not None:
-                        found += [first] if not any(first is other for other in found) else []
-                        break
-                    path = states[path].parent
+            children = self.survey.children[leaf.path]
+            path: str | None = (
+                leaf.path if self.active.isdisjoint(children) and self.unknown.isdisjoint(children) else None
+            )
+            while path is not None and path not in asked:
+                asked.add(path)
+                if (first := next(filter(self._holds, self.survey.rows(path, event)), None)) is not None:
+                    found.append(first)
+                    break
+                path = states[path].parent
         return found
 
     def _holds(self, transition: Transition) -> bool:
@@ -276,7 +384,9 @@ class _Chain:
 
     def _note(self, block: Sequence[PlacedAction]) -> None:
         """Note the events of a block, and whether it changes the context."""
-        if any(isinstance(step.action, Assign) for step in nested(tuple(block))):
+        steps = list(nested(tuple(block)))
+        self.survey.spend(len(steps) // STATES_PER_WORK)
+        if any(isinstance(step.action, Assign) for step in steps):
             self.assigned = len(self.taken)
         for step in block:
             match step.action:
@@ -295,22 +405,27 @@ class _Chain:
 
 def check(draft: ProjectDraft) -> None:
     """Report chains that never come to rest."""
+    ends: dict[tuple[int, int], bool | None] = {}
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         told: set[int] = set()
-        for chain in _beginnings(machine):
+        for chain in _beginnings(_Survey(machine, ends)):
             if (around := _round(chain)) and told.isdisjoint(id(t) for t, _ in around):
                 told.update(id(t) for t, _ in around)
                 _report(machine, around, _asked(chain, len(around)), report)
 
 
-def _beginnings(machine: MachineDefinition) -> Iterator[_Chain]:
-    """Yield a chain for each transition of a state in which the machine may rest, and one for its beginning."""
-    survey = _survey(machine)
+def _beginnings(survey: _Survey) -> Iterator[_Chain]:
+    """Yield a chain for each transition of a state in which the machine may rest, and one for its beginning.
+
+    There are no more after MAX_WORK.
+    """
     stays: dict[str | None, bool] = {None: True}
-    for state in machine.states.values():  # each after the one around it
+    for state in survey.machine.states.values():  # each after the one around it
         stays[state.path] = stays[state.parent] and _stays(survey, state)
         for transition in state.transitions if stays[state.path] else ():
+            if survey.exhausted:
+                return
             if not transition.event or not (transition.targets or _speaks(transition.actions)):
                 continue
             chain = _Chain(survey)
@@ -336,7 +451,7 @@ def _stays(survey: _Survey, state: State) -> bool:
     chain = _Chain(survey)
     try:
         chain.stand_around(state.path)
-        if any(t.delay == 0 and t.targets for path in chain.active for t in survey.machine.states[path].transitions):
+        if any(map(survey.is_left_at_once, chain.active)):
             return False  # a state around is left at once
         chain.enter((state.path,), state.parent)
         for _ in range(MAX_STEPS_TO_REST):
@@ -347,10 +462,6 @@ def _stays(survey: _Survey, state: State) -> bool:
     return False
 
 
-def _survey(machine: MachineDefinition) -> _Survey:
-    return _Survey(machine, {path: number for number, path in enumerate(machine.states)})
-
-
 def _round(chain: _Chain) -> list[_Taken]:
     """The transitions of a round back to a situation, or without end; empty if the chain rests or is uncertain."""
     seen: dict[tuple[object, ...], int] = {}
@@ -359,7 +470,7 @@ def _round(chain: _Chain) -> list[_Taken]:
             now = chain.situation()
             if now in seen:
                 return _settled(chain, chain.taken[seen[now] :])
-            if now in chain.survey.seen or chain.survey.work > MAX_WORK:
+            if now in chain.survey.seen or chain.survey.exhausted:
                 return []
             chain.survey.seen.add(now)
             seen[now] = len(chain.taken)
@@ -367,6 +478,8 @@ def _round(chain: _Chain) -> list[_Taken]:
                 return []
     except _UncertainError:
         return []
+    if not chain.taken:
+        return []  # more events wait than are followed, and none selects a transition
     *before, last = chain.taken  # the number of events grows without end
     back = next((i for i, (other, _) in enumerate(reversed(before)) if other is last[0]), 0)
     return _settled(chain, chain.taken[-back - 1 :])
@@ -387,9 +500,23 @@ def _asked(chain: _Chain, number: int) -> list[str]:
     return list(dict.fromkeys(shown for before, shown in chain.asked if before >= len(chain.taken) - number))
 
 
-def _is_over_at_once(machine: MachineDefinition, depth: int) -> bool:
-    """Whether a behaviour ends as soon as it begins; raises _UncertainError if that is not certain."""
-    chain = _Chain(_survey(machine), depth)
+def _is_over_at_once(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bool | None]) -> bool:
+    """Whether an invoked behaviour ends as soon as it begins; raises _UncertainError if that is not certain."""
+    key = id(machine), depth
+    if key not in ends:
+        try:
+            ends[key] = _ends(machine, depth, ends)
+        except _UncertainError:
+            ends[key] = None
+    if (over := ends[key]) is None:
+        raise _UncertainError
+    return over
+
+
+def _ends(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bool | None]) -> bool:
+    if any(_speaks((*s.entry, *s.do, *s.exit), PARENT) for s in machine.states.values()):
+        raise _UncertainError
+    chain = _Chain(_Survey(machine, ends), depth)
     chain.enter(("",), None)
     for _ in range(MAX_STEPS):
         if chain.asked or chain.timers or not depth:
@@ -410,10 +537,6 @@ def _domain(machine: MachineDefinition, transition: Transition) -> str:
     ):
         path = machine.states[path].parent or ""
     return path
-
-
-def _regions(machine: MachineDefinition, path: str) -> list[str]:
-    return [c for c in machine.states[path].children if machine.states[c].kind is not StateKind.HISTORY]
 
 
 def _speaks(block: Sequence[PlacedAction], to: str = "") -> bool:

@@ -1,0 +1,69 @@
+"""Behaviours of many states are checked with work that grows as they do."""
+
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from lumen.loading.project import draft
+from lumen.rules import edges, endless_chains, guards, regions
+from tests.formats.test_large import calls
+
+SMALL, TIMES, SLACK = 100, 5, 2.0
+"""A file of five times as many may take ten times as much; what is quadratic takes 25 times."""
+
+PROJECT = b"name: x\nbehavior: hello\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n"
+
+
+def flat(count: int) -> str:
+    return "states:\n" + "".join(f"  s{i}: {{on: {{e: s{(i + 1) % count}}}}}\n" for i in range(count))
+
+
+def one_way_out(count: int) -> str:
+    """A parallel state that each state in it leaves."""
+    text = "states:\n  out: {on: {e: p}}\n  p:\n    type: parallel\n    states:\n"
+    for i in range(count):
+        text += f"      r{i}: {{initial: a{i}, states: {{a{i}: {{on: {{e: b{i}, x: '#out'}}}}, b{i}: {{}}}}}}\n"
+    return text
+
+
+def into_other_regions(count: int) -> str:
+    text = "type: parallel\nstates:\n"
+    for i in range(count):
+        text += f"  r{i}: {{initial: a, states: {{a: {{on: {{e: '#r{(i + 1) % count}.b'}}}}, b: {{}}}}}}\n"
+    return text
+
+
+def back_and_forth(count: int) -> str:
+    """Two states with many events."""
+    states = ((here, ", ".join(f"e{i}: {there}" for i in range(count))) for here, there in ("ab", "ba"))
+    return "states:\n" + "".join(f"  {here}: {{on: {{{rows}}}}}\n" for here, rows in states)
+
+
+SHAPES = {shape.__name__: shape for shape in (flat, one_way_out, into_other_regions, back_and_forth)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rule", [edges, endless_chains, guards, regions], ids=lambda rule: rule.__name__)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_five_times_as_large_takes_five_times_the_calls(rule: ModuleType, shape: str) -> None:
+    small, large = (work(rule, SHAPES[shape], count) for count in (SMALL, TIMES * SMALL))
+    assert large < SLACK * TIMES * small
+
+
+def work(rule: ModuleType, shape: Callable[[int], str], count: int) -> int:
+    """The number of calls in which a rule checks a behaviour."""
+    project = draft({"lumen.yaml": PROJECT, "behaviors/hello.yaml": shape(count).encode()})
+    project.root = Path("/nowhere")
+    assert "hello" in project.behaviors
+    assert len(project.behaviors["hello"].states) > 2
+    return calls(lambda: rule.check(project))
+
+
+def test_a_rule_follows_no_event_that_selects_nothing() -> None:
+    raised = "".join(f"      - {{raise: x{i}}}\n" for i in range(2 * endless_chains.MAX_STEPS))
+    text = f"states:\n  a: {{on: {{go: b}}}}\n  b:\n    entry:\n{raised}    on: {{go: a}}\n"
+    project = draft({"lumen.yaml": PROJECT, "behaviors/hello.yaml": text.encode()})
+    endless_chains.check(project)
+    assert "endless-chain" not in {str(d.code) for d in project.diagnostics}
