@@ -7,7 +7,7 @@ from types import ModuleType
 import pytest
 
 from lumen.loading.project import draft
-from lumen.rules import edges, endless_chains, guards, regions
+from lumen.rules import edges, endless_chains, events, falling, guards, regions
 from tests.formats.test_large import calls
 
 SMALL, TIMES, SLACK = 100, 5, 2.0
@@ -45,7 +45,7 @@ SHAPES = {shape.__name__: shape for shape in (flat, one_way_out, into_other_regi
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rule", [edges, endless_chains, guards, regions], ids=lambda rule: rule.__name__)
+@pytest.mark.parametrize("rule", [edges, endless_chains, falling, guards, regions], ids=lambda rule: rule.__name__)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_five_times_as_large_takes_five_times_the_calls(rule: ModuleType, shape: str) -> None:
     small, large = (work(rule, SHAPES[shape], count) for count in (SMALL, TIMES * SMALL))
@@ -59,6 +59,18 @@ def work(rule: ModuleType, shape: Callable[[int], str], count: int) -> int:
     assert "hello" in project.behaviors
     assert len(project.behaviors["hello"].states) > 2
     return calls(lambda: rule.check(project))
+
+
+@pytest.mark.slow
+def test_events_that_nothing_raises_are_found_in_few_calls() -> None:
+    """The events of `raise` were compared with those of `on` once for each event: cubic."""
+
+    def raising(count: int) -> str:
+        raised = "".join(f"      - {{raise: x{i}}}\n" for i in range(count))
+        return f"{back_and_forth(count)}  c:\n    entry:\n{raised}"
+
+    small, large = (work(events, raising, count) for count in (SMALL, TIMES * SMALL))
+    assert large < TIMES * SLACK * TIMES * small
 
 
 def test_a_rule_follows_no_event_that_selects_nothing() -> None:

@@ -243,12 +243,14 @@ class _Ways:
         """A state that is left only if a visitor does something."""
         steps = nested((*state.entry, *state.do))
         raised = {a.event for step in steps if isinstance(a := step.action, Raise | Send) and not _goes_away(a)}
-        ways = [t for t in self.ways_out(state.path) if self.in_course(t) and not self.late(state, t)]
-        names = sorted({t.event for t in ways} - raised)
-        if any(t.event in raised for t in ways):
-            return
-        if names and all(name in self.events for name in names):
-            heard = " or ".join(f"`{name}`" for name in names)
+        names: set[str] = set()
+        for transition in self.ways_out(state.path):
+            if self.in_course(transition) and not self.late(state, transition):
+                if transition.event in raised or transition.event not in self.events:
+                    return
+                names.add(transition.event)
+        if names:
+            heard = " or ".join(f"`{name}`" for name in sorted(names))
             message = f"`{state.name}` waits for {heard} for ever"
             hint = "visitors walk away: give it `after:` as well, such as `after: {30s: …}`"
             self.report(WAITS_FOR_EVER, state.where, message, hint, key=True)

@@ -118,7 +118,9 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
         *draft.main.lost,
         *report.lost,
     }
-    heard = {event for event in {*descriptors(machine)} if any(hears(event, name) for name in known)}
+    prefixes = {prefix for name in known for prefix in _prefixes(name)}
+    heard = {e for e in descriptors(machine) if (known if e == "*" else e.removesuffix(".*") in prefixes)}
+    misspelt = _Misspelt(machine)
     said: set[str] = set()
     sound = not report.diagnostics
     for state in machine.states.values():
@@ -128,7 +130,7 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                 continue
             said.add(event)
             report.missed.add(event)
-            if report.whole and _misnamed(event, machine, report):
+            if report.whole and _misnamed(event, misspelt, report):
                 continue
             if _of_the_engine(event):
                 if sound and not report.lost.intersection(event.split(".")) and (hint := ending_fault(machine, event)):
@@ -153,14 +155,32 @@ def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> st
     return hint if "mean" in hint else "declare it under `events:`, or give a route of lumen.yaml this `event`"
 
 
-def _misnamed(event: str, machine: MachineDefinition, report: DocumentReport) -> bool:
+def _prefixes(event: str) -> list[str]:
+    """The event, and the whole words with which it begins."""
+    return [event[:at] for at, letter in enumerate(event) if letter == "."] + [event]
+
+
+class _Misspelt:
+    """The transitions of a machine by their event, its raised events, and those of them that nothing waits for."""
+
+    def __init__(self, machine: MachineDefinition) -> None:
+        self.waiting: dict[str, list[Transition]] = {}
+        for transition in (t for state in machine.states.values() for t in state.transitions):
+            self.waiting.setdefault(transition.event, []).append(transition)
+        self.sent: dict[str, list[NodePath]] = {}
+        for site in action_sites(machine):
+            if isinstance(action := site.step.action, Raise):
+                self.sent.setdefault(action.event, []).append(site.step.where)
+        heard = {descriptor.removesuffix(".*") for descriptor in descriptors(machine) if descriptor != "*"}
+        everything = "*" in descriptors(machine)
+        self.lost = {name for name in self.sent if not everything and heard.isdisjoint(_prefixes(name))}
+
+
+def _misnamed(event: str, misspelt: _Misspelt, report: DocumentReport) -> bool:
     """Whether it is rather the `raise` that is misspelt, and told: more transitions wait for the event as it stands."""
-    waiting = [t for state in machine.states.values() for t in state.transitions if t.event == event]
-    heard = set(descriptors(machine))
-    sent = [(a.event, site.step.where) for site in action_sites(machine) if isinstance(a := site.step.action, Raise)]
-    lost = {name for name, _ in sent if not any(hears(descriptor, name) for descriptor in heard)}
-    name = nearest(event, lost)
-    sites = [where for each, where in sent if each == name]
+    waiting = misspelt.waiting[event]
+    name = nearest(event, misspelt.lost)
+    sites = misspelt.sent.get(name, [])
     if not sites or len(sites) >= len(waiting):
         return False
     path = (*sites[0], "raise")

@@ -1,11 +1,9 @@
 """Whether somebody answers a fall, and a walk that comes to nothing, where a behaviour moves the robot's legs."""
 
-from collections.abc import Iterator
-
 from lumen.language.actions import PlacedAction, nested
 from lumen.language.commands import GoTo, Move, Play, Walk
 from lumen.language.diagnostics import WARNING, Code
-from lumen.language.machines import MachineDefinition, State, Transition
+from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
@@ -39,22 +37,17 @@ def check(draft: ProjectDraft) -> None:
 
 def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
     """States that walk and have only `onDone`: where somebody stands in the way, the robot stays there for ever."""
-    for state in machine.states.values():
+    led: dict[str | None, bool] = {None: False}
+    """Whether something leads on from a state, or from one around it."""
+    for path, state in machine.states.items():  # each after the one around it
+        led[path] = led[state.parent] or any(map(_leads_on, state.transitions))
         walk = next((step for step in nested(state.do) if isinstance(step.action, GoTo | Walk)), None)
-        if walk is None or any(_leads_on(transition) for transition in _around(machine, state)):
+        if walk is None or led[path]:
             continue
         message = f"if this walk fails, nothing leads on from `{state.name}`"
         hint = "somebody may stand in the way: say with `onError:` what comes then"
         cause = f"walks of {report.document.file}"
         report(UNHANDLED_ERROR, (*walk.where, "walk"), message, hint, key=True, cause=cause)
-
-
-def _around(machine: MachineDefinition, state: State) -> Iterator[Transition]:
-    """The transitions of a state and of those around it."""
-    at: State | None = state
-    while at is not None:
-        yield from at.transitions
-        at = machine.states[at.parent] if at.parent is not None else None
 
 
 def _leads_on(transition: Transition) -> bool:
