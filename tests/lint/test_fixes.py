@@ -207,5 +207,6 @@ def test_a_folder_that_can_not_be_written_to(project: Path, capsys: pytest.Captu
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("os.replace", refuse)
+    monkeypatch.setattr("lumen.upkeep.replacing._overwrite", refuse)  # nor the file itself
     assert main(["lint", str(project), "--fix"]) == 2
     assert "can't write" in capsys.readouterr().err
