@@ -319,7 +319,7 @@ WRITERS = {
 }
 
 
-@pytest.mark.parametrize("verb", WRITERS)
+@pytest.mark.parametrize("verb", [*sorted(WRITERS.keys() - {"plot"}), pytest.param("plot", marks=pytest.mark.process)])
 def test_a_full_disk_leaves_the_file_that_was_there(
     verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -327,7 +327,7 @@ def test_a_full_disk_leaves_the_file_that_was_there(
     (tmp_path / "chart.scxml").write_text(CHART)
     output = tmp_path / WRITERS[verb][-1]
     monkeypatch.chdir(tmp_path)
-    assert main(WRITERS[verb]) == 0  # what a library writes at its first use is there now
+    assert main(WRITERS[verb]) == 0  # Matplotlib looks for fonts when it is first used
     output.write_text("kept")
     before = sorted(tmp_path.rglob("*"))
 
