@@ -588,6 +588,11 @@ def test_a_file_name_of_a_mac_is_found(tmp_path: Path) -> None:
     assert list(load(root).motions) == [CAFE]
     assert load(root).hash == load(there).hash
     assert main(["lint", str(root / "motions" / f"{DECOMPOSED}.yaml")]) == 0
+
+
+@pytest.mark.process
+def test_a_motion_with_a_file_name_of_a_mac_is_plotted(tmp_path: Path) -> None:
+    root = french(tmp_path, DECOMPOSED)
     assert main(["plot", f"{root}/motions/{DECOMPOSED}.yaml", "-o", str(tmp_path / "a.svg")]) == 0
 
 
