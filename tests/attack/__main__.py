@@ -8,6 +8,7 @@ result or the findings must differ, unless the format's table lists the changed 
 """
 
 import argparse
+import itertools
 import logging
 import os
 import platform
@@ -55,11 +56,11 @@ def report(numbers: Iterable[int], url: str) -> list[str]:
     return troubles
 
 
-def report_imports(numbers: Iterable[int], folders: Sequence[Path]) -> list[str]:
+def report_imports(numbers: Iterable[int], folders: Sequence[Path], most: int) -> list[str]:
     """Print the outcomes of those changes; return the changes that were lost silently."""
     logging.getLogger("lumen").setLevel(logging.CRITICAL)
     began = time.process_time()
-    found = attack_imports(numbers, folders)
+    found = attack_imports(numbers, folders, most=most)
     for ending, count in sorted(found.tried.items()):
         print(f".{ending:<7}{count:>7,}")
     count = sum(found.tried.values())
@@ -84,8 +85,8 @@ def main() -> int:
     if options.imports is not None:
         if options.only is not None:
             print(show(options.only, options.samples))
-        numbers = range(options.seed, options.seed + options.imports) if options.only is None else [options.only]
-        troubles = report_imports(numbers, options.samples)
+        alone = None if options.only is None else [options.only]
+        troubles = report_imports(alone or itertools.count(options.seed), options.samples, options.imports)
         for trouble in troubles:
             print(f"\n# {trouble}")
         return int(bool(troubles))

@@ -178,9 +178,15 @@ class Report(NamedTuple):
 
 
 def attack_imports(
-    numbers: Iterable[int], folders: Iterable[Path] = (), endings: Collection[str] = frozenset(CHANGERS)
+    numbers: Iterable[int],
+    folders: Iterable[Path] = (),
+    endings: Collection[str] = frozenset(CHANGERS),
+    most: int | None = None,
 ) -> Report:
-    """Import the changed files; the number of a change determines it."""
+    """Import the changed files, at most so many; the number of a change determines it.
+
+    A number counts only if there is something to change, in a file that can be imported.
+    """
     found, importer = samples(folders), Importer()
     before = cache(lambda at: importer.outcome(found[at].ending, found[at].text))
     by_ending: dict[str, list[int]] = {}
@@ -189,6 +195,8 @@ def attack_imports(
             by_ending.setdefault(sample.ending, []).append(at)
     report = Report(Counter(), Counter(), [])
     for number in numbers:
+        if report.tried.total() == most:
+            break
         random = Random(number)
         ending = random.choice(sorted(by_ending))
         at = random.choice(by_ending[ending])
