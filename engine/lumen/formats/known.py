@@ -1,4 +1,4 @@
-"""What an importer knows of a format: what it reads, what it lists as lost, and what has no meaning for a robot.
+"""The names that an importer knows of a format: it reads them, lists them as lost, or ignores them as meaningless.
 
 Each importer has one table of these, by the place in a file (`<state>`, `[Input1]`, `machine`). A name that no table
 has is listed at its place, so that nothing of a file is lost silently. `docs/formats.md` prints the tables.
@@ -34,4 +34,4 @@ class Known:
 
 
 FormatTable = Mapping[str, Known]
-"""What may stand in a file of a format, by the kind of place."""
+"""The known names of a format, by the kind of place in a file."""

@@ -171,7 +171,7 @@ class Reloader:
         self._queue.tick(now)
 
     def _judge(self, saved: SavedFiles) -> Validation:
-        """On the watcher's thread: routes and motions of the files are made ready here, where nobody has to wait."""
+        """Judge saved files, and prepare their routes and motions, on the watcher's thread: the robot does not wait."""
         validation = Validation(saved, "")
         try:
             validation = self._validator(saved)

@@ -175,7 +175,7 @@ class _Reading:
         return None
 
     def _size(self, statement: ast.stmt) -> int:
-        """How many parts a statement has."""
+        """Return the number of nodes of a statement."""
         if id(statement) not in self.sizes:
             self.sizes[id(statement)] = sum(1 for _ in ast.walk(statement))
         return self.sizes[id(statement)]
