@@ -213,3 +213,33 @@ def test_a_frame_is_no_larger_than_a_reader_takes(disk: Disk, monkeypatch: pytes
     writer.close()
     assert len([entry for entry in read(disk) if not isinstance(entry, JournalJump)]) == len(made)
     assert all(read_journal(file).whole for file in disk.files())
+
+
+def test_a_flush_waits_for_what_was_told_while_the_disk_was_being_synced(
+    disk: Disk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    syncing, synced = threading.Event(), threading.Event()
+
+    class Wakes(threading.Event):
+        """The flush has begun to wait: the sync may end."""
+
+        def set(self) -> None:
+            super().set()
+            if syncing.is_set():
+                synced.set()
+
+    def fsync(file: int) -> None:
+        syncing.set()
+        assert synced.wait(HANG)
+
+    monkeypatch.setattr("os.fsync", fsync)
+    writer = begun(disk)
+    writer._wake = Wakes()
+    tell(writer, steps(3))
+    assert syncing.wait(HANG)
+    disk.free.clear()
+    tell(writer, steps(3))
+    assert not writer.flush(0.1)
+    disk.free.set()
+    assert writer.flush(HANG)
+    writer.close()

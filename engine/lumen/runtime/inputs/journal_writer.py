@@ -61,10 +61,10 @@ class JournalWriter:
         self.run = uuid.uuid4().hex
         self.lost, self.trouble = 0, ""
         self.tail, self.begun = JournalTail(), threading.Event()
-        self._waiting: deque[Stepped | Jumped | PersonName] = deque()
+        self._waiting: deque[Stepped | Jumped | PersonName | threading.Event] = deque()
         self._overflow, self._gone = 0, 0
         self._project: Project | None = None
-        self._wake, self._idle, self._closing = threading.Event(), threading.Event(), False
+        self._wake, self._closing = threading.Event(), False
         self._pen = JournalPen()
         self._file: BinaryIO | None = None
         self._packer, self._bytes, self._synced, self._day = FramePacker(), 0, 0.0, ""
@@ -105,9 +105,10 @@ class JournalWriter:
 
     def flush(self, patience: float = 5.0) -> bool:
         """Wait until what was told is written, at most so long [s]; whether it is."""
-        self._idle.clear()
+        written = threading.Event()
+        self._waiting.append(written)  # in the queue, so that it is set after all that was told before, and not earlier
         self._wake.set()
-        return self._idle.wait(patience)
+        return written.wait(patience)
 
     def close(self, patience: float = 5.0) -> None:
         """Write what is left, at most so long [s], and end."""
@@ -124,12 +125,10 @@ class JournalWriter:
         while True:
             self._wake.wait(WRITE_PERIOD)
             self._wake.clear()
-            idle, closing = not self._idle.is_set(), self._closing
+            closing = self._closing
             while self._waiting:
                 self._write_next()
             self._bring_to_disk(closing)
-            if idle:
-                self._idle.set()
             if closing and not self._waiting:
                 self._end_file()
                 return
@@ -141,6 +140,11 @@ class JournalWriter:
             self._end_file()
         while self._waiting and len(lines) < MAX_LINES and size < MAX_LINES_BYTES:
             told = self._waiting.popleft()
+            if isinstance(told, threading.Event):
+                self._put(lines)
+                lines = []
+                told.set()
+                continue
             if isinstance(told, PersonName):
                 self._put(lines)
                 lines = []
