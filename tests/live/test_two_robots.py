@@ -1,7 +1,8 @@
 """Two robots on one bus: each hears its own visitors, and nothing crosses."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from itertools import count
 
 import pytest
 
@@ -23,13 +24,17 @@ def exhibition(project: Project, story: str, bus: str, speed: str = "max") -> Ex
     return Exhibition(project, set_up("recording", project, speed, told), bus, told)
 
 
-def play(shows: Mapping[str, Exhibition]) -> dict[str, list[tuple[object, ...]]]:
+def play(
+    shows: Mapping[str, Exhibition], meanwhile: Callable[[int], None] = lambda tick: None
+) -> dict[str, list[tuple[object, ...]]]:
     """All of them, tick by tick, until their stories end; what each behaviour did."""
     seen: dict[str, list[tuple[object, ...]]] = {name: [] for name in shows}
     for name, show in shows.items():
         show.observe(lambda step, seen=seen[name]: seen.append(_seen(step)))
         show.start()
+    ticks = count(1)
     while any(not show.over for show in shows.values()):
+        meanwhile(next(ticks))
         for show in shows.values():
             if not show.over:
                 show.tick()
@@ -66,7 +71,19 @@ def test_two_tours_on_one_bus_are_as_each_is_alone(robots: dict[str, Project]) -
 @pytest.mark.broker
 def test_two_tours_on_one_broker_hear_their_own_visitors(robots: dict[str, Project], broker: RabbitMQ) -> None:
     shipped = {name: replace(project, aliases=None) for name, project in robots.items()}
-    shows = {name: exhibition(shipped[name], story, broker.url, "8") for name, story in VISITORS.items()}
-    seen = play(shows)
+    shows = {name: exhibition(shipped[name], story, broker.url) for name, story in VISITORS.items()}
+    buses = [show.node.bus for show in shows.values()]
+    delivered = [Collector() for _ in buses]
+    for bus, marks in zip(buses, delivered, strict=True):
+        bus.subscribe(f"lumen.mark.{id(bus)}", marks)
+
+    def wait_for_the_broker(tick: int) -> None:
+        """However slow the broker is, a message is at most ten ticks (0.2 s of the stories) on its way."""
+        if tick % 10 == 0:
+            for bus, marks in zip(buses, delivered, strict=True):
+                bus.publish(f"lumen.mark.{id(bus)}", {})
+                marks.wait(tick // 10)
+
+    seen = play(shows, wait_for_the_broker)
     names = {name: {step[-1]["visitor"] for step in steps} - {""} for name, steps in seen.items()}  # type: ignore[index]
     assert names == {"Ana": {"Budi"}, "Ben": {"Siti"}}
