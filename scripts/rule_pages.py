@@ -81,7 +81,7 @@ def written() -> dict[str, str]:
 
 _INTRODUCTION = """# What lint finds
 
-Written by `scripts/rule_pages.py` from the text that `lumen explain CODE` prints. [lint.md](../lint.md) tells how to
+Written by `scripts/rule_pages.py` from the text that `lumen explain CODE` prints. [lint.md](../lint.md) explains how to
 read a finding.
 """
 
@@ -100,7 +100,7 @@ def _section(found: Page) -> str:
     output = "\n".join(str(d) for d in said(found.wrong))
     return (
         f"## {found.code}\n\n*{CODES[found.code].severity}.* {found.what}\n\n{found.why}\n\n"
-        f"Wrong:\n\n{wrong}\nLint says:\n\n```text\n{output}\n```\n\nRight:\n\n{right}"
+        f"Wrong:\n\n{wrong}\nLint prints:\n\n```text\n{output}\n```\n\nRight:\n\n{right}"
     )
 
 
