@@ -8,9 +8,9 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import first
 
-HIGH_GAIN = Code("high-gain", "controllers", WARNING, "a binding's gain makes the loop overshoot")
+HIGH_GAIN = Code("high-gain", "controllers", WARNING, "the gain of a binding is so high that the joint overshoots")
 RANGE_BEYOND_JOINT = Code(
-    "range-beyond-joint", "controllers", WARNING, "an output can ask for more than its joint can do"
+    "range-beyond-joint", "controllers", WARNING, "the range of an output is larger than the range of its joint"
 )
 WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away from what it sees")
 
@@ -42,15 +42,15 @@ def _sense(controller: ControllerDefinition, output: Variable, report: DocumentR
             continue
         wanted = {output.direction: 1, OPPOSITE[output.direction]: -1}.get(variable.direction, 0)
         if wanted * trend < 0:
-            same = wanted > 0
+            moves = "falls" if wanted > 0 else "rises"
             message = (
-                f"`{name}` counts {variable.direction} and `{output.name}` {output.direction}, and the rules turn"
-                f" {'against' if same else 'along with'} it: the robot looks away from what it sees"
+                f"the robot turns away from what it sees: `{name}` has `direction: {variable.direction}` and"
+                f" `{output.name}` has `direction: {output.direction}`, but `{output.name}` {moves} as `{name}` rises"
             )
             way = OPPOSITE[output.direction]
-            hint = f"write `direction: {way}`, and a gain with the other sign; or swap what the rules conclude"
+            hint = f"write `direction: {way}` and reverse the sign of the gain, or swap the conclusions of the rules"
             report(WRONG_SIGN, (*output.where, "direction"), message, hint, key=True,
-                 related=[((*variable.where, "direction"), "the input's")])  # fmt: skip
+                 related=[((*variable.where, "direction"), "the direction of the input")])  # fmt: skip
 
 
 def _trend(controller: ControllerDefinition, variable: Variable, output: Variable) -> int:
@@ -80,9 +80,12 @@ def _sign(
     counts = OPPOSITE.get(counts, "") if role and role.reversed else counts
     wanted = {counts: 1, OPPOSITE.get(counts, ""): -1}.get(variable.direction, 0) if variable.direction else 0
     if wanted * binding.gain < 0:
-        message = f"`{variable.name}` counts {variable.direction}, and `{binding.joint}` {counts}"
-        hint = f"write `gain: {-binding.gain:g}`, or another `direction`"
-        others = [((*variable.where, "direction"), "the output's")]
+        message = (
+            f"with `gain: {binding.gain:g}`, `{binding.joint}` turns {OPPOSITE[variable.direction]},"
+            f" but `{variable.name}` has `direction: {variable.direction}`"
+        )
+        hint = f"write `gain: {-binding.gain:g}`, or `direction: {OPPOSITE[variable.direction]}`"
+        others = [((*variable.where, "direction"), "the direction of the output")]
         report(WRONG_SIGN, path, message, hint, related=others)
 
 
@@ -97,9 +100,9 @@ def _gain(
         return
     routes = draft.settings.routes if draft.settings else {}
     late = max((routes[b.route].latency for b in controller.input_bindings if b.route in routes), default=0.0)
-    age = f", and what it sees is {1000 * late:.0f} ms old" if late else ""
-    message = f"a gain of {binding.gain:g} overshoots: each answer turns farther than it says{age}"
-    report(HIGH_GAIN, path, message, f"write at most {MAX_GAIN:g}; 1.5 is quick and does not overshoot")
+    age = f", and the input is {1000 * late:.0f} ms old" if late else ""
+    message = f"a gain of {binding.gain:g} overshoots: the joint turns beyond its target{age}"
+    report(HIGH_GAIN, path, message, f"write at most {MAX_GAIN:g}; 1.5 is fast and does not overshoot")
 
 
 def _limits(
@@ -111,6 +114,6 @@ def _limits(
     far = max(abs(variable.minimum), abs(variable.maximum)) * abs(binding.gain) * binding.angle
     if far > high - low:
         most, whole = far / controller.angle, (high - low) / controller.angle
-        message = f"`{variable.name}` can ask for a turn of {most:.4g}, and `{joint.name}` has {whole:.4g} in all"
-        hint = "narrow the range or the gain; mind the unit"
+        message = f"`{variable.name}` can request a turn of {most:.3g}, but `{joint.name}` can turn by only {whole:.3g}"
+        hint = "reduce the range or the gain, and check the unit"
         report(RANGE_BEYOND_JOINT, (*variable.where, "range"), message, hint)

@@ -16,9 +16,11 @@ from lumen.rules.routes import PASSWORD_IN_FILE
 
 ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "a webhook is not a web address")
 ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "alerts are sent unencrypted: others can read them")
-ALERT_QUIET = Code("alert-quiet", "alerts", ERROR, "quiet hours begin when they end")
+ALERT_QUIET = Code("alert-quiet", "alerts", ERROR, "quiet hours begin and end at the same time")
 ALERT_TO_NOBODY = Code("alert-to-nobody", "alerts", WARNING, "alerts have no recipient")
-ALERT_WAY = Code("alert-way", "alerts", ERROR, "a recipient has no way to be reached, or more than one")
+ALERT_WAY = Code(
+    "alert-way", "alerts", ERROR, "a recipient has none of `webhook`, `mail` and `command`, or more than one"
+)
 
 WAYS = ("webhook", "mail", "command")
 _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
@@ -33,7 +35,12 @@ def check(draft: ProjectDraft) -> None:
     _quiet(report, data, WHERE)
     rows = data.get("to")
     if rows == []:
-        report(ALERT_TO_NOBODY, (*WHERE, "to"), "the list is empty", "write who is told, or take `alerts` out")
+        report(
+            ALERT_TO_NOBODY,
+            (*WHERE, "to"),
+            "the list of recipients is empty",
+            "write at least one recipient, or delete `alerts`",
+        )
     for i, row in enumerate(rows if isinstance(rows, list) else ()):
         if isinstance(row, Mapping):
             _way(report, row, (*WHERE, "to", i))
@@ -47,36 +54,41 @@ def _way(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> Non
     said = [way for way in WAYS if way in row]
     if len(said) == 1 or any(path[: len(where)] == where for path in report.pruned):
         return
-    hint = "write one of `webhook: URL`, `mail: {host, from, to}` and `command: [PROGRAM, …]`"
+    hint = "write `webhook: URL`, `mail: {host, from, to}` or `command: [PROGRAM, …]`"
     if said:
         report(
             ALERT_WAY,
             (*where, said[1]),
-            f"`{said[0]}` and `{said[1]}` stand in one item",
-            "make it two items",
+            f"`{said[0]}` and `{said[1]}` are in one item",
+            "split it into two items",
             key=True,
         )
     else:
-        report(ALERT_WAY, where, "it does not say how they are told", hint)
+        report(ALERT_WAY, where, "this recipient has no `webhook`, `mail` or `command`", hint)
 
 
 def _quiet(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> None:
     begin, _, end = str(row.get("quiet", "")).partition("-")
     if end and begin.zfill(5) == end.zfill(5):
-        hint = "write two times of day, as in `22:00-07:00`, or `never`"
-        report(ALERT_QUIET, (*where, "quiet"), f"it is quiet from {begin} to {end}: never, or always", hint)
+        hint = "write two different times, such as `22:00-07:00`, or `never`"
+        report(ALERT_QUIET, (*where, "quiet"), f"the quiet hours from {begin} to {end} have no length", hint)
 
 
 def _reached(report: DocumentReport, recipient: Recipient) -> None:
     match recipient.channel:
         case Webhook(url) if url.startswith("$"):
             if not _VARIABLE.fullmatch(url):
-                hint = "write the name of an environment variable, as in $LUMEN_ALERT_URL"
-                report(ALERT_ADDRESS, (*recipient.where, "webhook"), f"`{url}` names no variable", hint)
+                hint = "write `$` and a name, such as `$LUMEN_ALERT_URL`"
+                report(
+                    ALERT_ADDRESS,
+                    (*recipient.where, "webhook"),
+                    f"`{url}` is not the name of an environment variable",
+                    hint,
+                )
         case Webhook(url):
             _web(report, url, (*recipient.where, "webhook"))
         case Mail(host=host, security="none") if not loopback(host):
-            hint = "write `starttls` or `tls`; name and password are never sent without it"
+            hint = "write `starttls` or `tls`: without encryption, Lumen does not send the name and the password"
             report(ALERT_IN_CLEAR, (*recipient.where, "mail", "security"), f"mails to {host} are not encrypted", hint)
 
 
@@ -87,13 +99,13 @@ def _web(report: DocumentReport, url: str, where: NodePath) -> None:
     except ValueError:
         parts, port_or_none = urlsplit(""), None
     if parts.username is not None or (not parts.scheme and credentials_of(url)):
-        hint = "write `webhook: $LUMEN_ALERT_URL`, and the address into that environment variable"
-        report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
+        hint = "write `webhook: $LUMEN_ALERT_URL`, and put the address into that environment variable"
+        report(PASSWORD_IN_FILE, where, "a user name and a password are in a file that others can read", hint)
     elif parts.scheme not in ("http", "https") or not parts.hostname or port_or_none == 0 or re.search(r"\s", url):
-        hint = "write an address such as https://chat.museum.example/hooks/lumen, or $NAME of a variable that holds it"
-        report(ALERT_ADDRESS, where, f"`{url}` is no address on the web", hint)
+        hint = "write an address such as https://chat.museum.example/hooks/lumen, or $NAME for a variable that holds it"
+        report(ALERT_ADDRESS, where, f"`{url}` is not a web address", hint)
     elif parts.scheme == "http" and not loopback(parts.hostname):
-        report(ALERT_IN_CLEAR, where, f"what is sent to {parts.hostname} is not encrypted", "write https://")
+        report(ALERT_IN_CLEAR, where, f"messages to {parts.hostname} are not encrypted", "write https://")
 
 
 def loopback(host: str) -> bool:

@@ -55,9 +55,13 @@ def _repeated(report: DocumentReport, table: str, rows: int) -> None:
         repeated = [(p, above) for p, above in zip(phrases, found, strict=True) if all(row < i for row, _ in above)]
         for phrase, above in repeated if len(repeated) < len(phrases) else ():
             row, path = above[0]
-            message = f"`{phrase.text}` gives the answer in row {row + 1} of `{table}`, which has this phrase, too"
+            message = f"`{phrase.text}` is also in row {row + 1} of `{table}`, and that row answers"
             report(
-                SHADOWED_PHRASE, phrase.path, message, "leave it to one of the two", related=[(path, "the same phrase")]
+                SHADOWED_PHRASE,
+                phrase.path,
+                message,
+                "delete it from one of the two",
+                related=[(path, "the same phrase")],
             )
 
 
@@ -90,8 +94,8 @@ def _taken(
     phrases = [phrase for texts in row.phrases.values() for phrase in texts]
     takers = [_taker(machine, phrase, before) for phrase in phrases for before in several]
     if phrases and takers and all(takers):
-        message = f"this is never answered: `{phrases[0]}` counts as the phrases `{takers[0]}`, which are tried before"
-        hint = f"ask for the answers `{table}` before `heard(…, '{takers[0]}')`, or take other phrases"
+        message = f"this answer is never given: `{phrases[0]}` matches the phrases `{takers[0]}`, which are tried first"
+        hint = f"put `lookup(…, '{table}')` before `heard(…, '{takers[0]}')`, or use other phrases"
         report(SHADOWED_ANSWER, ("answers", table, i, "phrases"), message, hint, key=True)
 
 

@@ -11,7 +11,7 @@ from lumen.rules.events import hears
 from lumen.rules.recipients import sent_to
 from lumen.rules.walk import action_sites
 
-SAFETY_WAITS = Code("safety-waits", "statecharts", WARNING, "what keeps people and robot safe waits for a person's GO")
+SAFETY_WAITS = Code("safety-waits", "statecharts", WARNING, "a safety reaction waits until a person approves it")
 
 SAFETY = ("stop", "fallen", "motors.hot", "robot.lost", "brain.lost", "motion.lost")
 """Events that something has to come of at once."""
@@ -25,12 +25,12 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report("behaviors", name)
         for transition in marked:
             if event := next((event for event in SAFETY if hears(transition.event, event)), ""):
-                message = f"`approve` lets what the behaviour does after `{event}` wait until a person says GO"
-                hint = "leave out `approve`: nobody may be near; ask for approval of what comes after it"
+                message = f"`approve` delays the reaction to `{event}` until a person approves it"
+                hint = "delete `approve` here, because the console may be unattended; write it on a later transition"
                 report(SAFETY_WAITS, (*transition.where, "approve"), message, hint, key=True)
             if event := next((event for event in sorted(own) if hears(transition.event, event)), ""):
-                message = f"`{event}` comes from a behaviour: only what comes from outside can wait for approval"
-                hint = "mark the transition that leads there, or let a button raise the event"
+                message = f"`{event}` comes from a behaviour: only events from outside can wait for approval"
+                hint = "put `approve` on an earlier transition, or let a button raise the event"
                 report(MISPLACED_APPROVAL, (*transition.where, "approve"), message, hint, key=True)
 
 

@@ -7,7 +7,7 @@ from lumen.language.stories import AnswerQuestion
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.walk import action_sites
 
-ASKS_NOBODY = Code("asks-nobody", "knowledge", WARNING, "`ask` stands where nothing can answer")
+ASKS_NOBODY = Code("asks-nobody", "knowledge", WARNING, "a question is asked, but nothing can answer it")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -17,14 +17,16 @@ def check(draft: ProjectDraft) -> None:
     for name, story in draft.stories.items():
         for step in story.steps:
             if isinstance(step.action, AnswerQuestion):
-                message = "no module is asked that could say this: lumen.yaml has no module `answers`"
-                hint = "add it under `modules`, or expect what a passage says"
+                message = "no module can give this answer: lumen.yaml has no module `answers`"
+                hint = "add `answers` under `modules`, or expect the answer of a passage"
                 draft.report("behaviors/stories", name)(ASKS_NOBODY, (*step.where, "answers"), message, hint, key=True)
     if draft.knowledge:
         return
     for name, machine in draft.behaviors.items():
         for site in action_sites(machine):
             if isinstance(site.step.action, AskQuestion):
-                message = "nobody can answer this: knowledge/ is empty, and lumen.yaml has no module `answers`"
-                hint = "write knowledge/NAME.yaml with a question and its answer, or do what stands in `else`"
+                message = (
+                    "nothing can answer this question: knowledge/ is empty, and lumen.yaml has no module `answers`"
+                )
+                hint = "write knowledge/NAME.yaml with a question and its answer, or use the actions of `else` instead"
                 draft.report("behaviors", name)(ASKS_NOBODY, (*site.step.where, "ask"), message, hint, key=True)

@@ -11,10 +11,10 @@ from lumen.rules.events import descriptors, hears
 from lumen.rules.logic import never, tree
 
 DEAD_BUTTON = Code(
-    "dead-button", "statecharts", WARNING, "a button raises an event that nothing can take where it is shown"
+    "dead-button", "statecharts", WARNING, "a button raises an event that nothing waits for while the button is shown"
 )
 SHARED_BUTTON_KEY = Code(
-    "shared-button-key", "statecharts", WARNING, "two buttons that are shown together have one key"
+    "shared-button-key", "statecharts", WARNING, "two buttons that are shown together have the same key"
 )
 
 
@@ -30,9 +30,11 @@ def check(draft: ProjectDraft) -> None:
         for number, (state, button) in enumerate(placed):
             rivals = (other for other in placed[:number] if _collide(machine, (state, button), other))
             if rival := next(rivals, None):
-                message = f"the key `{button.key}` is that of {_shown(rival[1])}, which is shown together with it"
-                related = [((*rival[1].where, "key"), "it is given here")]
-                report(SHARED_BUTTON_KEY, (*button.where, "key"), message, "give it another key", related=related)
+                message = f"the key `{button.key}` also belongs to {_shown(rival[1])}, which is shown at the same time"
+                related = [((*rival[1].where, "key"), "the other button has it here")]
+                report(
+                    SHARED_BUTTON_KEY, (*button.where, "key"), message, "give this button another key", related=related
+                )
 
 
 def _dead(button: Button, machines: tuple[MachineDefinition, ...], report: DocumentReport) -> None:
@@ -40,12 +42,12 @@ def _dead(button: Button, machines: tuple[MachineDefinition, ...], report: Docum
     waited = {descriptor for machine in machines for descriptor in descriptors(machine)}
     known = {descriptor for descriptor in waited if "*" not in descriptor}
     if any(hears(descriptor, event) for descriptor in waited):
-        message = f"{_shown(button)} can't be pressed: no state that is active with it takes `{event}`"
-        hint = "write it in a state that answers the event, or answer it here under `on`"
+        message = f"{_shown(button)} can't be pressed: no state that is active with it waits for `{event}`"
+        hint = "move it to a state that waits for the event, or handle the event here under `on`"
     else:
         message = f"nothing waits for the event `{event}` of {_shown(button)}"
         hint = did_you_mean(event, known)
-        hint = hint if "mean" in hint else "answer it with `on:`, or delete the button"
+        hint = hint if "mean" in hint else "handle it under `on:`, or delete the button"
     report(DEAD_BUTTON, (*button.where, "event"), message, hint)
 
 

@@ -9,14 +9,14 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.naming import trees
 from lumen.rules.walk import expression_sites
 
-ODD_TIME = Code("odd-time", "expressions", WARNING, "a time, day or date is compared with a text that no clock shows")
+ODD_TIME = Code("odd-time", "expressions", WARNING, "a time, day or date is compared with an impossible value")
 
 _SHOWN: Mapping[str, tuple[re.Pattern[str], str]] = {
-    "now": (re.compile(r"([01][0-9]|2[0-3]):[0-5][0-9]"), "two digits each: `'09:30'`"),
-    "weekday": (re.compile(r"mon|tue|wed|thu|fri|sat|sun"), "`'mon'` to `'sun'`"),
-    "date": (re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}"), "year, month and day: `'2026-12-24'`"),
+    "now": (re.compile(r"([01][0-9]|2[0-3]):[0-5][0-9]"), "write two digits each, such as `'09:30'`"),
+    "weekday": (re.compile(r"mon|tue|wed|thu|fri|sat|sun"), "write a day from `'mon'` to `'sun'`"),
+    "date": (re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}"), "write year, month and day, such as `'2026-12-24'`"),
 }
-"""What each of them shows, and how that is said."""
+"""What each of them shows, and the hint to write that."""
 
 
 _COUNTED: Mapping[str, int] = {"hour": 23, "minute": 59}
@@ -35,23 +35,21 @@ def check(draft: ProjectDraft) -> None:
                 continue
             for root in trees(text):
                 for function, odd in _odd(root):
-                    hint = f"it has {_SHOWN[function][1]}"
-                    report(ODD_TIME, text.where, f"`{function}()` is never `{odd}`", hint=hint)
-                for function, sign, number in _beyond(root):
-                    hint = f"it goes from 0 to {_COUNTED[function]}"
-                    message = f"`{function}() {sign} {number:g}` asks for a number that no clock shows"
-                    report(ODD_TIME, text.where, message, hint=hint)
+                    report(ODD_TIME, text.where, f"`{function}()` is never `{odd}`", hint=_SHOWN[function][1])
+                for function, number in _beyond(root):
+                    hint = f"write a number from 0 to {_COUNTED[function]}"
+                    report(ODD_TIME, text.where, f"`{function}()` is never {number:g}", hint=hint)
 
 
-def _beyond(condition: ExpressionNode) -> Iterator[tuple[str, str, float]]:
-    """The functions that are compared with a number beyond what they give, how, and with which."""
+def _beyond(condition: ExpressionNode) -> Iterator[tuple[str, float]]:
+    """The functions that are compared with a number beyond what they give, and that number."""
     for node, _ in walk(condition):
         if isinstance(node, Binary) and node.sign in ("==", "!=", "<", "<=", ">", ">="):
             for one, other in ((node.left, node.right), (node.right, node.left)):
                 if isinstance(one, FunctionCall) and one.function in _COUNTED and isinstance(other, Literal):
                     number = other.value
                     if isinstance(number, int | float) and not 0 <= number <= _COUNTED[one.function]:
-                        yield one.function, node.sign, number
+                        yield one.function, number
 
 
 def _odd(condition: ExpressionNode) -> Iterator[tuple[str, str]]:

@@ -7,7 +7,7 @@ from lumen.language.diagnostics import ERROR, Code
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.routes import PASSWORD_IN_FILE
 
-OPEN_CONSOLE = Code("open-console", "robot", ERROR, "the console can be reached from elsewhere, and has no PINs")
+OPEN_CONSOLE = Code("open-console", "robot", ERROR, "other computers can reach the console, and it has no PINs")
 _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -19,12 +19,14 @@ def check(draft: ProjectDraft) -> None:
     console = settings.console
     for role, pin in console.pins.items():
         if not _VARIABLE.fullmatch(pin):
-            hint = f"write `{role}: $LUMEN_PIN_{role.upper()}`, and the PIN into that environment variable"
+            hint = f"write `{role}: $LUMEN_PIN_{role.upper()}`, and put the PIN into that environment variable"
             where = ("console", "pins", role)
-            report(PASSWORD_IN_FILE, where, "a PIN stands in a file that everybody reads", hint)
+            report(PASSWORD_IN_FILE, where, "a PIN is in a file that others can read", hint)
     if not console.pins and not _loopback(console.host):
-        hint = "write `pins: {operator: $LUMEN_PIN_OPERATOR}`, or leave out `host`: then only this machine reaches it"
-        message = f"whoever reaches {console.host} could let the robot do anything"
+        hint = (
+            "write `pins: {operator: $LUMEN_PIN_OPERATOR}`, or delete `host`, so that only this computer can reach it"
+        )
+        message = f"anyone who can reach {console.host} can control the robot"
         report(OPEN_CONSOLE, ("console", "host"), message, hint)
 
 

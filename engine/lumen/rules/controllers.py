@@ -70,5 +70,5 @@ def _limits(
     for i, limit in enumerate((binding.minimum, binding.maximum)):
         if limit is not None and not joint.minimum - LIMIT_TOLERANCE <= limit <= joint.maximum + LIMIT_TOLERANCE:
             low, high, given = (round(angle / controller.angle, 1) for angle in (joint.minimum, joint.maximum, limit))
-            message = f"`{joint.name}` can't go to {given:g}"
-            report(ANGLE_OUT_OF_RANGE, (*path, i), message, f"it goes from {low:g} to {high:g}")
+            message = f"`{joint.name}` can't move to {given:g}"
+            report(ANGLE_OUT_OF_RANGE, (*path, i), message, f"write a limit from {low:g} to {high:g}")

@@ -14,11 +14,9 @@ from lumen.rules.statecharts import ALWAYS_LOOP, reachable, within
 from lumen.rules.walk import action_sites
 
 DEAD_END = Code("dead-end", "statecharts", WARNING, "no transition leads out of a state")
-NO_WAY_BACK = Code(
-    "no-way-back", "statecharts", WARNING, "no way leads back from a state to where the behaviour begins"
-)
+NO_WAY_BACK = Code("no-way-back", "statecharts", WARNING, "no transitions lead back from a state to the initial state")
 HISTORY_OF_END = Code(
-    "history-of-end", "statecharts", WARNING, "a transition leads to a history that remembers the end of its state"
+    "history-of-end", "statecharts", WARNING, "a transition leads to a history that remembers a final state"
 )
 WAITS_FOR_EVER = Code("waits-for-ever", "statecharts", WARNING, "a state is left only if a visitor does something")
 LEFT_BY_ALARM = Code("left-by-alarm", "statecharts", WARNING, "a state is left only when something is wrong")
@@ -54,9 +52,11 @@ def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
         done = [t for t in parent.transitions if t.event == f"done.state.{parent.name}" and t.targets]
         for transition in (t for d in done for target in d.targets for t in machine.states[target].transitions):
             if path in transition.targets:
-                message = f"`{path}` remembers the end of `{parent.name}`, which is over at once"
-                hint = f"go to `{parent.name}` itself to begin it anew"
-                related = [(done[0].where, "it was left at its end here")]
+                message = (
+                    f"`{path}` remembers the final state of `{parent.name}`, so `{parent.name}` ends again at once"
+                )
+                hint = f"go to `{parent.name}` itself to restart it"
+                related = [(done[0].where, "this transition follows its end")]
                 report(HISTORY_OF_END, transition.where, message, hint, related=related)
 
 
@@ -160,7 +160,7 @@ class _Ways:
             state = self.machine.states[path]
             names = " or ".join(f"`{name}`" for name in sorted({t.event for t in self.ways_out(path)}))
             message = f"`{state.name}` is left only when something is wrong ({names})"
-            hint = "say what comes next: `onDone:`, `after: {30s: …}` or another transition"
+            hint = "give it `onDone:`, `after: {30s: …}` or another transition"
             self.report(LEFT_BY_ALARM, state.where, message, hint, key=True)
         dead.update(dict.fromkeys(stuck))
         back = spread([("in", home.path)], self.graph.before)
@@ -215,12 +215,12 @@ class _Ways:
     def from_where(self, path: str) -> list[tuple[NodePath, str]]:
         """How one gets there, where there is a single way."""
         ways = self.entered.get(path, [])
-        return [(ways[0].where, "only entered from here")] if len(ways) == 1 else []
+        return [(ways[0].where, "it is entered only from here")] if len(ways) == 1 else []
 
     def dead_end(self, path: str) -> None:
         state = self.machine.states[path]
-        hint = "give it a transition, or `type: final` where the behaviour is at its end"
-        message = f"nothing leads out of `{state.name}`: the behaviour would stay here for ever"
+        hint = "give it a transition, or `type: final` if the behaviour ends there"
+        message = f"no transition leads out of `{state.name}`: the behaviour would stay there for ever"
         self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
@@ -235,8 +235,8 @@ class _Ways:
             told |= spread([("in", path)], self.graph.after)
             told |= spread([("in", path)], self.graph.before)
             state = self.machine.states[path]
-            message = f"no way leads back from `{state.name}` to `{home.name}`, where it began"
-            hint = f"let a transition lead to `{home.name}`, here or in a state that follows"
+            message = f"no transitions lead back from `{state.name}` to the initial state `{home.name}`"
+            hint = f"add a transition to `{home.name}`, here or in a later state"
             self.report(NO_WAY_BACK, state.where, message, hint, key=True, related=self.from_where(path))
 
     def waiting(self, state: State) -> None:
@@ -251,8 +251,8 @@ class _Ways:
                 names.add(transition.event)
         if names:
             heard = " or ".join(f"`{name}`" for name in sorted(names))
-            message = f"`{state.name}` waits for {heard} for ever"
-            hint = "visitors walk away: give it `after:` as well, such as `after: {30s: …}`"
+            message = f"`{state.name}` may wait for {heard} for ever"
+            hint = "add a time limit for visitors who walk away, such as `after: {30s: …}`"
             self.report(WAITS_FOR_EVER, state.where, message, hint, key=True)
 
     def in_course(self, transition: Transition) -> bool:

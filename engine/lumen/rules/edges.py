@@ -14,9 +14,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.ground import covered, ground_of, reach
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle
 
-WALK_BEYOND_GROUND = Code(
-    "walk-beyond-ground", "robot", WARNING, "a walk leads beyond what the robot can stand on in its hall"
-)
+WALK_BEYOND_GROUND = Code("walk-beyond-ground", "robot", WARNING, "a walk leads off the ground of the hall")
 
 MAX_WAYS = 2_000
 """The most visits to states that are followed: the ways through a behaviour can be very many."""
@@ -56,7 +54,7 @@ def check(draft: ProjectDraft) -> None:
     parts = ground_of(draft, settings.hall)
     if not covered(parts, GroundPoint(0.0, 0.0)):
         return  # height fields and meshes are not read
-    hint = f"the ground goes {reach(parts)}: stay within it, or give lumen.yaml a `stage` that the feet never leave"
+    hint = f"stay on the ground, which extends {reach(parts)}, or write a `stage` in lumen.yaml"
     for name, place in settings.places.items():
         if not covered(parts, GroundPoint(place.x, place.y)):
             message = f"there is no ground at `{name}` in {settings.hall}: the robot would fall"
@@ -65,7 +63,7 @@ def check(draft: ProjectDraft) -> None:
     strays = dict(_Ways(machine, parts, settings.places).strays()) if machine else {}
     for where, point in strays.items():
         x, y = round(point.x, 2) + 0.0, round(point.y, 2) + 0.0  # -0.0 becomes 0.0
-        message = f"this walk leads to x {x:.2f}, y {y:.2f} m from the start: there is no ground there"
+        message = f"this walk leads to x {x:.2f}, y {y:.2f} m from the start, where there is no ground"
         draft.report("behaviors", settings.behavior)(WALK_BEYOND_GROUND, (*where, "walk"), message, hint, key=True)
 
 

@@ -13,7 +13,7 @@ from lumen.rules.statecharts import within
 from lumen.rules.walk import action_sites
 
 NO_EFFECT = Code("no-effect", "statecharts", WARNING, "a key has no effect here")
-MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is not there, so that nothing is heard")
+MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is missing, so no sound is played")
 BAD_SOUND = Code("bad-sound", "motions", WARNING, "a sound file can't be played")
 
 
@@ -43,11 +43,11 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
             and not report.broken((*state.where, "do"))
             and "do" not in (value_at(report, state.where) or ())
         ):
-            message = "`resume` has no effect in a state without a `do`: there is nothing to go on with"
+            message = "`resume` has no effect in a state without a `do`: there is nothing to resume"
             report(NO_EFFECT, (*state.where, "resume"), message, "delete it, or give the state a `do`", key=True)
         if state.on_reload and not state.children:
-            message = "`onReload` has no effect in a state without states: nothing within it can be gone"
-            hint = "let the state around it have it"
+            message = "`onReload` has no effect in a state without inner states: a reload can't remove any"
+            hint = "move it to the state around it"
             report(NO_EFFECT, (*state.where, "onReload"), message, hint, key=True)
 
 
@@ -58,10 +58,10 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
             path = (*transition.where, "reenter")
             if transition.reenter and not transition.targets and not report.broken(transition.where):
                 message = "`reenter` has no effect without a `target`: the state is not left"
-                hint = f"write `target: .` to begin `{state.name or 'the behaviour'}` anew, or delete `reenter`"
+                hint = f"write `target: .` to restart `{state.name or 'the behaviour'}`, or delete `reenter`"
                 report(NO_EFFECT, path, message, hint, key=True)
             elif transition.reenter and not any(within(target, state.path) for target in transition.targets):
-                message = f"`reenter` has no effect here: a target outside of `{state.name}` leaves it anyway"
+                message = f"`reenter` has no effect here: a target outside `{state.name}` leaves it anyway"
                 report(NO_EFFECT, path, message, "delete it", key=True)
         written = value_at(report, state.where) or {}
         if leaves := _leaves_at_once(state):
@@ -99,8 +99,8 @@ def _sound(file: str, path: NodePath, report: DocumentReport, draft: ProjectDraf
     try:
         sound_duration(draft.root, file)
     except OSError:
-        message = f"there is no file {file} in the project: nothing is heard here"
-        report(MISSING_SOUND, path, message, "put the file there, or name one that is", cause=f"sound {file}")
+        message = f"there is no file {file} in the project: no sound is played here"
+        report(MISSING_SOUND, path, message, "add the file, or name an existing one", cause=f"sound {file}")
     except ValueError as error:
-        hint = "save it as WAV: PCM of 16 bits, one channel or two"
+        hint = "save it as a WAV file: 16-bit PCM with one or two channels"
         report(BAD_SOUND, path, f"{file} can't be played: {error}", hint, cause=f"sound {file}")

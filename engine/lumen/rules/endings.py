@@ -4,7 +4,7 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 
 _LACKS = {
-    "done.state": "it has no final state to end in",
+    "done.state": "it has no final state",
     "done.do": "it has no `do`",
     "error.do": "it has no `do`",
 }
@@ -17,13 +17,16 @@ def ending_fault(machine: MachineDefinition, descriptor: str) -> str:
     words = descriptor.removesuffix(".*").split(".")
     family, name = ".".join(words[:2]), ".".join(words[2:])
     if family in _ANSWERS:
-        return "what became of a command is for the `do` that gave it: write `onDone` or `onError` into its state"
+        return "write `onDone` or `onError` in the state whose `do` gave the command"
     able = _able(machine, family)
     if not name or able is None or any(_begins(name, other) for other in able):
         return ""
     if family in _LACKS and any(name in (state.name, state.path) for state in machine.states.values()):
         return f"`{name}` never ends: {_LACKS[family]}"
-    return did_you_mean(f"{family}.{name}", [f"{family}.{other}" for other in able]) or f"nothing ends with `{family}`"
+    return (
+        did_you_mean(f"{family}.{name}", [f"{family}.{other}" for other in able])
+        or f"no state or invoke raises `{family}`"
+    )
 
 
 def _begins(descriptor: str, name: str) -> bool:

@@ -28,7 +28,7 @@ from lumen.rules.logic import tree
 from lumen.rules.statecharts import ALWAYS_LOOP, within
 
 ENDLESS_CHAIN = Code(
-    "endless-chain", "statecharts", WARNING, "states lead back to themselves for ever, without a guard and without time"
+    "endless-chain", "statecharts", WARNING, "transitions repeat in a circle for ever, without a guard or a delay"
 )
 
 MAX_STEPS = 1000
@@ -562,15 +562,15 @@ def _report(machine: MachineDefinition, around: list[_Taken], asked: list[str], 
     ways = ", ".join(
         f"{_way(event)} of `{machine.states[t.source].name or machine.id}`" for t, event in rows[:MAX_SHOWN_TRANSITIONS]
     )
-    message, code = "this never comes to rest", ENDLESS_CHAIN
-    hint = "let something that takes time come between, such as `after: {1s: …}`, or give one of them a `guard`"
+    message, code = "this loop never ends", ENDLESS_CHAIN
+    hint = "add a step that takes time, such as `after: {1s: …}`, or give one of them a `guard`"
     if asked:
         message += f" while {' and '.join(f'`{shown}`' for shown in asked)} {'are' if len(asked) > 1 else 'is'} false"
-        hint = "change on the way what the guard asks for, or let something that takes time come between"
+        hint = "change a value that the guard checks, or add a step that takes time"
     if not any(event for _, event in rows):
         code = ALWAYS_LOOP if asked else ENDLESS_ALWAYS
         if not any(t.targets for t, _ in rows):
-            hint = "give it a `target`, or do them in `entry`"
+            hint = "give it a `target`, or move its actions to `entry`"
     related = [(t.where, "then here") for t, _ in rows[1:]]
     report(code, rows[0][0].where, f"{message}: {ways}", hint, related=related)
 

@@ -20,7 +20,7 @@ from lumen.rules.recipients import recipients, sent_to
 from lumen.rules.walk import action_sites
 
 UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")
-UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "an event is raised that nothing waits for")
+UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "nothing waits for an event that is raised or declared")
 
 
 BUILT_IN_FAMILIES = (
@@ -149,10 +149,10 @@ def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> st
     """The hint at an event that nothing raises; what is `lost` is not proposed."""
     built_in = {route.event: name for name, route in BUILT_IN_ROUTES.items() if route.event}
     if (name := built_in.get(event.removesuffix(".*"))) in settings.removed_routes:
-        return f"delete the row `{name}: null` of lumen.yaml, or declare the event under `events:`"
+        return f"delete the row `{name}: null` in lumen.yaml, or declare the event under `events:`"
     families = (family.removesuffix(".") for family in BUILT_IN_FAMILIES)
     hint = did_you_mean(event, {*known, *built_in, *families} - {event} - lost)
-    return hint if "mean" in hint else "declare it under `events:`, or give a route of lumen.yaml this `event`"
+    return hint if "mean" in hint else "declare it under `events:`, or give a route in lumen.yaml this `event`"
 
 
 def _prefixes(event: str) -> list[str]:
@@ -185,7 +185,7 @@ def _misnamed(event: str, misspelt: _Misspelt, report: DocumentReport) -> bool:
         return False
     path = (*sites[0], "raise")
     message = f"nothing waits for the event `{name}`, and nothing raises `{event}`"
-    related = [(descriptor_path(waiting[0]), f"`{event}` is waited for here")]
+    related = [(descriptor_path(waiting[0]), f"a transition waits for `{event}` here")]
     report(UNKNOWN_EVENT, first(report, (*path, "event"), path), message, f"did you mean `{event}`?", related=related)
     return True
 
@@ -217,5 +217,5 @@ def _raised(draft: ProjectDraft, name: str, report: DocumentReport) -> None:
                 if nearest(event, report.missed):
                     continue  # it was meant there
                 hint = did_you_mean(event, {d for d in waited if "*" not in d})
-                hint = hint if "mean" in hint else "react to it with `on:`, or delete this"
+                hint = hint if "mean" in hint else "handle it under `on:`, or delete this"
                 report(UNUSED_EVENT, path, f"nothing waits for the event `{event}`", hint)

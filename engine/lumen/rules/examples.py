@@ -16,8 +16,10 @@ from lumen.rules.speech import SHADOWED_ANSWER
 from lumen.rules.statecharts import within
 from lumen.rules.word_tables import home_of
 
-NEVER_HEARD = Code("never-heard", "hearing", WARNING, "no sentence takes a row of `hears`")
-SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase, said alone, takes another row than its own")
+NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never matches a sentence")
+SHADOWED_PHRASE = Code(
+    "shadowed-phrase", "hearing", WARNING, "a phrase, said alone, matches a different row from its own"
+)
 
 MAX_TRIED = 300
 """Sentences that are tried to find one that takes a row with `not` or `asked`."""
@@ -41,8 +43,8 @@ class _Examples(HeardRows):
     def check(self) -> None:
         for path, rows in self.by_state.items():
             if hiding := self.hiding(path):
-                message = f"nothing takes a row of {shown(rows[0].state)}: {hiding} takes every sentence before"
-                self.report(NEVER_HEARD, rows[0].path[:-1], message, "give that one a `guard`", key=True)
+                message = f"no sentence reaches the rows of {shown(rows[0].state)}: {hiding} takes every sentence first"
+                self.report(NEVER_HEARD, rows[0].path[:-1], message, "give that transition a `guard`", key=True)
                 continue
             for row in rows:
                 match row.hears.way:
@@ -78,11 +80,11 @@ class _Examples(HeardRows):
         if not reached and taken:
             example, taker = next(iter(taken.values()))
             other = self.by_number[taker.number]
-            why = f"`{other.hears.key}` is taken first, as for `{example.text}`"
-            self.never(row, why, "put this row before that one, or make one of the two", other)
+            why = f"`{other.hears.key}` matches first, for example for `{example.text}`"
+            self.never(row, why, "put this row before that one, or merge the two", other)
         elif not any(row_phrases(self.machine, row.hears)):
             names = " and ".join(f"`{name}`" for name in row.hears.names)
-            self.never(row, f"{names} has no phrases", "write some for each language, or delete the row")
+            self.never(row, f"there are no phrases for {names}", "write phrases for each language, or delete the row")
         else:
             for example, taker in taken.values():
                 self.shadowed(row, example, taker)
@@ -111,17 +113,17 @@ class _Examples(HeardRows):
             return  # it comes with Lumen
         other, words = self.by_number[taken.number], self.words(example.text, taken.find)
         whole = words == example.text
-        message = f"`{example.text}` of `{example.name}` takes the row {other.shown}"
-        message += "" if whole else f", which hears `{words}`"
-        if other.state.path != row.state.path:
-            message += " first"
-            hint = f"add `{example.name}` to that row, or take `{words}` out of its phrases"
+        inner = other.state.path != row.state.path
+        message = f"`{example.text}` of `{example.name}` {'first ' if inner else ''}matches the row {other.shown}"
+        message += "" if whole else f" by the words `{words}`"
+        if inner:
+            hint = f"add `{example.name}` to that row, or remove `{words}` from its phrases"
         elif whole:
-            hint = f"leave it to one of the two, or put `{row.hears.key}` first: of equal rows the upper one is taken"
+            hint = f"delete it from one of the two, or put `{row.hears.key}` first: of equal rows, the upper one wins"
         else:
             hint = f"give this phrase more words, or put `{row.hears.key}` before `{other.hears.key}`"
         report, path = example.written.report, example.written.path
-        related = Related(self.report.document.place(other.path, key=True), "it takes this row")
+        related = Related(self.report.document.place(other.path, key=True), "it matches this row")
         cause = f"{report.document.file} {path}"
         found = SHADOWED_PHRASE.at(report.document.place(path), message, hint, (related,), cause)
         report.diagnostics.append(found)
@@ -134,24 +136,24 @@ class _Examples(HeardRows):
             return
         names = " and ".join(f"`{name}`" for name in row.hears.names)
         if row.hears.way == "asked":
-            why = f"the phrases of {names} hold a question word themselves"
+            why = f"the phrases of {names} already contain a question word"
         elif self.machine.anyhow.issuperset(row.hears.names):
-            why = f"{names} counts even if it is refused (`anyhow: true`)"
+            why = f"the phrases of {names} match even if they are negated (`anyhow: true`)"
         else:
-            why = f"the phrases of {names} hold a negation themselves"
-        self.never(row, why, f"delete it: `{'|'.join(row.hears.names)}` takes these sentences")
+            why = f"the phrases of {names} already contain a negation"
+        self.never(row, why, f"delete it: `{'|'.join(row.hears.names)}` matches these sentences")
 
     def otherwise(self, row: SaidRow) -> None:
         """Report an `else` for which a state around it, or each state within, leaves nothing."""
         outer = row.state.path
         for state in [*self.around(outer)][1:]:
             if found := next((t for t in state.transitions if _takes_all(t)), None):
-                why = f"`{found.event}` of {shown(state)} takes what is left before"
-                self.never(row, why, "give that one a `guard`", found)
+                why = f"`{found.event}` of {shown(state)} takes the remaining sentences first"
+                self.never(row, why, "give that transition a `guard`", found)
                 return
         leaves = self.leaves(outer)
         if outer not in leaves and leaves and all(self.ends(leaf, outer) for leaf in leaves):
-            self.never(row, "every state within has an `else` of its own", "delete it, or one of those")
+            self.never(row, "every inner state has its own `else`", "delete it, or one of those")
 
     def ends(self, leaf: str, outer: str) -> bool:
         """Whether an `else` between two states takes whatever is left."""
@@ -183,8 +185,8 @@ class _Examples(HeardRows):
                 rivals = [self.rival(name, number, text) for text in texts]
                 if rivals and None not in rivals:
                     first = min(rival for rival in rivals if rival is not None)
-                    message = f"this is never answered: `{texts[0]}` is taken for the answer in row {first + 1}"
-                    related = [(("answers", name, first), "of rows with as many words the first one wins")]
+                    message = f"this answer is never given: row {first + 1} matches `{texts[0]}` first"
+                    related = [(("answers", name, first), "of rows with equally many words, the first one wins")]
                     home(SHADOWED_ANSWER, path, message, "put this row before it", key=True, related=related)
 
     def rival(self, name: str, number: int, text: str) -> int | None:
@@ -195,8 +197,10 @@ class _Examples(HeardRows):
 
     def never(self, row: SaidRow, why: str, hint: str, taker: SaidRow | Transition | None = None) -> None:
         where = taker.path if isinstance(taker, SaidRow) else taker.where if taker else ()
-        related = [(where, "this is taken first")] if taker else []
-        self.report(NEVER_HEARD, row.path, f"nothing takes the row {row.shown}: {why}", hint, key=True, related=related)
+        related = [(where, "this comes first")] if taker else []
+        self.report(
+            NEVER_HEARD, row.path, f"no sentence reaches the row {row.shown}: {why}", hint, key=True, related=related
+        )
 
 
 def _takes_all(transition: Transition) -> bool:

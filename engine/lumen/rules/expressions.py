@@ -117,7 +117,10 @@ class _Expressions:
             keys = [*re.findall(r"\bcontext\.(\w+)", part), *([context_key(spot.key)] if spot.key else [])]
             for key in dict.fromkeys(k for k in keys if k in (self.report.document.data.get("context") or ())):
                 place = self.report.document.place(("context", key), key=True)
-                yield Related(place, f"`{key}` begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}")
+                yield Related(
+                    place,
+                    f"the initial value of `{key}` is {json.dumps(self.machine.context[key], ensure_ascii=False)}",
+                )
 
     def nulls(self, part: str, finding: ExpressionFinding) -> str:
         """What parts have in common whose one context key begins with nothing, where something was meant."""
@@ -142,7 +145,7 @@ class _Expressions:
             there = self.report.document.place(("context", key))
             told = next((d for d in self.report.diagnostics if d.code in _TRUTHS and d.place == there), None)
             if told and told.code == LOOKS_LIKE_TRUTH:
-                related = (Related(place, "true or false is needed here"),)
+                related = (Related(place, "this must be true or false"),)
                 self.report.diagnostics[self.report.diagnostics.index(told)] = TYPE_MISMATCH.at(
                     there, told.message, told.hint, related
                 )

@@ -9,9 +9,11 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
 from lumen.rules.walk import action_sites
 
-UNHANDLED_FALL = Code("unhandled-fall", "statecharts", WARNING, "legs move, and nothing waits for `fallen`")
+UNHANDLED_FALL = Code(
+    "unhandled-fall", "statecharts", WARNING, "a behaviour moves the legs, but nothing waits for `fallen`"
+)
 
-UNHANDLED_ERROR = Code("unhandled-error", "statecharts", WARNING, "a walk may fail, and then nothing leads on")
+UNHANDLED_ERROR = Code("unhandled-error", "statecharts", WARNING, "a walk may fail, but no transition handles that")
 
 FALLEN = "fallen"
 
@@ -30,8 +32,8 @@ def check(draft: ProjectDraft) -> None:
         first = next((site.step for site in action_sites(machine) if _legs(draft, site.step)), None)
         if first and report.whole:
             verb = "play" if isinstance(first.action, Play) else "walk"
-            message = f"`{verb}` moves the legs here, and nothing in `{name}` says what to do after a fall"
-            hint = "give the outermost `on` a `fallen:`, and a state that gets up: `do: {posture: Stand}`"
+            message = f"`{verb}` moves the legs here, but nothing in `{name}` handles a fall"
+            hint = "add `fallen:` to the outermost `on`, and a state that gets up: `do: {posture: Stand}`"
             report(UNHANDLED_FALL, (*first.where, verb), message, hint, key=True)
 
 
@@ -44,8 +46,8 @@ def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
         walk = next((step for step in nested(state.do) if isinstance(step.action, GoTo | Walk)), None)
         if walk is None or led[path]:
             continue
-        message = f"if this walk fails, nothing leads on from `{state.name}`"
-        hint = "somebody may stand in the way: say with `onError:` what comes then"
+        message = f"if this walk fails, the behaviour stays in `{state.name}`"
+        hint = "add `onError:` with the next state: a visitor may be in the way"
         cause = f"walks of {report.document.file}"
         report(UNHANDLED_ERROR, (*walk.where, "walk"), message, hint, key=True, cause=cause)
 

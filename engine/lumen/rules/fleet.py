@@ -16,13 +16,17 @@ from lumen.loading.files import FLEET_FILE
 from lumen.rules.alerts import loopback
 from lumen.rules.routes import PASSWORD_IN_FILE
 
-BAD_CONDITION = Code("bad-condition", "fleet", ERROR, "the condition that ends a rollout can't be computed")
-BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the key of a fleet is no public key")
-FLEET_IN_CLEAR = Code("fleet-in-clear", "fleet", WARNING, "houses and centre talk unencrypted: others can read along")
-SHRINKING_STEP = Code("shrinking-step", "fleet", ERROR, "a step of a rollout is no larger than the one before")
-UNKNOWN_HOUSE = Code("unknown-house", "fleet", ERROR, "a house or a robot is named that the fleet does not have")
-UNKNOWN_GROUP = Code("unknown-group", "fleet", ERROR, "a step goes to a group that there is not")
-UNKNOWN_MEASURE = Code("unknown-measure", "fleet", ERROR, "a measure counts nothing, or per one that there is not")
+BAD_CONDITION = Code("bad-condition", "fleet", ERROR, "the condition that stops a rollout can't be evaluated")
+BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the key of a fleet is not a public key")
+FLEET_IN_CLEAR = Code(
+    "fleet-in-clear", "fleet", WARNING, "messages between the houses and the centre are not encrypted"
+)
+SHRINKING_STEP = Code("shrinking-step", "fleet", ERROR, "a rollout step is no larger than the step before it")
+UNKNOWN_HOUSE = Code("unknown-house", "fleet", ERROR, "a name refers to a house or robot that is not in the fleet")
+UNKNOWN_GROUP = Code("unknown-group", "fleet", ERROR, "a rollout step names a group that does not exist")
+UNKNOWN_MEASURE = Code(
+    "unknown-measure", "fleet", ERROR, "a measure counts nothing, or refers to a measure that does not exist"
+)
 
 KEY_BYTES = 32
 
@@ -43,12 +47,12 @@ def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
         return
     house = fleet.houses.get(settings.house)
     if house is None:
-        hint = did_you_mean(settings.house, fleet.houses, "there are")
+        hint = did_you_mean(settings.house, fleet.houses, "available:")
         main(UNKNOWN_HOUSE, ("house",), f"fleet.yaml has no house `{settings.house}`", hint)
         return
     for name in settings.robots:
         if name not in house.robots:
-            hint = did_you_mean(name, house.robots, "it has")
+            hint = did_you_mean(name, house.robots, "the house has")
             main(UNKNOWN_HOUSE, ("house",), f"the house `{settings.house}` has no robot `{name}` in fleet.yaml", hint)
 
 
@@ -67,7 +71,7 @@ def check_fleet(fleet: Fleet, report: DocumentReport) -> None:
             hint = "write `event: NAME`, or `enters: STATE`"
             report(UNKNOWN_MEASURE, ("measures", name), "the measure counts nothing", hint, key=True)
         if measure.per and measure.per not in fleet.measures:
-            hint = did_you_mean(measure.per, fleet.measures, "there are")
+            hint = did_you_mean(measure.per, fleet.measures, "available:")
             report(UNKNOWN_MEASURE, ("measures", name, "per"), f"there is no measure `{measure.per}`", hint)
     _steps(fleet, report)
     _condition(fleet, report)
@@ -81,14 +85,14 @@ def _key(fleet: Fleet, report: DocumentReport) -> None:
     except (binascii.Error, ValueError):
         sound = False
     if not sound:
-        hint = "`lumen fleet keygen` makes a pair of keys, and prints the line that belongs here"
-        report(BAD_FLEET_KEY, ("key",), "this is no public key: 32 bytes in base64 are expected", hint)
+        hint = "run `lumen fleet keygen`, which makes a pair of keys and prints the line to write here"
+        report(BAD_FLEET_KEY, ("key",), "this is not a public key of 32 bytes in base64", hint)
 
 
 def _address(address: str, where: NodePath, report: DocumentReport) -> None:
     if credentials_of(address):
-        hint = "take them out: `lumen fleet init` writes names and passwords into files of their own"
-        report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
+        hint = "delete them here: `lumen fleet init` writes names and passwords into separate files"
+        report(PASSWORD_IN_FILE, where, "a user name and a password are in a file that others can read", hint)
         return
     try:
         parts = urlsplit(address)
@@ -96,14 +100,14 @@ def _address(address: str, where: NodePath, report: DocumentReport) -> None:
     except ValueError:
         return
     if parts.scheme == "amqp" and not loopback(host):
-        report(FLEET_IN_CLEAR, where, f"what is sent to {host} is not encrypted", "write amqps://")
+        report(FLEET_IN_CLEAR, where, f"messages to {host} are not encrypted", "write amqps://")
 
 
 def _known(names: Iterable[str], known: Iterable[str], what: str, where: NodePath, report: DocumentReport) -> None:
     there = list(known)
     for i, name in enumerate(names):
         if name not in there:
-            hint = did_you_mean(name, there, "there are")
+            hint = did_you_mean(name, there, "available:")
             report(UNKNOWN_HOUSE, (*where, i), f"the fleet has no {what} `{name}`", hint)
 
 
@@ -113,12 +117,12 @@ def _steps(fleet: Fleet, report: DocumentReport) -> None:
     for i, step in enumerate(fleet.rollout.steps):
         where: NodePath = ("rollout", "steps", i, "to")
         if step.group and step.group not in fleet.groups:
-            hint = did_you_mean(step.group, [*fleet.groups, "all"], "there are")
+            hint = did_you_mean(step.group, [*fleet.groups, "all"], "available:")
             report(UNKNOWN_GROUP, where, f"there is no group `{step.group}`", hint)
         if not step.group:
             if step.share <= last:
-                hint = f"write a larger share than {100.0 * last:g}%, or take the step out"
-                report(SHRINKING_STEP, where, f"{step} is no more than the step before", hint)
+                hint = f"write a share above {100.0 * last:g}%, or delete the step"
+                report(SHRINKING_STEP, where, f"{step} is not larger than the step before", hint)
             last = step.share
 
 

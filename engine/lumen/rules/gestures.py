@@ -27,8 +27,8 @@ def _tags(library: GestureLibrary, report: DocumentReport, tags: tuple[str, ...]
         for i, tag in enumerate(gesture.tags):
             if tag not in tags and not report.broken(("phrases",)):
                 path = first(report, (*gesture.where, "for", i), (*gesture.where, "for"))
-                message = f"no text has the tag `{tag}`: it has no `phrases`"
-                report(NO_EFFECT, path, message, did_you_mean(tag, tags, "there are"))
+                message = f"no text has the tag `{tag}`: there are no `phrases` for it"
+                report(NO_EFFECT, path, message, did_you_mean(tag, tags, "available:"))
 
 
 def _speeds(library: GestureLibrary, report: DocumentReport, body: Body) -> None:
@@ -36,6 +36,6 @@ def _speeds(library: GestureLibrary, report: DocumentReport, body: Body) -> None
         excesses = {j: v / (GESTURE_SHARE * body.joints[j].speed) for j, v in peak_speeds(gesture).items()}
         joint = max(excesses, key=lambda name: excesses[name])
         if excesses[joint] > 1.0:
-            message = f"`{gesture.name}` would move `{joint}` {excesses[joint]:.1f} times as fast as a gesture should"
-            hint = f"give its longest way {100 * (excesses[joint] - 1):.0f} % more time, or a smaller angle"
+            message = f"`{gesture.name}` would move `{joint}` {excesses[joint]:.1f} times as fast as a gesture may"
+            hint = f"give its longest movement {100 * (excesses[joint] - 1):.0f} % more time, or a smaller angle"
             report(TOO_FAST, gesture.where, message, hint, key=True)

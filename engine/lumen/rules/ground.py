@@ -7,9 +7,7 @@ from lumen.language.projects import Stage
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle, ground
 
-STAGE_BEYOND_GROUND = Code(
-    "stage-beyond-ground", "robot", WARNING, "the stage reaches beyond what the robot can stand on in its hall"
-)
+STAGE_BEYOND_GROUND = Code("stage-beyond-ground", "robot", WARNING, "the stage extends beyond the ground of the hall")
 
 POINTS = 9
 """Points of the stage along each axis that are looked at, its edges among them."""
@@ -24,8 +22,8 @@ def check(draft: ProjectDraft) -> None:
     if not covered(parts, start):
         return  # what is no box, as a field of heights, is not read
     if astray := next((point for point in _points(draft.settings.stage) if not covered(parts, point)), None):
-        message = f"at x {astray.x:.3g}, y {astray.y:.3g} m there is no ground in {draft.settings.hall}: it would fall"
-        hint = f"the ground it starts on goes {reach(parts)}: keep the stage within, or make that larger in the hall"
+        message = f"{draft.settings.hall} has no ground at x {astray.x:.3g}, y {astray.y:.3g} m: the robot would fall"
+        hint = f"keep the stage on the ground, which extends {reach(parts)}, or enlarge the ground in the hall"
         draft.main(STAGE_BEYOND_GROUND, ("stage",), message, hint, key=True)
 
 

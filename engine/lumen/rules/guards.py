@@ -18,12 +18,12 @@ from lumen.rules.statecharts import within
 from lumen.rules.walk import expression_sites
 from lumen.rules.word_tables import is_taken
 
-CONSTANT_GUARD = Code("constant-guard", "statecharts", WARNING, "a guard is always true, or never")
+CONSTANT_GUARD = Code("constant-guard", "statecharts", WARNING, "a guard is always true, or never true")
 OVERLAPPING_GUARDS = Code(
-    "overlapping-guards", "statecharts", INFO, "an earlier guard already takes some of these phrases"
+    "overlapping-guards", "statecharts", INFO, "an earlier guard already matches some of these phrases"
 )
 SHADOWED_TRANSITION = Code(
-    "shadowed-transition", "statecharts", WARNING, "a transition is never taken, because one before it always is"
+    "shadowed-transition", "statecharts", WARNING, "a transition is never taken, because an earlier one always is"
 )
 
 MAX_COMPARED_CANDIDATES = 60
@@ -61,9 +61,9 @@ def _constant(guard: Expression, report: DocumentReport) -> None:
     if _never(guard.source):
         simple = _simple(tree(guard.source))
         message = "this is never true" if simple else "this is never true: its parts contradict each other"
-        report(CONSTANT_GUARD, guard.where, message, "look at the signs and numbers, or delete what it guards")
+        report(CONSTANT_GUARD, guard.where, message, "check its signs and numbers, or delete the part that it guards")
     elif _always(guard.source):
-        report(CONSTANT_GUARD, guard.where, "this is always true", "leave it out, or look at its signs")
+        report(CONSTANT_GUARD, guard.where, "this is always true", "delete it, or check its signs")
 
 
 @lru_cache(maxsize=MAX_REMEMBERED_TREES)
@@ -108,9 +108,9 @@ def _taken_within(machine: MachineDefinition, state: State, report: DocumentRepo
         ]
         first = takers[0] if takers else None
         if first is not None and None not in takers:
-            message = f"this is never taken: what is active within `{state.name}` always takes the event, before it"
+            message = f"this is never taken: the states inside `{state.name}` always take the event first"
             hint = f"name the events there instead of `{first.event}`"
-            related = [(first.where, "this is taken")]
+            related = [(first.where, "this is taken first")]
             report(SHADOWED_TRANSITION, end.where, message, hint, related=related)
 
 
@@ -152,12 +152,12 @@ def covers(earlier: Transition, later: Transition) -> bool:
 
 def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
     """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
-    related = [(earlier.where, "the earlier one stands here")]
+    related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:
         if report.broken(earlier.where):  # what was taken out of it may have been its guard
             return False
         line = report.document.place(earlier.where).line
-        message = f"this is never taken: the transition in line {line} always is, before it"
+        message = f"this is never taken: the transition in line {line} always comes first"
         hint = "give that one a `guard`, or swap them"
         if later.hears and not earlier.hears:
             hint = "give that one a `guard`, or make it the row `else`"
@@ -176,7 +176,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         message, hint = "this is never taken: one with the same guard comes first", "delete one of the two"
         if one != other:
             wide = _short(earlier.guard.shown)
-            message, hint = f"this is never taken: `{wide}` is true wherever its guard is", "put this one before it"
+            message, hint = f"this is never taken: `{wide}` is true whenever this guard is", "put this one before it"
         report(SHADOWED_TRANSITION, later.where, message, hint, related=related)
         return True
     if taken and first and second and not _alike(earlier, later):
@@ -184,9 +184,8 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         whole = taken.issuperset(said)
         code = SHADOWED_TRANSITION if whole else OVERLAPPING_GUARDS
         shown = ", ".join(f"`{phrase}`" for phrase in sorted(taken)[:3])
-        message = (
-            f"{shown} of `{second.name}` {'are' if len(taken) > 1 else 'is'} taken for `{first.name}`, asked first"
-        )
+        verb = "match" if len(taken) > 1 else "matches"
+        message = f"{shown} of `{second.name}` {verb} `{first.name}`, which is tried first"
         report(code, later.where, message, "put the longer phrases first", related=related)
         return whole
     return False

@@ -16,7 +16,7 @@ from lumen.rules.statecharts import within
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
 
 SHADOWED_QUESTION = Code(
-    "shadowed-question", "hearing", WARNING, "a question of knowledge/ takes a row of `hears`, and is not answered"
+    "shadowed-question", "hearing", WARNING, "a question of knowledge/ matches a row of `hears`, so it is not answered"
 )
 
 
@@ -93,10 +93,10 @@ class _Questions(HeardRows):
     def say(self, question: WrittenPhrase, takers: Sequence[tuple[Find, SaidRow, State]]) -> None:
         find, row, state = takers[0]
         words, name = self.words(question.text, find), find.entry.name
-        message = f"this question is not answered in {shown(state)}: `{words}` in it takes the row `{row.hears.key}`"
+        message = f"this question is not answered in {shown(state)}: `{words}` in it matches the row `{row.hears.key}`"
         message += "" if row.state is state else f" of {shown(row.state)}"
         places = dict.fromkeys(self.report.document.place(row.path, key=True) for _, row, _ in takers)
-        related = tuple(Related(place, "it takes this row") for place in places)
+        related = tuple(Related(place, "it matches this row") for place in places)
         cause = f"{self.report.document.file} {name} {words.casefold()}"
         place = question.report.document.place(question.path)
         found = SHADOWED_QUESTION.at(place, message, self.remedy(question, find, row, state), related, cause)
@@ -107,13 +107,13 @@ class _Questions(HeardRows):
         name, words = find.entry.name, self.words(question.text, find)
         asked = hearing_of(self.machine).read(question.text).is_asked(find)
         if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):
-            return f"add a row `asked {name}` to {shown(row.state)} that leads where `else` of {shown(state)} does"
+            return f"add a row `asked {name}` to {shown(row.state)} with the same target as `else` of {shown(state)}"
         keys = ("phrases", "answers")
         if not any(home_of(self.draft, self.behavior, k, name) for k in keys if name in getattr(self.machine, k)):
-            remedy = f"`{name}` comes with Lumen: give it phrases of your own, without `{words}`"
+            remedy = f"write your own phrases for `{name}`, without `{words}`: the present ones come with Lumen"
         else:
-            remedy = f"give that phrase more words, or a full stop: then only `{words}` alone is `{name}`"
-        return f"{remedy}; or delete the question, if it may do that"
+            remedy = f"give that phrase more words, or a full stop, so that only `{words}` alone matches `{name}`"
+        return f"{remedy}; or delete the question if that row is right for it"
 
 
 def _asks(block: tuple[PlacedAction, ...]) -> bool:

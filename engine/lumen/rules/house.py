@@ -7,8 +7,8 @@ from lumen.language.diagnostics import ERROR, WARNING, Code
 from lumen.language.routing_keys import DEFAULT_KEYS
 from lumen.loading.draft import ProjectDraft
 
-CLASHING_NAMES = Code("clashing-names", "robot", ERROR, "two robots of a house would have a key or a folder in common")
-SAME_PLACE = Code("same-place", "robot", WARNING, "two robots start where there is room for one")
+CLASHING_NAMES = Code("clashing-names", "robot", ERROR, "two robots of a house would share a key or a folder")
+SAME_PLACE = Code("same-place", "robot", WARNING, "two robots start too close to each other")
 
 ROOM = 0.5
 """How far two robots have to be apart so that their arms do not meet [m]."""
@@ -25,16 +25,18 @@ def check(draft: ProjectDraft) -> None:
             other = keys.setdefault(key.replace("{robot}", name), name)
             if other != name:
                 message = f"`{name}` and `{other}` would both use `{key.replace('{robot}', name)}`"
-                report(CLASHING_NAMES, ("robots", name), message, "call one otherwise", key=True)
+                report(CLASHING_NAMES, ("robots", name), message, "rename one of them", key=True)
                 break
         if name == settings.house:
-            hint = "write another `house:`, or call the robot otherwise"
-            report(CLASHING_NAMES, ("robots", name), f"`{name}` is the name of the house, too", hint, key=True)
+            hint = "write another `house:`, or rename the robot"
+            report(CLASHING_NAMES, ("robots", name), f"`{name}` is also the name of the house", hint, key=True)
     for one, two in combinations(settings.robots.values(), 2):
         if one.name.casefold() == two.name.casefold():
-            message = f"`{two.name}` and `{one.name}` differ by capitals alone: on some disks they share a folder"
-            report(CLASHING_NAMES, ("robots", two.name), message, "call one otherwise", key=True)
+            message = (
+                f"`{two.name}` and `{one.name}` differ only in capital letters: on some disks they would share a folder"
+            )
+            report(CLASHING_NAMES, ("robots", two.name), message, "rename one of them", key=True)
         if (apart := hypot(one.at.x - two.at.x, one.at.y - two.at.y)) < ROOM:
-            message = f"`{two.name}` starts {apart:.2f} m from `{one.name}`: their arms would meet"
-            hint = f"write `at: {{x: 0, y: 1}}` beside its `model`: at least {ROOM:g} m from each other"
+            message = f"`{two.name}` starts {apart:.2f} m from `{one.name}`: their arms could touch"
+            hint = f"write `at: {{x: 0, y: 1}}` beside its `model`, at least {ROOM:g} m from the other robot"
             report(SAME_PLACE, ("robots", two.name), message, hint, key=True)

@@ -12,8 +12,8 @@ from lumen.language.diagnostics import WARNING, Code, Diagnostic, NodePath, Plac
 from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 
-IGNORE_WITHOUT_REASON = Code("ignore-without-reason", "comments", WARNING, "an ignore comment does not say why")
-IGNORED_ERROR = Code("ignored-error", "comments", WARNING, "an ignore comment names a code that is an error")
+IGNORE_WITHOUT_REASON = Code("ignore-without-reason", "comments", WARNING, "an ignore comment gives no reason")
+IGNORED_ERROR = Code("ignored-error", "comments", WARNING, "an ignore comment names the code of an error")
 UNKNOWN_CODE = Code("unknown-code", "comments", WARNING, "an ignore comment names no code, or one that does not exist")
 UNUSED_IGNORE = Code("unused-ignore", "comments", WARNING, "an ignore comment hides nothing")
 
@@ -103,22 +103,22 @@ def _faults(
 ) -> Iterator[Diagnostic]:
     """What is wrong with a comment; what it does not hide can be told where the whole project was looked at."""
     if not comment.codes:
-        yield _fault(UNKNOWN_CODE, comment.place, "this does not say what to ignore", "write `ignore[CODE] reason`")
+        yield _fault(UNKNOWN_CODE, comment.place, "this comment names no code", "write `ignore[CODE] reason`")
     elif not comment.reason:
-        hint = "write it behind the bracket, for whoever reads this next year"
-        yield _fault(IGNORE_WITHOUT_REASON, comment.place, "this does not say why", hint)
+        hint = "write the reason after the bracket"
+        yield _fault(IGNORE_WITHOUT_REASON, comment.place, "this comment gives no reason", hint)
     for code, place in comment.codes:
         if code not in codes:
             hint = did_you_mean(code, codes)
-            hint = hint if hint.startswith("did") else "`lumen explain` lists them all"
+            hint = hint if hint.startswith("did") else "run `lumen explain` to list the codes"
             yield _fault(UNKNOWN_CODE, place, f"there is no code `{code}`", hint)
         elif (comment.place.file, comment.line, code) in gone:
             continue
         elif codes[code].severity is Severity.ERROR:
-            hint = "repair what it is about, and delete this"
+            hint = "fix the error, and delete this comment"
             yield _fault(IGNORED_ERROR, place, f"`{code}` is an error, which can't be ignored", hint)
         elif whole:
-            yield _fault(UNUSED_IGNORE, place, f"there is no `{code}` here to ignore", "delete this")
+            yield _fault(UNUSED_IGNORE, place, f"there is no `{code}` here to ignore", "delete this comment")
 
 
 def _fault(code: Code, place: Place, message: str, hint: str) -> Diagnostic:

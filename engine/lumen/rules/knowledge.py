@@ -9,10 +9,10 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import first
 
-CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages claim the same question")
-OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "a passage is past the last day on which it is true")
-LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is longer than a robot should speak at once")
-UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a robot is named that is not in lumen.yaml")
+CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages have the same question")
+OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "the last day of a passage has passed")
+LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is too long for the robot to say at once")
+UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a name refers to a robot that is not in lumen.yaml")
 
 MAX_ANSWER = 400
 """Characters that a robot should say at once: about half a minute."""
@@ -27,8 +27,8 @@ def check(draft: ProjectDraft) -> None:
         _days(passage, report, draft.today)
         for language, text in passage.answer.items():
             if len(text) > MAX_ANSWER:
-                message = f"this is {len(text)} characters: nobody listens to a robot for so long"
-                hint = f"say it in {MAX_ANSWER}, or make two passages of it"
+                message = f"this answer has {len(text)} characters: visitors do not listen for so long"
+                hint = f"shorten it to {MAX_ANSWER} characters, or split it into two passages"
                 report(LONG_ANSWER, ("answer", language), message, hint, key=True)
         if draft.settings and draft.main:
             for i, robot in enumerate(passage.who):
@@ -46,16 +46,16 @@ def _claims(passage: Passage, report: DocumentReport, claims: dict[tuple[str, st
             other, there = claims.setdefault((language, words_of(question)), (passage, here))
             if there == here or (other.who and passage.who and not {*other.who} & {*passage.who}):
                 continue
-            message = f"`{question}` is asked here and in {there.file}"
-            related = Related(there, "it stands here, too")
-            hint = "leave it to one of them: of two answers nobody knows which is given"
+            message = f"`{question}` is also a question in {there.file}"
+            related = Related(there, "the other one is here")
+            hint = "delete it from one of the two: the robot gives only one of the answers"
             report.diagnostics.append(CLAIMED_TWICE.at(here, message, hint, (related,)))
 
 
 def _days(passage: Passage, report: DocumentReport, today: date | None) -> None:
     if today and passage.is_past(today):
-        message = f"this was true until {passage.until}, and is not said any more"
-        report(OUT_OF_DATE, ("until",), message, "write what is true now, with a later day, or delete the passage")
+        message = f"this was true until {passage.until}, so the robot no longer says it"
+        report(OUT_OF_DATE, ("until",), message, "write the current answer and a later day, or delete the passage")
 
 
 def words_of(question: str) -> str:

@@ -11,8 +11,8 @@ from lumen.loading.life import LIFE_FOLDER
 from lumen.loading.units import ANGLES
 from lumen.rules.lookups import References, first, value_at
 
-LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than the robot can bear")
-LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint faster than it should")
+LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than is safe")
+LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint too fast")
 
 POSTURE = "Stand"
 """The posture around which a robot lives."""
@@ -68,12 +68,17 @@ class _Judge:
         if speed > most:
             message = f"`{joint}` would turn at up to {self._shown(joint, speed)}/s: too fast for a sway"
             longest = sway.period * speed / most
-            yield LIFE_TOO_FAST, path, message, f"a period of {longest:.1f}s, or a smaller angle"
+            yield LIFE_TOO_FAST, path, message, f"write a period of at least {longest:.1f}s, or a smaller angle"
             return
         whole = self._style.amplitudes[joint]
         if joint in self._body.parts.get("legs", ()) and whole > MAX_LEG_SWAY:
-            message = f"`{joint}` would sway by {self._shown(joint, whole)} to either side: that can tip the robot"
-            yield LIFE_TOO_FAR, path, message, f"at most {self._shown(joint, MAX_LEG_SWAY)}, of all sways together"
+            message = f"`{joint}` would sway by {self._shown(joint, whole)} to either side: that can tip the robot over"
+            yield (
+                LIFE_TOO_FAR,
+                path,
+                message,
+                f"write at most {self._shown(joint, MAX_LEG_SWAY)}, for all sways together",
+            )
             return
         yield from self._reach(joint, whole, path)
 
@@ -83,10 +88,15 @@ class _Judge:
             speed, most = SETTLE_SLOPE * abs(angle) / settles.takes, SPEED_SHARE * self._body.joints[joint].speed
             if speed > most:
                 message = f"`{joint}` would settle at up to {self._shown(joint, speed)}/s: too fast"
-                yield LIFE_TOO_FAST, path, message, f"at least {settles.takes * speed / most:.1f}s, or a smaller angle"
+                yield (
+                    LIFE_TOO_FAST,
+                    path,
+                    message,
+                    f"write at least {settles.takes * speed / most:.1f}s, or a smaller angle",
+                )
             elif joint in self._body.parts.get("legs", ()):
-                message = f"`{joint}` would settle beside where balance needs it: that can tip the robot"
-                yield LIFE_TOO_FAR, path, message, "settle arms and head alone"
+                message = f"`{joint}` belongs to a leg: settling it can tip the robot over"
+                yield LIFE_TOO_FAR, path, message, "settle only joints of the arms and the head"
             else:
                 yield from self._reach(joint, self._style.amplitudes[joint], path)
 
@@ -100,8 +110,8 @@ class _Judge:
         room = max(0.0, min(stands - limits.minimum, limits.maximum - stands))
         if angle > room:
             who = f"`{joint}` would go" if path[-1] == joint else f"`{path[-1]}` would turn `{joint}`"
-            message = f"{who} {self._shown(joint, angle)} to either side of {POSTURE}, beyond its limit"
-            yield LIFE_TOO_FAR, path, message, f"at most {self._shown(joint, room)}"
+            message = f"{who} {self._shown(joint, angle)} to either side of the posture {POSTURE}, beyond its limit"
+            yield LIFE_TOO_FAR, path, message, f"write at most {self._shown(joint, room)}"
 
     def _shown(self, joint: str, angle: float) -> str:
         if joint in self._body.hands:

@@ -11,7 +11,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.word_tables import WordTables, word_tables
 
-UNEVEN_LIST = Code("uneven-list", "references", ERROR, "an entry of a list has other keys than the rest")
+UNEVEN_LIST = Code("uneven-list", "references", ERROR, "an entry of a list has different keys from the others")
 
 Entries = Sequence[Mapping[str, Any]]
 
@@ -60,8 +60,8 @@ def _even(report: DocumentReport, name: str, entries: Entries) -> None:
         missing = [key for key in usual if key not in entry and (*where, key) not in report.pruned]
         odd = [key for key in entry if key not in usual and len(entries) > 1]
         for key in odd:
-            hint = did_you_mean(key, missing or usual, "they have")
+            hint = did_you_mean(key, missing or usual, "the other entries have")
             report(UNEVEN_LIST, (*where, key), f"no other entry of `{name}` has `{key}`", hint, key=True)
         for key in missing if not odd else ():
             message = f"this entry of `{name}` has no `{key}`"
-            report(UNEVEN_LIST, where, message, f"add `{key}`: an expression reads it of every entry")
+            report(UNEVEN_LIST, where, message, f"add `{key}`: expressions read it from every entry")

@@ -13,12 +13,16 @@ from lumen.loading.linking import UNKNOWN_BEHAVIOR
 from lumen.loading.misnamed import misnamed_for
 
 MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
-UNKNOWN_CONTROLLER = Code("unknown-controller", "references", ERROR, "a controller is named that is not in fuzzy/")
-UNKNOWN_LIFE = Code("unknown-life", "references", ERROR, "a style of life is named that is not in motions/life/")
-UNKNOWN_MESSAGE = Code(
-    "unknown-message", "references", ERROR, "a message schema is named that is not in schemas/messages/"
+UNKNOWN_CONTROLLER = Code(
+    "unknown-controller", "references", ERROR, "a name refers to a controller that is not in fuzzy/"
 )
-UNKNOWN_STORY = Code("unknown-story", "references", ERROR, "a story is named that is not in behaviors/stories/")
+UNKNOWN_LIFE = Code(
+    "unknown-life", "references", ERROR, "a name refers to a style of life that is not in motions/life/"
+)
+UNKNOWN_MESSAGE = Code(
+    "unknown-message", "references", ERROR, "a name refers to a message schema that is not in schemas/messages/"
+)
+UNKNOWN_STORY = Code("unknown-story", "references", ERROR, "a name refers to a story that is not in behaviors/stories/")
 
 
 def first(report: DocumentReport, *paths: NodePath) -> NodePath:
@@ -72,9 +76,9 @@ class References:
             report(code, path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
         elif folder not in self._missing:
             self._missing.add(folder)
-            hint = f"make the folder {folder}/ and put the file into it"
+            hint = f"create the folder {folder}/ and put the file into it"
             if kind == "model" and (near := nearest(name, shipped_models())):
-                hint = f"did you mean `{near}`, which comes with Lumen? Else {hint}"
+                hint = f"did you mean `{near}`, which comes with Lumen? Otherwise {hint}"
             message = f"there is no {what} `{name}`: {folder}/ is missing or empty"
             report(MISSING_FOLDER, path, message, hint, key=key)
         return False

@@ -24,7 +24,7 @@ def field_schema(
         if step not in fields:
             owner = ".".join((route, *field[:i]))
             hint = did_you_mean(step, fields, f"`{owner}` has")
-            report(UNKNOWN_FIELD, path, f"the messages of `{owner}` have no `{step}`", hint)
+            report(UNKNOWN_FIELD, path, f"the messages of `{owner}` have no field `{step}`", hint)
             return None
         schema = fields[step]
     return schema if isinstance(schema, Mapping) else None

@@ -17,7 +17,7 @@ def check(draft: ProjectDraft) -> None:
         draft.looks.at(draft.root / folder)
         for there, meant in misnamed_in(draft.root, folder):
             name = meant if meant.endswith("/") else meant.rpartition("/")[2]
-            message = f"this is not read: its name is not `{name}`"
+            message = f"Lumen does not read this: its name is not `{name}`"
             draft.say(NOT_READ, there.rstrip("/"), message, f"rename it to {name}")
     if MAIN_FILE not in draft.files and (there := misnamed_main_file(draft.root)):
         hint = f"rename {there} to {MAIN_FILE}"

@@ -53,11 +53,11 @@ def mjcf_elements(content: bytes) -> tuple[list[ModelElement], ModelFault | None
     except _EnoughError:
         return reader.elements, reader.fault
     except ValueError as error:  # an encoding of several bytes
-        return [], ModelFault(1, 1, 1, f"this is not XML: {error}", "save it as UTF-8")
+        return [], ModelFault(1, 1, 1, f"this is not valid XML: {error}", "save it as UTF-8")
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
         hint = "look for a tag or a quote that is not closed, here or above"
-        return [], ModelFault(error.lineno, error.offset + 1, 1, f"this is not XML: {reason}", hint)
+        return [], ModelFault(error.lineno, error.offset + 1, 1, f"this is not valid XML: {reason}", hint)
     return reader.elements, None
 
 
@@ -80,13 +80,13 @@ class _Reader:
         if len(self.elements) > MAX_ELEMENTS:
             self._stop(len(name) + 1, f"the model has more than {MAX_ELEMENTS:,} elements", "use fewer")
         if reason := _too_many(name, attributes):
-            self._stop(len(name) + 1, f"`<{name}>` asks for {reason} can be simulated", "use fewer")
+            self._stop(len(name) + 1, f"`<{name}>` has {reason} can be simulated", "use fewer")
 
     def _end(self, name: str) -> None:
         self._depth -= 1
 
     def _entity(self, name: str, *_: object) -> None:
-        self._stop(2, f"the entity {name[:40]} means nothing in a model", "write what it stands for")
+        self._stop(2, f"a model can't use the entity {name[:40]}", "write the text of the entity instead")
 
     def _stop(self, length: int, message: str, hint: str) -> None:
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1

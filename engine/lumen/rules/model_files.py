@@ -32,7 +32,7 @@ def missing(draft: ProjectDraft, folder: str, name: str) -> str:
     if not models.is_dir() or _there(beside / name):
         return ""
     near = nearest(PurePosixPath(name).name, [path.name for path in beside.glob("*")] if beside.is_dir() else [])
-    return f"did you mean `{near}`?" if near else "put it there, or delete what names it"
+    return f"did you mean `{near}`?" if near else "add the file, or delete the reference to it"
 
 
 def _there(path: Path) -> bool:

@@ -19,8 +19,8 @@ from lumen.loading.regular_files import read_regular
 from lumen.rules.mjcf_elements import ModelElement, ModelFault, mjcf_elements
 from lumen.rules.model_files import missing, outside
 
-BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is no MJCF, or lacks a file or a joint")
-FOREIGN_FILE = Code("foreign-file", "robot", ERROR, "a model names a file that lies outside of models/")
+BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is not MJCF, or lacks a file or a joint")
+FOREIGN_FILE = Code("foreign-file", "robot", ERROR, "a model refers to a file outside models/")
 
 _FOLDERS = {"mesh": "meshdir", "skin": "meshdir", "hfield": "meshdir", "flexcomp": "meshdir", "texture": "texturedir"}
 _NAMES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
@@ -60,7 +60,7 @@ class _ModelReader:
         if not fault and elements[0].name not in ("mujoco", "" if first else "mujocoinclude"):
             root = elements[0]
             message = f"this is not MJCF: it begins with `<{root.name}>`"
-            fault = ModelFault(root.line, root.column, len(root.name) + 1, message, "MJCF begins with `<mujoco>`")
+            fault = ModelFault(root.line, root.column, len(root.name) + 1, message, "begin the file with `<mujoco>`")
         if fault:
             _say(self.draft, BROKEN_MODEL, name, *fault)
             return []
@@ -110,8 +110,8 @@ class _ModelReader:
         """Whether a file that an element names lies in models/ and is there; reported where not."""
         place = model, element.line, element.column, len(element.name) + 1
         if outside(self.draft, folder, name):
-            message = "this names a file outside of models/, and nothing that lies elsewhere is read"
-            _say(self.draft, FOREIGN_FILE, *place, message, "put the file into models/, and name it from there")
+            message = "this refers to a file outside models/, which Lumen does not read"
+            _say(self.draft, FOREIGN_FILE, *place, message, "move the file into models/, and write its path from there")
             return False
         if hint := missing(self.draft, folder, name):
             path = PurePosixPath("models", folder, name)
@@ -134,7 +134,7 @@ def _elements(draft: ProjectDraft, body: Body, elements: list[ModelElement]) -> 
     ):
         if wanted not in there.get(kind, ()):
             near, article = nearest(wanted, there.get(kind, ())), "an" if kind[0] in "aeiou" else "a"
-            hint = f"did you mean `{near}`?" if near else f"give models/{name} {article} {kind} of that name"
+            hint = f"did you mean `{near}`?" if near else f"add {article} {kind} of that name to models/{name}"
             message = f"models/{name} has no {kind} `{wanted}`"
             report(BROKEN_MODEL, path, message, hint=hint, key=key, cause=f"{kind}s of {name}")
 

@@ -65,10 +65,10 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], unit: str, bod
     excess, *others = excesses
     value, limit = _shown(excess, unit, body)
     what = "" if excess.joint in body.hands else f" {unit}/s"
-    message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, and {limit:g} is its most"
+    message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, but its limit is {limit:g}"
     if others:
         names = ", ".join(f"`{name}`" for name in list(dict.fromkeys(e.joint for e in others))[:3])
-        message += f"; too fast are {names}{' and others' if len(others) > 3 else ''}, too"
+        message += f"; also too fast: {names}{' and others' if len(others) > 3 else ''}"
     percent = ceil(100 * (excess.value / excess.limit - 1))
     cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
     report(
@@ -83,9 +83,13 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], unit: str, bod
 
 def _too_far(report: DocumentReport, excess: Excess, unit: str, body: Body) -> None:
     value, limit = _shown(excess, unit, body)
-    message = f"`{excess.joint}` would come to {value:g} {unit} here, and {limit:g} is as far as it can go"
+    message = f"`{excess.joint}` would reach {value:g} {unit} here, but its limit is {limit:g}"
     coupled = [c.on for c in body.coupled if c.joint == excess.joint]
-    hint = f"how far it can go depends on `{coupled[0]}`" if coupled else "bring the handles nearer to the key"
+    hint = (
+        f"change the angle of `{coupled[0]}`, on which the limit depends"
+        if coupled
+        else "move the handles closer to the key"
+    )
     cause = f"{report.document.file} {message}"
     report(
         ANGLE_OUT_OF_RANGE,

@@ -7,7 +7,7 @@ MISPLACED_OFFER = Code(
     "misplaced-offer",
     "knowledge",
     WARNING,
-    "an event is offered to a language model that does not stand under `events`",
+    "an event is offered to a language model, but is not declared under `events`",
 )
 
 
@@ -17,9 +17,13 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report("behaviors", name)
         for transition in (t for state in machine.states.values() for t in state.transitions if t.offer):
             if transition.event not in machine.events or transition.hears:
-                what = f"`{transition.event}`" if transition.event and not transition.timed else "what has no event"
-                message = f"{what} is offered to a language model, and is no event of `events`"
-                hint = "offer an event of its own, and describe its data under `events`: nobody else raises it then"
+                what = (
+                    f"`{transition.event}`"
+                    if transition.event and not transition.timed
+                    else "a transition without an event"
+                )
+                message = f"{what} is offered to a language model, but is not declared under `events`"
+                hint = "offer an event that nothing else raises, and describe its data under `events`"
                 if transition.hears:
-                    message = "a row of `hears` is offered to a language model, which could then say it was a visitor"
+                    message = "a row of `hears` is offered to a language model, which could then act as a visitor"
                 report(MISPLACED_OFFER, (*transition.where, "offer"), message, hint, key=True)

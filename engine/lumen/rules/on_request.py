@@ -8,18 +8,16 @@ from lumen.language.diagnostics import ERROR, INFO, WARNING, Code
 
 RELOAD_FORGETS = Code("reload-forgets", "reload", WARNING, "a reload would lose a value (`--against`)")
 RELOAD_MOVES = Code(
-    "reload-moves", "reload", INFO, "a reload would lead from a state that is gone to another (`--against`)"
+    "reload-moves", "reload", INFO, "a reload would move the robot out of a deleted state (`--against`)"
 )
 RELOAD_REFUSED = Code(
     "reload-refused", "reload", ERROR, "a reload would be refused while a state is active (`--against`)"
 )
 
-COMES_LATE = Code("comes-late", "physics", WARNING, "a joint can't follow where a motion leads it (`--physics`)")
+COMES_LATE = Code("comes-late", "physics", WARNING, "a joint can't keep up with a motion (`--physics`)")
 FALLS = Code("falls", "physics", ERROR, "the robot falls when it plays a motion (`--physics`)")
 FEET_SLIDE = Code("feet-slide", "physics", WARNING, "a foot slides while it bears load (`--physics`)")
 NOT_PLAYED = Code("not-played", "physics", ERROR, "the robot refuses a motion that a behaviour leads to (`--physics`)")
-OVERLOADED = Code("overloaded", "physics", WARNING, "a motor gives all it can for too long (`--physics`)")
-SELF_COLLISION = Code("self-collision", "physics", ERROR, "parts of the robot run into each other (`--physics`)")
-UNSTEADY = Code(
-    "unsteady", "physics", WARNING, "little is missing and the robot falls when it plays a motion (`--physics`)"
-)
+OVERLOADED = Code("overloaded", "physics", WARNING, "a motor runs at its limit for too long (`--physics`)")
+SELF_COLLISION = Code("self-collision", "physics", ERROR, "parts of the robot collide (`--physics`)")
+UNSTEADY = Code("unsteady", "physics", WARNING, "the robot nearly falls when it plays a motion (`--physics`)")

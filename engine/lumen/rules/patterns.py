@@ -16,9 +16,9 @@ from lumen.loading.expressions import place_within
 from lumen.rules.lookups import value_at
 from lumen.rules.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
 
-BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase can't be read as a pattern, and counts as plain words")
-DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can catch nothing")
-FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase is written as other tools have it")
+BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase is not a valid pattern, so it is read as plain words")
+DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can never catch anything")
+FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase uses the syntax of another tool")
 
 _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
 """Signs without which a phrase can't be wrong here."""
@@ -36,7 +36,7 @@ _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (
         re.compile(r"\[[^\[\]]*\]\([^()]*\)"),
         "`{}` marks an entity, as in Rasa; here it is an optional word and a group",
-        "write a slot where the word stands: {{name}}, {{number}}, {{text}} or the name of a list",
+        "write a slot in its place: {{name}}, {{number}}, {{text}} or the name of a list",
     ),
     (
         re.compile(r"<[^<>]*>"),
@@ -50,17 +50,17 @@ _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     ),
     (
         re.compile(r"\(\?|\\[A-Za-z.?]|\.[*+]|^\^|(?<=\S)\$$"),
-        "`{}` is a sign of regular expressions, which phrases are not",
-        "write the words; (one|other) are alternatives, and [this] may be missing",
+        "phrases are not regular expressions: `{}` has no meaning here",
+        "write the words; (one|other) are alternatives, and [this] is optional",
     ),
     (
         re.compile(r"\*"),
-        "`{}` does not stand for any words here",
-        "leave it out: a phrase is found anywhere in a sentence; {{text}} catches the rest of it",
+        "`{}` is not a wildcard here",
+        "delete it: a phrase matches anywhere in a sentence, and {{text}} catches the rest of the sentence",
     ),
     (
         re.compile(r"(?:^|(?<=\s))/\w+/?"),
-        "`{}` is no command here: the slash is ignored",
+        "`{}` is not a command here: the slash is ignored",
         "write the words without slashes",
     ),
 )
@@ -106,16 +106,16 @@ def _read(tables: WordTables) -> None:
     for name in tables.phrases.keys() & {*WORD_LISTS}:
         for phrase in written_phrases(tables.report, ("phrases", name)):
             if found := _PATTERN_SIGNS.search(phrase.text):
-                message = f"`{name}` is a list of words, in which `{found[0]}` means nothing"
-                _say(BAD_PATTERN, phrase, found.start(), 1, message, "write each word on its own")
+                message = f"`{name}` is a list of words, so `{found[0]}` has no meaning in it"
+                _say(BAD_PATTERN, phrase, found.start(), 1, message, "write each word as a separate entry")
 
 
 def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
     """Report a phrase that is no sound pattern; one that a comma has torn is told once."""
-    hint, cause = f"{error.hint}; until then it counts as plain words", ""
+    hint, cause = f"{error.hint}; until then, the phrase is read as plain words", ""
     if (torn := _torn(phrase)) is not None:
         cause = f"{phrase.report.document.file} torn {torn}"
-        hint = "a comma ends a phrase of a list in brackets: write `|` between alternatives"
+        hint = "write `|` between alternatives: in a list in brackets, a comma ends the phrase"
     _say(BAD_PATTERN, phrase, error.offset, error.length, error.message, hint, cause)
 
 
@@ -140,15 +140,15 @@ def _foreign(phrase: WrittenPhrase) -> None:
             _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), said, hint.format())
             return
     if found := _SLASH.search(text):
-        message = f"`{found[0]}` is heard as these words one after the other"
+        message = f"`{found[0]}` matches only these words one after the other"
         hint = f"write `({found['one']}|{found['other']})`, or a phrase for each"
         _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), message, hint)
     elif sign := _separator(phrase):
         parts = [part.strip().removeprefix("- ") for part in text.split(sign)]
         shown = ", ".join(f'"{part}"' if "," in part else part for part in parts if part)
         named = "a line break" if sign == "\n" else f"`{sign}`"
-        message = f"this is one phrase, whose words are heard one after the other: {named} does not separate them"
-        _say(FOREIGN_PATTERN, phrase, text.index(sign), 1, message, f"write a phrase for each: [{shown}]")
+        message = f"this is one phrase: {named} does not separate phrases"
+        _say(FOREIGN_PATTERN, phrase, text.index(sign), 1, message, f"write separate phrases: [{shown}]")
 
 
 def _separator(phrase: WrittenPhrase) -> str:
@@ -177,7 +177,7 @@ def _slots(phrase: WrittenPhrase, machines: list[MachineDefinition]) -> None:
         faults = (_fault(slot, machine) for machine in machines)
         if listed:
             fault: tuple[str, str] | None = (
-                f"`{slot.type}` catches nothing: this phrase belongs to an entry of a list, and is what a slot catches",
+                f"`{slot.type}` catches nothing: the phrases of a list entry can't have slots",
                 "write the words themselves",
             )
         else:
@@ -192,13 +192,13 @@ def _fault(slot: Slot, machine: MachineDefinition) -> tuple[str, str] | None:
     if slot.type in TYPES:
         return None
     if slot.type not in machine.lists:
-        message = f"there is neither a type nor a list `{slot.type}`: nothing is caught here"
+        message = f"`{slot.type}` is neither a type nor a list: the slot catches nothing"
         if slot.name in (*TYPES, *machine.lists):
-            return message, f"the type comes first: {{{slot.name}:{slot.type}}}"
-        return message, did_you_mean(slot.type, (*TYPES, *machine.lists), "there are")
+            return message, f"write the type first: {{{slot.name}:{slot.type}}}"
+        return message, did_you_mean(slot.type, (*TYPES, *machine.lists), "available:")
     if not any(phrases_in(entry) for entry in machine.lists[slot.type]):
-        message = f"no entry of the list `{slot.type}` has `phrases`: nothing is caught here"
-        return message, "give each entry `phrases`: what visitors call it"
+        message = f"no entry of the list `{slot.type}` has `phrases`: the slot catches nothing"
+        return message, "give each entry `phrases` with the words that visitors use for it"
     return None
 
 

@@ -20,10 +20,10 @@ from lumen.rules.units import HALF_TURN_PARTS, WRONG_UNIT
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
 
-PLACE_OFF_STAGE = Code("place-off-stage", "robot", ERROR, "a place lies where the robot's feet may not go")
-PLACES_TOO_CLOSE = Code("places-too-close", "robot", WARNING, "two places are nearer than the robot can tell apart")
-UNKNOWN_PLACE = Code("unknown-place", "references", ERROR, "a place is named that is not in lumen.yaml")
-UNUSED_PLACE = Code("unused-place", "references", INFO, "nobody walks to a place")
+PLACE_OFF_STAGE = Code("place-off-stage", "robot", ERROR, "a place is outside the area that the robot's feet may enter")
+PLACES_TOO_CLOSE = Code("places-too-close", "robot", WARNING, "two places are too close for the robot to tell apart")
+UNKNOWN_PLACE = Code("unknown-place", "references", ERROR, "a name refers to a place that is not in lumen.yaml")
+UNUSED_PLACE = Code("unused-place", "references", INFO, "no walk leads to a place")
 
 _ENTRY = re.compile(r"\{\{\s*(?:in_language\()?context\.(?P<key>\w+)\.entry\.(?P<field>\w+)\)?\s*\}\}")
 _LIST = re.compile(r"lists\.(\w+)")
@@ -58,7 +58,7 @@ def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
     if name not in draft.main.lost:
         hint, cause = did_you_mean(name, draft.settings.places, "lumen.yaml has"), f"name {name}"
         if not draft.settings.places:
-            hint, cause = f"write `places: {{{name}: {{x: 1, y: 0}}}}` in lumen.yaml: it has none", "no places"
+            hint, cause = f"write `places: {{{name}: {{x: 1, y: 0}}}}` in lumen.yaml, which has no places", "no places"
         report(UNKNOWN_PLACE, path, f"there is no place `{name}`", hint, cause=cause)
     return False
 
@@ -107,18 +107,20 @@ def _used(draft: ProjectDraft, main: DocumentReport, walked: set[str]) -> None:
         return
     for name in draft.settings.places:
         if name not in walked:
-            hint = f"write `walk: {{to: {name}}}` somewhere, or delete it"
-            main(UNUSED_PLACE, ("places", name), f"nobody walks to the place `{name}`", hint, key=True)
+            hint = f"write `walk: {{to: {name}}}` in a behaviour, or delete the place"
+            main(UNUSED_PLACE, ("places", name), f"no walk leads to the place `{name}`", hint, key=True)
 
 
 def _on_stage(main: DocumentReport, name: str, place: HallPlace, stage: Stage) -> None:
     for axis, at, (low, high) in (("x", place.x, stage.x), ("y", place.y, stage.y)):
         if not low + SOLE_REACH - 1e-9 <= at <= high - SOLE_REACH + 1e-9:
             beyond = (
-                "is so near the stage's edge that a foot would leave it" if low <= at <= high else "is off the stage"
+                "is so close to the edge of the stage that a foot would leave it"
+                if low <= at <= high
+                else "is off the stage"
             )
             room = f"[{low + SOLE_REACH:.3g}, {high - SOLE_REACH:.3g}]"
-            hint = f"a robot stands safely at {axis} in {room} m: put the place there, or make the `stage` larger"
+            hint = f"choose {axis} in {room} m, or enlarge the `stage`"
             related = [(("stage", axis), "the stage ends here")]
             main(PLACE_OFF_STAGE, ("places", name, axis), f"`{name}` {beyond}", hint, related=related)
 
@@ -128,9 +130,9 @@ def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> Non
     for (one, a), (other, b) in combinations(places, 2):
         apart = hypot(a.x - b.x, a.y - b.y)
         if apart < a.within + b.within - 1e-9:
-            message = f"`{other}` is {apart:.2f} m from `{one}`: the robot may be at both"
-            hint = f"put them {a.within + b.within:.2f} m apart, or say a smaller `within` for each"
-            related = [(("places", one), "the other one stands here")]
+            message = f"`{other}` is {apart:.2f} m from `{one}`: the robot could be at both"
+            hint = f"put them {a.within + b.within:.2f} m apart, or write a smaller `within` for each"
+            related = [(("places", one), "the other one is here")]
             main(PLACES_TOO_CLOSE, ("places", other), message, hint, key=True, related=related)
 
 
@@ -142,7 +144,11 @@ def _heading(main: DocumentReport, name: str) -> None:
     path = ("places", name, "heading")
     if unit == "deg" and round(abs(heading), 4) in HALF_TURN_PARTS:
         hint = f"write {round(heading * 180 / pi):g}"
-        main(WRONG_UNIT, path, f"{heading:g} deg is very little: it looks like radians", hint)
+        main(WRONG_UNIT, path, f"{heading:g} deg is very small: it looks like radians", hint)
     elif abs(heading) > (360.0 if unit == "deg" else 2 * pi + 0.01):
-        hint = "turn once at most" if unit == "deg" else "take `angle: rad` out of `units`: degrees are usual here"
-        main(WRONG_UNIT, path, f"{heading:g} {unit} is more than once around", hint)
+        hint = (
+            "write at most one full turn"
+            if unit == "deg"
+            else "delete `angle: rad` from `units`: headings are usually in degrees"
+        )
+        main(WRONG_UNIT, path, f"{heading:g} {unit} is more than a full turn", hint)

@@ -24,5 +24,5 @@ def check(draft: ProjectDraft) -> None:
                     meant = nearest(key, set(fields) - action.body.keys())
                     line = report.document.place((*where, key), key=True).line
                     if (meant or closed) and not any(d.place.line == line for d in report.diagnostics):
-                        message = f"the messages of `{action.route}` have no `{key}`"
+                        message = f"the messages of `{action.route}` have no field `{key}`"
                         report(UNKNOWN_FIELD, (*where, key), message, did_you_mean(key, fields, "they have"), key=True)

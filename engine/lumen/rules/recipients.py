@@ -51,8 +51,10 @@ def _invoked(machine: MachineDefinition) -> dict[str, str]:
 def _known(machine: MachineDefinition, report: DocumentReport, site: ActionSite, send: Send) -> None:
     ids = _invoked(machine).keys()
     if send.to not in ids and send.to not in machine.robots:
-        hint = did_you_mean(send.to, {*ids, *machine.robots, PARENT}, "it can go to")
-        report(UNKNOWN_RECIPIENT, (*site.step.where, "send", "to"), f"nothing is invoked here as `{send.to}`", hint)
+        hint = did_you_mean(send.to, {*ids, *machine.robots, PARENT}, "`send` can go to")
+        report(
+            UNKNOWN_RECIPIENT, (*site.step.where, "send", "to"), f"this behaviour invokes nothing as `{send.to}`", hint
+        )
 
 
 def _sends(machine: MachineDefinition) -> Iterator[tuple[ActionSite, Send]]:

@@ -16,8 +16,8 @@ from lumen.loading.settings import said_at
 from lumen.rules.lookups import References, first
 from lumen.rules.walk import ActionSite, action_sites
 
-UNKNOWN_ROUTE = Code("unknown-route", "references", ERROR, "a route is named that is not in lumen.yaml")
-WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used the other way round than it goes")
+UNKNOWN_ROUTE = Code("unknown-route", "references", ERROR, "a name refers to a route that is not in lumen.yaml")
+WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used in the wrong direction")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -41,13 +41,13 @@ def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, rou
         own = [name for name, row in draft.settings.routes.items() if not row.built_in]
         hint, cause = did_you_mean(route, own, "lumen.yaml has"), f"name {route}"
         if route in draft.settings.removed_routes:
-            hint = f"lumen.yaml removes it: delete the row `{route}: null`"
+            hint = f"delete the row `{route}: null` in lumen.yaml, which removes the route"
         elif route in BUILT_IN_ROUTES:
-            hint = f"write a row `{route}:`; without one it is there if a behaviour hears its event or publishes to it"
+            hint = f"write a row `{route}:`; without it, the route exists only if a behaviour uses it"
         elif "mean" not in hint and (near := nearest(route, SHARED_ROUTES)):
             hint = f"did you mean `{near}`, which comes with Lumen?"
         elif not own:
-            hint, cause = "lumen.yaml has no `routes`", "no routes"
+            hint, cause = "add it under `routes` in lumen.yaml", "no routes"
         report(UNKNOWN_ROUTE, path, f"there is no route `{route}`", hint, key=key, cause=cause)
     return False
 
@@ -72,8 +72,8 @@ def _published(draft: ProjectDraft, report: DocumentReport, path: NodePath, name
     assert draft.main is not None
     route = draft.settings.routes[name]
     if route.direction is Direction.IN:
-        message = f"`{name}` is a route on which messages come in"
-        hint = "publish on one with `direction: out`"
+        message = f"`{name}` is a route for incoming messages"
+        hint = "publish on a route with `direction: out`"
         declared = Related(draft.main.document.place(route.where, key=True), "it is declared here")
         related = () if route.built_in else (declared,)
         report.diagnostics.append(WRONG_DIRECTION.at(report.document.place(path), message, hint, related))
@@ -83,8 +83,8 @@ def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
     if in_package(name):
         if draft.looks.package_file(name) is None:
             package, _, inner = name.partition(":")
-            hint = "the files of a package are named as in its folder: PACKAGE:PATH"
-            report(MISSING_FILE, path, f"no package `{package}` is installed that has a file `{inner}`", hint)
+            hint = "write PACKAGE:PATH, with the path inside the folder of the package"
+            report(MISSING_FILE, path, f"no installed package `{package}` has a file `{inner}`", hint)
         return
     files = (*draft.files, *draft.lent)
     there = [file.removeprefix("models/") for file in files if file.startswith("models/") and file.endswith(".xml")]

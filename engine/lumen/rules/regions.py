@@ -10,7 +10,7 @@ from lumen.rules.statecharts import within
 
 CROSSES_REGIONS = Code(
     "crosses-regions", "statecharts", WARNING,
-    "a transition leads into another region, so that all regions are left and begin anew",
+    "a transition leads into another region, so all regions are left and restarted",
 )  # fmt: skip
 
 MAX_SHOWN_REGIONS = 6
@@ -61,10 +61,10 @@ def _crossing(
     whole = f"`{parallel.name}`" if parallel.name else "the behaviour"
     target = machine.states[inside[0]].name
     region = "one region" if transition.source == path else "another region"
-    message = f"`{target}` is in {region}, so all of {whole} is left and begins anew"
+    message = f"`{target}` is in {region}, so all of {whole} is left and restarted"
     hint = (
-        f"what is said in {' and '.join(others)} is cut off, and timers restart: raise an event that the region of"
-        f" `{target}` waits for instead, `actions: {{raise: …}}`"
+        f"write `actions: {{raise: …}}` with an event that the region of `{target}` waits for: otherwise"
+        f" speech in {' and '.join(others)} is cut off, and timers restart"
     )
     report(CROSSES_REGIONS, transition.where, message, hint)
 

@@ -21,6 +21,6 @@ def _check(machine: MachineDefinition, report: DocumentReport) -> None:
     for was, now in machine.renamed.items():
         there = known.get(was)
         if there is not None and (there == now or there not in taken):
-            message = f"`{was}` is said to be `{now}` now, and is still there"
-            hint = "delete this line: at the next reload it would lead away from what is there"
+            message = f"`{was}` is renamed to `{now}` here, but still exists"
+            hint = f"delete this line: the next reload would replace `{was}` by `{now}`"
             report(STILL_THERE, ("renamed", was), message, hint, key=True)

@@ -49,7 +49,7 @@ def old_keys(files: Mapping[str, bytes]) -> dict[str, str]:
 def _main(files: Mapping[str, bytes]) -> Document:
     document = parse(MAIN_FILE, files[MAIN_FILE])[0] if MAIN_FILE in files else None
     if document is None:
-        raise UsageError(f"{MAIN_FILE} can't be read, so nothing is rewritten: `lumen lint` says what is wrong")
+        raise UsageError(f"{MAIN_FILE} can't be read, so nothing is rewritten: run `lumen lint` to see why")
     return document
 
 
@@ -60,7 +60,7 @@ def _rewriting(document: Document, name: str, key: str) -> Rewriting:
     column = document.place(("routes", name, "key"), key=True).column
     line_break = breaks[value.line - 1] or "\n"
     between = ", " if within_braces else line_break + " " * (column - 1)
-    why = f"`{name}` holds the robot, and `{key}` is its alias"
+    why = f"the key of `{name}` now contains the robot, and `{key}` is its alias"
     return Rewriting(value, why, f'"{NEW_KEYS[key]}"{between}alias: {key}')
 
 
@@ -75,4 +75,4 @@ def _check(content: bytes, before: Document, old: Mapping[str, str]) -> None:
         }
     if now is None or now.data != wanted:
         name, key = next(iter(old.items()))
-        raise UsageError(f'{MAIN_FILE}: write `key: "{NEW_KEYS[key]}", alias: {key}` by hand, as for `{name}`')
+        raise UsageError(f'{MAIN_FILE}: write `key: "{NEW_KEYS[key]}", alias: {key}` in the route `{name}` by hand')

@@ -30,13 +30,13 @@ from lumen.rules.routing_keys import check_key
 from lumen.rules.walk import action_sites
 
 DUPLICATE_ROUTE = Code("duplicate-route", "routes", ERROR, "two routes carry the same key to the same event")
-MISSING_ROUTE = Code("missing-route", "routes", WARNING, "a route is missing that something the behaviour does needs")
-NO_TTL = Code("no-ttl", "routes", WARNING, "a command that comes late is still performed")
-LONG_TTL = Code("long-ttl", "routes", WARNING, "a command may wait so long that it is no longer wanted")
+MISSING_ROUTE = Code("missing-route", "routes", WARNING, "a behaviour needs a route that is missing")
+NO_TTL = Code("no-ttl", "routes", WARNING, "a command that arrives late is still performed")
+LONG_TTL = Code("long-ttl", "routes", WARNING, "a command may arrive so late that it is no longer wanted")
 LOSSY_JOURNAL = Code("lossy-journal", "routes", ERROR, "a route that must not lose messages is set to drop them")
-BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "a route wants images that the robot's camera can't take")
-PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a name and a password are written in the project")
-WRONG_FORM = Code("wrong-form", "routes", ERROR, "a route is to have a form that its bodies can't have")
+BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "a route requests images that the robot's camera can't take")
+PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a password or a PIN is in a file of the project")
+WRONG_FORM = Code("wrong-form", "routes", ERROR, "a route has a `content_type` that its messages can't have")
 UNUSED_ROUTE = Code("unused-route", "routes", WARNING, "the messages of a route become an event that nothing waits for")
 
 _FORMED = {JPEG_TYPE: IMAGE, FLOATS_TYPE: JOINT}
@@ -65,7 +65,7 @@ def check(draft: ProjectDraft) -> None:
             other = next((o for key in keys if (o := events.setdefault((key, route.event), name)) != name), name)
             if other != name:
                 message = f"`{other}` has the same key and becomes the same event"
-                related = [((*settings.routes[other].where, "key"), "the other one stands here")]
+                related = [((*settings.routes[other].where, "key"), "the other one is here")]
                 report(DUPLICATE_ROUTE, (*route.where, "key"), message, "delete one of them", related=related)
     _missing(draft, settings.routes, report)
 
@@ -74,16 +74,18 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
     """Report rows that are null and whose name is none of a route that comes with Lumen."""
     for name in names:
         if name not in BUILT_IN_ROUTES:
-            message = f"`null` removes a route that comes with Lumen, and `{name}` is none"
-            hint = f"{did_you_mean(name, BUILT_IN_ROUTES, 'there are')}; your own have a `key` and a `direction`"
+            message = f"`null` removes a route that comes with Lumen, but `{name}` does not"
+            hint = (
+                f"{did_you_mean(name, BUILT_IN_ROUTES, 'available:')}; for your own route, write `key` and `direction`"
+            )
             report(UNKNOWN_ROUTE, ("routes", name), message, hint)
 
 
 def _password(bus: str, report: DocumentReport) -> None:
     """A project is copied, mailed and published; what opens the broker's door is not."""
     if credentials_of(bus):
-        message = "a name and a password stand in a file that everybody reads"
-        hint = "write them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
+        message = "a user name and a password are in a file that others can read"
+        hint = "put them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
         if signs := unescaped(bus):
             hint += f"; in LUMEN_BUS write {signs}"
         report(PASSWORD_IN_FILE, ("bus",), message, hint)
@@ -93,27 +95,32 @@ def _carried(report: DocumentReport, route: Route) -> None:
     """What the options of a route promise must go together."""
     where = route.where
     if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > LONGEST_COMMAND_TTL:
-        message = f"a {route.carried} may be done {route.ttl:g} s late, when nobody counts on it any more"
-        report(LONG_TTL, (*where, "ttl"), message, f"2s to {LONGEST_COMMAND_TTL:g}s outlast a broker's hiccup")
+        message = f"a {route.carried} may be performed {route.ttl:g} s late, when it is no longer wanted"
+        report(
+            LONG_TTL,
+            (*where, "ttl"),
+            message,
+            f"write 2s to {LONGEST_COMMAND_TTL:g}s, which outlasts a short failure of the broker",
+        )
     if route.carried is Carried.JOURNAL:
         for key, value in (("ttl", route.ttl), ("keep", route.keep), ("most", route.most)):
             if value is not None:
-                message = f"nothing of a journal is lost, and `{key}` throws messages away"
+                message = f"a journal must keep every message, but `{key}` drops messages"
                 report(LOSSY_JOURNAL, (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True)
 
 
 def _pictures(report: DocumentReport, route: Route) -> None:
     """Only a camera has a size, and it takes so many images a second; each form is one of images or of joints."""
     if (of := _FORMED.get(route.content_type)) and route.sense != of:
-        message = f"`{route.content_type}` is a form of the sense `{of}`, and this route carries `{route.sense}`"
+        message = f"`{route.content_type}` is for the sense `{of}`, but this route carries `{route.sense}`"
         hint = f"write `of: {of}` beside it, or delete `content_type`"
         report(WRONG_FORM, (*route.where, "content_type"), message, hint)
     if route.size and route.sense != IMAGE:
-        message = f"`{route.name}` has no size: only the images on the route `{IMAGE}` have"
+        message = f"`{route.name}` can't have a `size`: only the images of the route `{IMAGE}` can"
         report(BEYOND_CAMERA, (*route.where, "size"), message, "delete `size`", key=True)
     if route.sense == IMAGE and route.every and route.every < SHORTEST_IMAGE_INTERVAL:
-        message = f"an image every {1000 * route.every:g} ms is more than the camera takes, 30 a second"
-        hint = f"{1000 * SHORTEST_IMAGE_INTERVAL:g}ms is the shortest"
+        message = f"an image every {1000 * route.every:g} ms is too often: the camera takes 30 images per second"
+        hint = f"write {1000 * SHORTEST_IMAGE_INTERVAL:g}ms or more"
         report(BEYOND_CAMERA, (*route.where, "every"), message, hint)
 
 
@@ -126,11 +133,11 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
         waits = any(d != "*" and hears(d, HEARD) for d in descriptors(machine))
         for name, needed, what in ((JOINT, tracks, "uses `track`"), (HEARD, waits, "waits for `heard`")):
             if needed and name not in routes and name not in report.lost:
-                message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
+                message = f"`{behavior}` {what}, but there is no route `{name}`: {MEANINGS[name]}"
                 hint, cause = f"write a row `{name}:`", f"name {name}"
                 where: NodePath = ("routes",)
                 if meant := next((r for r in routes.values() if name in (r.event, *_meant(r))), None):
-                    hint, where = f"call this row `{name}`: its key is that of `{name}`", meant.where
+                    hint, where = f"rename this row to `{name}`: it has the key of that route", meant.where
                 report(MISSING_ROUTE, where, message, hint, key=True, cause=cause)
 
 
@@ -148,11 +155,11 @@ def _moves_joints(draft: ProjectDraft, action: object) -> bool:
 def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     """A route goes one way; a command that comes late is worse than one that does not come."""
     if route.direction is Direction.OUT and route.event:
-        message = f"nobody tells Lumen of `{route.event}`: messages on this route go out"
+        message = f"messages on this route go out, so they can't become the event `{route.event}`"
         report(WRONG_DIRECTION, (*route.where, "event"), message, "write `direction: in`")
     if route.direction is Direction.IN and route.name == COMMAND and route.ttl is None and "ttl" not in report.lost:
-        message = "a command that waited for long is done all the same"
-        report(NO_TTL, route.where, message, "say how long it is good for, such as `ttl: 2s`", key=True)
+        message = "a command that waited for a long time is still performed"
+        report(NO_TTL, route.where, message, "write how long it is valid, such as `ttl: 2s`", key=True)
 
 
 def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
@@ -165,5 +172,5 @@ def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     if route.name not in bound and not any(
         hears(d, route.event) for m in draft.behaviors.values() for d in descriptors(m)
     ):
-        message = f"no behaviour waits for `{route.event}`, which messages on this route become"
-        report(UNUSED_ROUTE, (*route.where, "event"), message, f"react to it with `on: {{{route.event}: …}}`")
+        message = f"no behaviour waits for `{route.event}`, the event of this route"
+        report(UNUSED_ROUTE, (*route.where, "event"), message, f"handle it with `on: {{{route.event}: …}}`")

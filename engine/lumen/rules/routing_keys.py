@@ -10,9 +10,9 @@ from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS, INTERNAL_
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.settings import Settings
 
-ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
-TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends under a key that Lumen itself uses for something else")
-SHARED_KEY = Code("shared-key", "routes", WARNING, "robots that share a bus have the same key")
+ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has an invalid form")
+TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends with a key that Lumen itself uses for something else")
+SHARED_KEY = Code("shared-key", "routes", WARNING, "robots that share a bus use the same key")
 NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost one of Lumen's own")
 
 MAX_ROUTING_KEY_BYTES = 255
@@ -37,23 +37,29 @@ def check_key(report: DocumentReport, route: Route, settings: Settings) -> bool:
     first = route.key.split(".")[0]
     near = get_close_matches(first.lower(), KEY_PREFIXES, n=1, cutoff=NEAR)
     if first not in KEY_PREFIXES and near:
-        message = f"`{route.key}` begins with `{first}`, nearly as keys of Lumen do"
-        report(NEAR_KEY, path, message, f"did you mean `{near[0]}`? else choose another first word")
+        message = f"`{route.key}` begins with `{first}`, which is almost a prefix of Lumen's own keys"
+        report(NEAR_KEY, path, message, f"did you mean `{near[0]}`? Otherwise choose another first word")
     return True
 
 
 def _fault(key: str) -> tuple[str, str]:
     words = key.split(".")
     if "*" in key or "#" in key:
-        return f"`{key}` holds a wildcard, and a message has one certain key", "write the whole key"
+        return f"`{key}` contains a wildcard, but a message has one exact key", "write the whole key"
     if key != key.strip() or any(not word for word in words):
         return f"`{key}` has an empty word", "write words with single dots between them"
     if " " in key:
-        return f"`{key}` holds a blank", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
+        return f"`{key}` contains a space", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
     if "{stand}" in words:
-        return "`{stand}` is the name of a stand, and none has one", "write `stand:` beside the `name:` of `robot:`"
+        return (
+            "`{stand}` is the name of a stand, but no robot has a stand",
+            "write `stand:` beside the `name:` of `robot:`",
+        )
     if bad := [word for word in words if not _WORD.fullmatch(word)]:
-        return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
+        return (
+            f"`{bad[0]}` can't be a word of a routing key",
+            "write a word without braces, or the whole word `{robot}` for the robot's name",
+        )
     if len(key.encode("utf-8", "replace")) > MAX_ROUTING_KEY_BYTES:
         return f"the key is longer than {MAX_ROUTING_KEY_BYTES} bytes", "shorten it"
     return "", ""
@@ -70,7 +76,7 @@ def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
         return False
     hint = f"choose a key of your own, such as `museum.{route.name}`"
     if owner in MEANINGS and owner not in settings.routes and owner != route.name:
-        hint = f"call the route `{owner}`, or {hint}"
+        hint = f"name the route `{owner}`, or {hint}"
     report(TAKEN_KEY, (*route.where, "key"), message, hint, cause=cause)
     return True
 
@@ -88,9 +94,9 @@ def _shared(report: DocumentReport, route: Route, settings: Settings) -> None:
     ours = route.name in DEFAULT_KEYS
     if settings.aliases is not False or "{robot}" in route.key or not (ours or route.event):
         return
-    what = f"becomes `{route.event}` for all of them" if route.event else "is nobody's in particular"
+    what = f"become `{route.event}` for all of them" if route.event else "belong to no particular robot"
     told = "" if settings.told_apart else " (`aliases: false`)"
-    message = f"what comes on `{route.key}` {what}: several robots share the bus{told}"
+    message = f"several robots share the bus{told}: messages on `{route.key}` {what}"
     hint = f"write {DEFAULT_KEYS[route.name] if ours else _with_robot(route.key)}"
     report(SHARED_KEY, (*route.where, "key"), message, hint)
 

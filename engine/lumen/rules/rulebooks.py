@@ -18,7 +18,7 @@ from lumen.language.diagnostics import WARNING, Code
 from lumen.loading.document_report import DocumentReport
 
 CONTRADICTING_RULE = Code(
-    "contradicting-rule", "controllers", WARNING, "two rules ask the same and conclude different things"
+    "contradicting-rule", "controllers", WARNING, "two rules have the same condition and different conclusions"
 )
 DUPLICATE_RULE = Code("duplicate-rule", "controllers", WARNING, "a rule is written twice")
 HEDGED_CONCLUSION = Code(
@@ -30,7 +30,7 @@ HEDGED_CONCLUSION = Code(
 IDLE_RULE = Code("idle-rule", "controllers", WARNING, "a rule has the weight 0")
 MISSING_RULE = Code("missing-rule", "controllers", WARNING, "a table of rules leaves out a case")
 SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another one")
-UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule asks for a term, or concludes it")
+UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule uses a term")
 
 
 MAX_SHOWN_CASES = 3
@@ -51,7 +51,7 @@ def check(controller: ControllerDefinition, report: DocumentReport) -> None:
 def _idle(block: RuleBlock, report: DocumentReport) -> None:
     for rule in block.rules:
         if rule.weight == 0:
-            message, hint = "with the weight 0 this rule never counts", "write a weight up to 1, or delete the rule"
+            message, hint = "with the weight 0, this rule has no effect", "write a weight up to 1, or delete the rule"
             report(IDLE_RULE, rule.where, message, hint)
 
 
@@ -62,15 +62,15 @@ def _hedged(block: RuleBlock, report: DocumentReport) -> None:
             said = f"`{one.variable} is {' '.join((*one.hedges, one.term))}`"
             behind = rule.consequents[i + 1 :]
             if "any" in one.hedges:
-                message = f"{said} concludes `{one.term}` in full, however true the rule is"
-                report(HEDGED_CONCLUSION, rule.where, message, "leave out `any`")
+                message = f"{said} always concludes `{one.term}` in full, even if the rule is hardly true"
+                report(HEDGED_CONCLUSION, rule.where, message, "delete `any`")
             elif "not" in one.hedges:
-                message = f"{said} concludes `{one.term}`, to 1 minus the degree of the rule: not what is outside of it"
-                hint = f"give `{one.variable}` a term for what you mean, and conclude that"
+                message = f"{said} concludes `{one.term}` to 1 minus the degree of the rule, not the values outside it"
+                hint = f"give `{one.variable}` a term for what you mean, and use it in the conclusion"
                 report(HEDGED_CONCLUSION, rule.where, message, hint)
             elif one.hedges and behind:
-                message = f"the hedge in {said} counts for `{behind[0].variable} is {behind[0].term}` behind it, too"
-                report(HEDGED_CONCLUSION, rule.where, message, "write it last, or as a rule of its own")
+                message = f"the hedge in {said} also applies to `{behind[0].variable} is {behind[0].term}` after it"
+                report(HEDGED_CONCLUSION, rule.where, message, "write it last, or in a separate rule")
 
 
 def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -81,12 +81,12 @@ def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentR
         if (first := known.get(asked)) is None:
             known[asked] = rule
         elif said == frozenset(first.consequents):
-            message, hint = "this rule stands here twice", "delete one of them; a weight makes a rule count less"
+            message, hint = "this rule is written twice", "delete one of them; to weaken a rule, give it a weight"
             report(DUPLICATE_RULE, rule.where, message, hint, related=[(first.where, "the first one")])
         elif clash := _clash(first, rule):
             one, other = clash
-            message = f"where the same is so, `{one.variable}` is `{one.term}` and `{other.term}`"
-            hint = "one of the two is meant otherwise: change what it asks, or delete it"
+            message = f"under the same condition, `{one.variable}` is both `{one.term}` and `{other.term}`"
+            hint = "change the condition of one of the two, or delete it"
             wrong, right = _order(block, controller, first, rule)
             report(CONTRADICTING_RULE, wrong.where, message, hint, related=[(right.where, "the other one")])
         parts = _conjunction(rule.antecedent)
@@ -152,8 +152,8 @@ def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Document
     for asked, rule in found:
         wider = next((r for parts, r in found if parts < asked and r.weight >= rule.weight), None)
         if wider:
-            hint = "delete it, or let it conclude something else"
-            message = "this rule adds nothing: another one asks less and concludes the same"
+            hint = "delete it, or change its conclusion"
+            message = "this rule adds nothing: another rule has fewer conditions and the same conclusion"
             report(SUBSUMED_RULE, rule.where, message, hint, related=[(wider.where, "that one")])
 
 
@@ -200,8 +200,8 @@ def _others(block: RuleBlock, output: str, found: list[tuple[Rule, Mapping[str, 
 def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Rule, report: DocumentReport) -> None:
     shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:MAX_SHOWN_CASES]]
     more = f", and in {len(gaps) - MAX_SHOWN_CASES} more cases" if len(gaps) > MAX_SHOWN_CASES else ""
-    message = f"no rule says what `{output}` is where {'; or '.join(shown)}{more}"
-    report(MISSING_RULE, last.where, message, f"write below it: if {shown[0]} then {output} is …")
+    message = f"no rule sets `{output}` if {'; or if '.join(shown)}{more}"
+    report(MISSING_RULE, last.where, message, f"add below it: if {shown[0]} then {output} is …")
 
 
 def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -209,12 +209,17 @@ def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
         return  # one of the two was meant for it
     asked = {(p.variable, p.term) for rule in controller.rules for p in propositions(rule.antecedent)}
     asked |= {(p.variable, p.term) for rule in controller.rules for p in rule.consequents}
-    for side, variables in (("asks for", controller.inputs), ("concludes", controller.outputs)):
+    for side, variables in (("checks", controller.inputs), ("concludes", controller.outputs)):
         for variable in variables.values():
             for term in variable.terms.values():
                 if (variable.name, term.name) not in asked:
                     message = f"no rule {side} `{variable.name} is {term.name}`"
                     cause = f"{report.document.file} term {term.name}"  # a rule that is gone had it on both sides
                     report(
-                        UNUSED_TERM, term.where, message, "write a rule with it, or delete it", key=True, cause=cause
+                        UNUSED_TERM,
+                        term.where,
+                        message,
+                        "write a rule with it, or delete the term",
+                        key=True,
+                        cause=cause,
                     )

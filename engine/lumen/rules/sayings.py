@@ -11,7 +11,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import References
 
-UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying is for a row that `hears` does not have there")
+UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying names a row that `hears` does not have there")
 UNKNOWN_SLOT = Code("unknown-slot", "references", ERROR, "a saying names a slot that no phrase of its row has")
 
 
@@ -36,25 +36,27 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
         rows = rows_around(machine, path_of(machine, state))
     except KeyError:
         names = [state.name for state in hearing_states(machine)]
-        message = f"`{behavior}` has no state that is called `{state}`"
+        message = f"`{behavior}` has no state `{state}`"
         cause = f"behaviors/{behavior}.yaml state {state}"
-        report(UNKNOWN_STATE, where[:2], message, did_you_mean(state, names, "these hear"), key=True, cause=cause)
+        report(
+            UNKNOWN_STATE, where[:2], message, did_you_mean(state, names, "states with `hears`:"), key=True, cause=cause
+        )
         return {where[:2]}
     if not rows:
         names = [state.name for state in hearing_states(machine)]
-        hint = did_you_mean(state, names, "these hear") if names else "give it `hears`"
+        hint = did_you_mean(state, names, "states with `hears`:") if names else "give it `hears`"
         message = f"neither `{state}` nor a state around it has `hears`"
         report(UNKNOWN_ROW, where[:2], message, hint, key=True)
         return {where[:2]}
     found = [row for row in rows if row.key == key]
     if not found:
-        hint = did_you_mean(key, [row.key for row in rows], "there are")
+        hint = did_you_mean(key, [row.key for row in rows], "available:")
         report(UNKNOWN_ROW, where, f"`hears` of `{state}` has no row `{key}`", hint, key=True)
         return {where}
     slots = {slot for row in found for slot in _slots(machine, row)}
     for slot in saying.slots if all(name in _named(machine) for row in found for name in row.names) else ():
         if slot not in slots:
-            hint = did_you_mean(slot, slots, "they have") if slots else "write the text alone"
+            hint = did_you_mean(slot, slots, "they have") if slots else "write only the text"
             report(UNKNOWN_SLOT, (*saying.where, slot), f"no phrase of `{key}` has a slot `{slot}`", hint, key=True)
     return set()
 

@@ -28,6 +28,6 @@ def _codes(word: str) -> Iterable[str]:
 def unknown_code(word: str) -> str:
     """What to say of a word that is no code."""
     if not word:
-        return "a code is missing: `lumen explain` lists them all"
+        return "a code is missing: run `lumen explain` to list the codes"
     hint = did_you_mean(word, [*CODES, *FAMILIES])
-    return f"no code `{word}`: {hint if hint.startswith('did') else '`lumen explain` lists them all'}"
+    return f"there is no code `{word}`: {hint if hint.startswith('did') else 'run `lumen explain` to list the codes'}"

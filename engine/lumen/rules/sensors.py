@@ -41,8 +41,8 @@ def _ears(draft: ProjectDraft, body: Body) -> None:
         return
     where: NodePath = ("modules", EARS, "listens", "touch")
     if not body.tactile:
-        hint = "take it out, or write `face`"
-        draft.main(UNKNOWN_SENSOR, where, f"nobody can touch {body.name}: it has no tactile sensors", hint)
+        hint = "delete it, or write `face`"
+        draft.main(UNKNOWN_SENSOR, where, f"{body.name} can't feel a touch: it has no tactile sensors", hint)
         return
     for i, sensor in enumerate(touch.get("sensors", ())):
         if sensor not in body.tactile:

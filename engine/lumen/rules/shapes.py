@@ -12,10 +12,8 @@ from lumen.language.diagnostics import WARNING, Code
 from lumen.language.scales import ranks
 from lumen.loading.document_report import DocumentReport
 
-COVERAGE_GAP = Code(
-    "coverage-gap", "controllers", WARNING, "a part of an input's range where none of its terms is true"
-)
-TERM_ORDER = Code("term-order", "controllers", WARNING, "terms lie in another order than their names say")
+COVERAGE_GAP = Code("coverage-gap", "controllers", WARNING, "no term is true in a part of an input's range")
+TERM_ORDER = Code("term-order", "controllers", WARNING, "the order of the terms contradicts their names")
 UNREACHABLE_TERM = Code("unreachable-term", "controllers", WARNING, "a term lies outside its variable's range")
 
 
@@ -56,7 +54,7 @@ def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report:
         if scale[before] < scale[after] and places[before] > places[after]:
             term, other = variable.terms[after], variable.terms[before]
             message = (
-                f"`{after}` of `{variable.name}` lies at {places[after]:g}, and `{before}` above it,"
+                f"`{after}` of `{variable.name}` is at {places[after]:g}, but `{before}` is above it,"
                 f" at {places[before]:g}"
             )
             hint = f"swap the numbers of `{before}` and `{after}`, or their names"
@@ -88,7 +86,7 @@ def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: 
         low, high = xs[max(first - 1, 0)], xs[min(last + 1, len(xs) - 1)]
         if first == last and (first in (0, len(xs) - 1) or _narrow(rows)):
             continue
-        message = f"between {low:g} and {high:g} no term of `{variable.name}` is true: no rule fires"
+        message = f"no term of `{variable.name}` is true between {low:g} and {high:g}, so no rule fires"
         hint = "widen the terms beside the gap, or narrow the range"
         report(COVERAGE_GAP, (*variable.where, "range"), message, hint)
 

@@ -10,12 +10,12 @@ from lumen.language.shared import SHARED, SHARED_EVENT
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.walk import action_sites
 
-NOT_OWNER = Code("not-owner", "robot", ERROR, "a robot assigns a key of `shared` that belongs to another one")
+NOT_OWNER = Code("not-owner", "robot", ERROR, "a robot assigns a key of `shared` that belongs to another robot")
 SHARED_TAKEN = Code(
-    "shared-taken", "robot", ERROR, "a behaviour has a key `shared` of its own beside that of the house"
+    "shared-taken", "robot", ERROR, "a behaviour has its own key `shared` in addition to that of the house"
 )
 MAKES_SHARED_EVENT = Code(
-    "makes-shared-event", "robot", ERROR, "a route or a `send` makes the event by which robots hear of `shared`"
+    "makes-shared-event", "robot", ERROR, "a route or a `send` uses the event that updates `shared`"
 )
 
 
@@ -28,8 +28,8 @@ def check(draft: ProjectDraft) -> None:
         return
     report = draft.report("behaviors", settings.behavior)
     if SHARED in (report.document.data.get("context") or {}):
-        hint = "call it otherwise: `shared` is what lumen.yaml says of all robots"
-        report(SHARED_TAKEN, ("context", SHARED), "this `shared` hides that of the house", hint, key=True)
+        hint = "rename it: `shared` holds the values of lumen.yaml for all robots"
+        report(SHARED_TAKEN, ("context", SHARED), "this `shared` hides the `shared` of the house", hint, key=True)
         return
     for way, where in _assigned(machine):
         key = way.partition(".")[2]
@@ -38,14 +38,14 @@ def check(draft: ProjectDraft) -> None:
             hint = did_you_mean(f"{SHARED}.{key}", [f"{SHARED}.{name}" for name in settings.shared], "lumen.yaml has")
             report(UNKNOWN_CONTEXT_KEY, where, message, hint, key=True)
         elif (owner := settings.shared[key].owner) != settings.robot:
-            hint = f"let `{owner}` assign it: `send: {{to: {owner}, event: …}}` asks for that"
-            report(NOT_OWNER, where, f"`{key}` is `{owner}`'s, and `{settings.robot}` assigns it", hint, key=True)
+            hint = f"let `{owner}` assign it when it receives `send: {{to: {owner}, event: …}}`"
+            report(NOT_OWNER, where, f"`{key}` belongs to `{owner}`, but `{settings.robot}` assigns it", hint, key=True)
 
 
 def _made(draft: ProjectDraft) -> None:
     """Who makes that event gives any key any value, whoever owns it."""
-    message = f"`{SHARED_EVENT}` gives keys of `shared` values past their owners"
-    hint = "call the event otherwise, and let the owner of the key assign it"
+    message = f"`{SHARED_EVENT}` changes keys of `shared` without their owners"
+    hint = "rename the event, and let the owner of the key assign it"
     if draft.settings and draft.main:
         for route in draft.settings.routes.values():
             if route.event == SHARED_EVENT:

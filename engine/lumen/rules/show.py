@@ -11,8 +11,8 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.references import known_route
 
 SHOW_ADDRESS = Code("show-address", "routes", ERROR, "a topic, an address or a channel is invalid, or is used twice")
-SHOW_DIRECTION = Code("show-direction", "routes", ERROR, "devices are to send on a route where they can't, or may not")
-SHOW_FIELD = Code("show-field", "routes", ERROR, "a field of a message can't be carried to a device, or from one")
+SHOW_DIRECTION = Code("show-direction", "routes", ERROR, "a device can't send on a route, or is not allowed to")
+SHOW_FIELD = Code("show-field", "routes", ERROR, "a field of a message can't be sent to or from a device")
 
 MAX_TOPIC_BYTES = 65_535
 """Of MQTT 3.1.1 (4.7.3)."""
@@ -53,7 +53,7 @@ class _Ways:
             if field := link.routes[name].field:
                 where = (*path, name, "field")
                 kinds = (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
-                self.field(route, field, where, kinds, "bare text holds a text, a number, or true and false")
+                self.field(route, field, where, kinds, "plain text holds a text, a number or a boolean")
 
     def osc(self, link: OscLink) -> None:
         path, taken = (*SHOW_PATH, "osc", "routes"), dict[str, str]()
@@ -65,8 +65,10 @@ class _Ways:
                 self.twice(taken, row.address, name, where)
         for name, route in self.routes(path, link.routes):
             if self.may_come(route, (*path, name)) and route.direction is Direction.IN and link.listen is None:
-                message = f"`{name}` comes in, and nobody listens for what the device sends"
-                self.report(SHOW_DIRECTION, (*path, name), message, "write `listen:` with a port of ours", key=True)
+                message = f"`{name}` is an incoming route, but `osc` does not listen for messages"
+                self.report(
+                    SHOW_DIRECTION, (*path, name), message, "write `listen:` with a port of this computer", key=True
+                )
             self.arguments(route, link.routes[name].fields, (*path, name))
 
     def dmx(self, link: DmxLink) -> None:
@@ -75,21 +77,21 @@ class _Ways:
             for field, channel in channels.items():
                 where = (*path, name, field)
                 if channel in taken:
-                    related = [(taken[channel], "it has it already")]
-                    hint = "give each field a channel of its own"
-                    self.report(SHOW_ADDRESS, where, f"the channel {channel} is used twice", hint, related=related)
+                    related = [(taken[channel], "the first use is here")]
+                    hint = "give each field its own channel"
+                    self.report(SHOW_ADDRESS, where, f"channel {channel} is used twice", hint, related=related)
                 taken.setdefault(channel, where)
         for name, route in self.routes(path, link.routes):
             if route.direction is Direction.IN:
-                message = f"`{name}` comes in, and DMX only goes out"
+                message = f"`{name}` is an incoming route, but DMX can only send"
                 self.report(SHOW_DIRECTION, (*path, name), message, "choose a route with `direction: out`", key=True)
                 continue
             for field in link.routes[name]:
                 where, kinds = (*path, name, field), (FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
-                found = self.field(route, field, where, kinds, "a channel holds a number, or yes and no", key=True)
+                found = self.field(route, field, where, kinds, "a channel holds a number or a boolean", key=True)
                 if found and found.kind is not FieldKind.BOOLEAN and not _ranged(found):
-                    message = f"`{field}` has no range that could become 0 to 255"
-                    hint = f"write `minimum` and `maximum` into schemas/messages/{route.schema}.schema.json"
+                    message = f"`{field}` has no range to map to 0 to 255"
+                    hint = f"write `minimum` and `maximum` in schemas/messages/{route.schema}.schema.json"
                     self.report(SHOW_FIELD, where, message, hint, key=True)
 
     def routes(self, path: NodePath, names: Mapping[str, object]) -> Iterator[tuple[str, Route]]:
@@ -102,24 +104,24 @@ class _Ways:
     def may_come(self, route: Route, path: NodePath) -> bool:
         if route.direction is Direction.OUT or may_come_from_devices(route):
             return True
-        message = f"`{route.name}` has a key of Lumen's own ({route.key}), on which no device may send"
-        hint = f"make a route with a key of your own, such as `museum.{route.name}`"
+        message = f"`{route.name}` has one of Lumen's own keys ({route.key}), on which devices may not send"
+        hint = f"use a route with a key of your own, such as `museum.{route.name}`"
         self.report(SHOW_DIRECTION, path, message, hint, key=True)
         return False
 
     def twice(self, taken: dict[str, str], place: str, name: str, path: NodePath) -> None:
         if (other := taken.setdefault(place, name)) != name:
-            message = f"`{other}` has `{place}` already: what goes out on one would come in on the other, or twice"
-            self.report(SHOW_ADDRESS, path, message, "give each route a place of its own")
+            message = f"`{other}` already uses `{place}`: the messages of the two routes would mix"
+            self.report(SHOW_ADDRESS, path, message, "give each route its own topic or address")
 
     def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:
         """Each field that becomes an argument, those of the schema where none are named."""
         known, kinds = self.fields(route), (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
-        can = "an argument is a text, a number, or yes and no"
+        can = "an argument is a text, a number or a boolean"
         if fields is None and not known:
             if self.has_schema(route):
-                message = f"`{route.name}` has no schema whose fields would be the arguments"
-                self.report(SHOW_FIELD, path, message, "write `fields: []` where there are none", key=True)
+                message = f"`{route.name}` has no schema with fields for the arguments"
+                self.report(SHOW_FIELD, path, message, "write `fields: []` if there are no arguments", key=True)
             return
         for i, field in enumerate(known if fields is None else fields):
             where = path if fields is None else (*path, "fields", i)
@@ -139,12 +141,12 @@ class _Ways:
         known = self.fields(route)
         if name not in known:
             if self.has_schema(route):
-                hint = did_you_mean(name, known, "it has") if known else "give the route a `schema` that has it"
+                hint = did_you_mean(name, known, "it has") if known else "give the route a `schema` with this field"
                 self.report(SHOW_FIELD, path, f"`{route.name}` has no field `{name}`", hint, key=key)
             return None
         if known[name].kind not in kinds:
-            hint = f"{can}: give it one such `type` in schemas/messages/{route.schema}.schema.json"
-            self.report(SHOW_FIELD, path, f"`{name}` of `{route.name}` can't be carried there", hint, key=key)
+            hint = f"{can}: give the field such a `type` in schemas/messages/{route.schema}.schema.json"
+            self.report(SHOW_FIELD, path, f"the type of `{name}` of `{route.name}` can't be sent there", hint, key=key)
             return None
         return known[name]
 
@@ -168,11 +170,11 @@ def _ranged(field: SchemaField) -> bool:
 
 def _topic_fault(topic: str) -> tuple[str, str] | None:
     if "+" in topic or "#" in topic:
-        return f"`{topic}` holds a wildcard, and a message has one certain topic", "write the whole topic"
+        return f"`{topic}` contains a wildcard, but a message has one exact topic", "write the whole topic"
     if "\0" in topic or len(topic.encode("utf-8", "replace")) > MAX_TOPIC_BYTES:
-        return "no topic is that long, or holds that sign", "write words with `/` between them"
+        return "a topic can't be that long or contain a null character", "write words with `/` between them"
     if topic.startswith("$"):
-        return f"`{topic}` begins with $, as the broker's own topics do", "choose another first word"
+        return f"`{topic}` begins with $, like the broker's own topics", "choose another first word"
     return None
 
 
@@ -180,5 +182,5 @@ def _address_fault(address: str) -> tuple[str, str] | None:
     if not address.startswith("/"):
         return f"`{address}` does not begin with /", f"write `/{address}`"
     if bad := [sign for sign in address if sign in _OSC_RESERVED or not 32 < ord(sign) < 127]:
-        return f"no address of OSC holds `{bad[0]}`", "write words of ASCII with `/` between them"
+        return f"an OSC address can't contain `{bad[0]}`", "write ASCII words with `/` between them"
     return None

@@ -29,17 +29,17 @@ from lumen.rules.message_fields import field_schema
 from lumen.rules.references import WRONG_DIRECTION
 from lumen.rules.walk import action_sites
 
-BOUND_TWICE = Code("bound-twice", "controllers", WARNING, "two outputs of controllers are bound to the same")
-MISSING_FIELD = Code("missing-field", "controllers", ERROR, "a controller's message lacks a field that it has to have")
-NO_NUMBER = Code("no-number", "controllers", ERROR, "a controller is bound to something that is no number")
+BOUND_TWICE = Code("bound-twice", "controllers", WARNING, "two controller outputs are bound to the same target")
+MISSING_FIELD = Code("missing-field", "controllers", ERROR, "a controller's message lacks a required field")
+NO_NUMBER = Code("no-number", "controllers", ERROR, "a controller is bound to something that is not a number")
 RANGE_BEYOND_FIELD = Code(
-    "range-beyond-field", "controllers", WARNING, "an output can ask for more than what it is bound to takes"
+    "range-beyond-field", "controllers", WARNING, "the range of an output is larger than its target allows"
 )
 THRESHOLD_OUT_OF_RANGE = Code(
     "threshold-out-of-range", "controllers", WARNING, "an output never crosses the threshold that it is bound to"
 )
 UNIT_MISMATCH = Code(
-    "unit-mismatch", "controllers", WARNING, "a variable counts in another unit than the field that it is bound to"
+    "unit-mismatch", "controllers", WARNING, "a variable has a different unit from the field that it is bound to"
 )
 
 VOLUME: Mapping[str, Any] = {"type": "number", "minimum": 0, "maximum": 1, "description": "How loud the robot speaks."}
@@ -92,8 +92,8 @@ def _field(
     _number(report, path, f"`{_said(binding)}`", found)
     unit = _UNIT.search(str(found.get("description", "")))
     if unit and variable.unit and unit[1] != variable.unit:
-        message = f"`{variable.name}` counts in {variable.unit}, and `{_said(binding)}` in {unit[1]}"
-        hint = f"write `unit: {unit[1]}`, and ranges and terms in it"
+        message = f"`{variable.name}` is in {variable.unit}, but `{_said(binding)}` is in {unit[1]}"
+        hint = f"write `unit: {unit[1]}`, and convert the range and the terms"
         report(UNIT_MISMATCH, (*variable.where, "unit"), message, hint, related=[(binding.where, "it is bound here")])
     return found
 
@@ -132,8 +132,8 @@ def _number(report: DocumentReport, path: NodePath, what: str, schema: Mapping[s
         report(
             NO_NUMBER,
             path,
-            f"{what} is no number, but of type {' or '.join(sorted(kinds))}",
-            "bind to a field or a key that holds one",
+            f"{what} is not a number: its type is {' or '.join(sorted(kinds))}",
+            "bind to a field or a key that holds a number",
         )
 
 
@@ -144,8 +144,8 @@ def _fits(report: DocumentReport, variable: Variable, path: NodePath, what: str,
     if (isinstance(low, int | float) and variable.minimum < low) or (
         isinstance(high, int | float) and variable.maximum > high
     ):
-        message = f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, {what} from {takes}"
-        hint = "narrow the range, and give its terms the same unit"
+        message = f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, but {what} from {takes}"
+        hint = "narrow the range, and adjust its terms"
         report(RANGE_BEYOND_FIELD, (*variable.where, "range"), message, hint, related=[(path, "it is bound here")])
 
 
@@ -153,12 +153,17 @@ def _threshold(draft: ProjectDraft, report: DocumentReport, variable: Variable, 
     key = "above" if signal.rising else "below"
     if not variable.minimum < signal.threshold < variable.maximum:
         message = f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, and never crosses"
-        report(THRESHOLD_OUT_OF_RANGE, (*signal.where, key), f"{message} {signal.threshold:g}", "write one in between")
+        report(
+            THRESHOLD_OUT_OF_RANGE,
+            (*signal.where, key),
+            f"{message} {signal.threshold:g}",
+            "write a threshold in between",
+        )
     machines = draft.behaviors.values()
     whole = all(draft.report("behaviors", name).whole for name in draft.behaviors)
     if machines and whole and not any(hears(d, signal.event) for m in machines for d in descriptors(m)):
         hint = did_you_mean(signal.event, {d for m in machines for d in descriptors(m) if "*" not in d})
-        hint = hint if "mean" in hint else "react to it with `on:`, or delete this"
+        hint = hint if "mean" in hint else "handle it under `on:`, or delete this"
         message = f"nothing waits for the event `{signal.event}`"
         report(UNUSED_EVENT, (*signal.where, "event"), message, hint)
 
@@ -166,8 +171,8 @@ def _threshold(draft: ProjectDraft, report: DocumentReport, variable: Variable, 
 def _direction(draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str) -> None:
     row = draft.settings.routes.get(route) if draft.settings else None
     if row and row.direction is Direction.IN:
-        message = f"`{route}` is a route on which messages come in"
-        report(WRONG_DIRECTION, path, message, "publish on one with `direction: out`")
+        message = f"`{route}` is a route for incoming messages"
+        report(WRONG_DIRECTION, path, message, "publish on a route with `direction: out`")
 
 
 def _lacks(draft: ProjectDraft, report: DocumentReport, controller: ControllerDefinition) -> None:
@@ -181,7 +186,7 @@ def _lacks(draft: ProjectDraft, report: DocumentReport, controller: ControllerDe
         given = {key for signal in mine for key in (signal.path[0], *signal.body)}
         lacking = [name for name in required if name not in given] if isinstance(required, list) else []
         if lacking:
-            message = f"a message of `{route}` has to have `{'`, `'.join(map(str, lacking))}`"
+            message = f"a message of `{route}` must have `{'`, `'.join(map(str, lacking))}`"
             hint = f"write {{message: {_said(mine[0])}, body: {{{lacking[0]}: …}}}}"
             report(MISSING_FIELD, mine[0].where, message, hint)
 
@@ -198,8 +203,8 @@ def _twice(draft: ProjectDraft) -> None:
     for (name, signal, target), (other, later, same) in combinations(bound, 2):
         if target == same and (name == other or {name, other} <= forever):
             whose = "" if name == other else f" of `{name}`"
-            message = f"`{later.variable}` is bound to {target}, as is `{signal.variable}`{whose}"
-            hint = "bind one of them" if name == other else "bind one of them, or switch one off with `track`"
+            message = f"`{later.variable}` and `{signal.variable}`{whose} are both bound to {target}"
+            hint = "bind only one of them" if name == other else "bind only one of them, or switch one off with `track`"
             draft.report("fuzzy", other)(BOUND_TWICE, later.where, message, hint, key=True)
 
 

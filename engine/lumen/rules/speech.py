@@ -24,13 +24,15 @@ from lumen.rules.translation import begun, language_entries, switched_to
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import WordTables, is_taken, word_tables
 
-UNKNOWN_LANGUAGE = Code("unknown-language", "references", ERROR, "a language is named that the project does not speak")
+UNKNOWN_LANGUAGE = Code(
+    "unknown-language", "references", ERROR, "a name refers to a language that the project does not speak"
+)
 SHADOWED_ANSWER = Code(
-    "shadowed-answer", "speech", WARNING, "an answer is never given, because one before it always is"
+    "shadowed-answer", "speech", WARNING, "an answer is never given, because an earlier one always is"
 )
 MISSING_LANGUAGE = Code("missing-language", "speech", WARNING, "a text is missing in one of the project's languages")
 UNREACHABLE_LANGUAGE = Code(
-    "unreachable-language", "speech", WARNING, "the project speaks a language, and nothing switches to it"
+    "unreachable-language", "speech", WARNING, "nothing switches to a language that the project speaks"
 )
 
 
@@ -52,8 +54,8 @@ def check(draft: ProjectDraft) -> None:
     speech = _Speech(spoken, draft.main.lost | silent.keys(), _heard_tables(draft))
     for language, (meant, related) in silent.items():
         there = (*said_at(draft.settings, draft.main, "languages"), draft.settings.languages.index(language))
-        hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete it"
-        message = f"`{language}` is in {few[language]} texts" if few[language] else f"nothing is said in `{language}`"
+        hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete the language"
+        message = f"only {few[language]} texts are in `{language}`" if few[language] else f"no text is in `{language}`"
         draft.main.diagnostics.append(_silence(draft.main, there, message, hint, related))
         speech.lost |= {meant}
     for name, machine in draft.behaviors.items():
@@ -73,8 +75,8 @@ def check(draft: ProjectDraft) -> None:
     entries = language_entries(draft)
     for language in speech.languages:
         for report, path in begun(entries, language):
-            message = f"this is still to be translated into `{language}`"
-            hint = f"write it in `{language}`, without TODO; `lumen language check {language}` lists all of it"
+            message = f"this is not translated into `{language}` yet"
+            hint = f"translate it and delete TODO; `lumen language check {language}` lists all of these texts"
             report(MISSING_LANGUAGE, path, message, hint, cause=f"to translate into {language}")
     speech.switches(draft, silent)
     for name, motion in draft.motions.items():
@@ -128,7 +130,7 @@ def _silent(
     if not spoken or (count < MIN_TEXTS_FOR_LANGUAGE and not any(near.values())):
         return {}, {}
     said = {
-        language: (meant, [Related(found[meant], f"this is said in `{meant}`")] if meant else [])
+        language: (meant, [Related(found[meant], f"this text is in `{meant}`")] if meant else [])
         for language, meant in near.items()
     }
     return said, {n: f"{counts[n]} of {count}" if n in begun else "" for n in silent}
@@ -190,7 +192,7 @@ class _Speech:
             for language in self.languages if said and said.isdisjoint(("", "any")) else ():
                 if language not in said and said <= {*self.languages}:
                     message = f"no phrase of `{name}` is in `{language}`"
-                    hint = f"write `{language}: [ … ]` beside it: what a visitor says in it"
+                    hint = f"add `{language}: [ … ]` with what visitors say in that language"
                     cause = f"phrases in {language}"
                     tables.report(MISSING_LANGUAGE, ("phrases", name), message, hint, key=True, cause=cause)
 
@@ -203,8 +205,8 @@ class _Speech:
         whole = all(r.whole and not any(d.code == UNKNOWN_LANGUAGE for d in r.diagnostics) for r in reports)
         for i, language in enumerate(self.languages if whole and switched else ()):
             if i and language not in spoken and language not in silent and not _is_missed(draft, language):
-                message = f"nothing lets the robot speak `{language}`"
-                hint = f"write `language: {language}` where a visitor asks for it"
+                message = f"nothing switches the robot to `{language}`"
+                hint = f"write the action `language: {language}` for visitors who ask for it"
                 assert draft.settings
                 path = (*said_at(draft.settings, draft.main, "languages"), draft.settings.languages.index(language))
                 draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
@@ -218,8 +220,8 @@ class _Speech:
             return  # that one stands for it
         missing = [language for language in self.languages if language not in said | astray]
         if missing and said.isdisjoint(("", "any")):
-            message = f"this is not said in {_listed(missing)}"
-            report(MISSING_LANGUAGE, path, message, f"write `{missing[0]}:` and the text beside it", key=True)
+            message = f"this text is missing in {_listed(missing)}"
+            report(MISSING_LANGUAGE, path, message, f"add `{missing[0]}:` with the text", key=True)
 
     def each(self, report: DocumentReport, path: NodePath, languages: Iterable[str]) -> None:
         for language in languages:
@@ -257,7 +259,7 @@ def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
         takers = [next((j for j in range(i) if is_taken(p, rows[j].phrases)), None) for p in phrases]
         if phrases and None not in takers:
             first = min(j for j in takers if j is not None)
-            message = f"this is never answered: `{phrases[0]}` is taken for the answer in row {first + 1}"
-            related = [(("answers", table, first), "the first row with a phrase in the question wins")]
+            message = f"this answer is never given: row {first + 1} matches `{phrases[0]}` first"
+            related = [(("answers", table, first), "the first row with a matching phrase wins")]
             path = ("answers", table, i, "phrases")
             report(SHADOWED_ANSWER, path, message, "put this row before it", key=True, related=related)

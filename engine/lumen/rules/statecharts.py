@@ -10,7 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.transitions import ENDLESS_ALWAYS
 from lumen.rules.logic import never, tree
 
-ALWAYS_LOOP = Code("always-loop", "statecharts", WARNING, "an `always` would run for ever while its guard is true")
+ALWAYS_LOOP = Code("always-loop", "statecharts", WARNING, "an `always` repeats for ever while its guard is true")
 UNREACHABLE_STATE = Code("unreachable-state", "statecharts", WARNING, "no transition leads to a state")
 
 
@@ -79,7 +79,7 @@ def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
     for path, state in machine.states.items():
         if path not in found:
             found |= reachable(machine, path)  # what only this one leads to is not said as well
-            hint = "let a transition go there, or delete it"
+            hint = "add a transition to it, or delete it"
             report(UNREACHABLE_STATE, state.where, f"no transition leads to `{path}`", hint, key=True)
 
 
@@ -93,9 +93,9 @@ def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
             way.append(following[1])
         if following and following[1] == path and path not in said:
             said.update(way)
-            hint = "give one of them a `guard`, or let an event lead on"
+            hint = "give one of them a `guard`, or wait for an event"
             names = " → ".join(f"`{machine.states[p].name}`" for p in (*way, path))
-            report(ENDLESS_ALWAYS, onward[path][0].where, f"this never comes to rest: {names}", hint)
+            report(ENDLESS_ALWAYS, onward[path][0].where, f"this loop never ends: {names}", hint)
 
 
 def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | None:
@@ -128,8 +128,8 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
             said.update(t.source for t in way)
             asked = " and ".join(f"`{t.guard.shown}`" for t in way if t.guard)
             names = " → ".join(f"`{machine.states[p].name}`" for p in (*(t.source for t in way), path))
-            message = f"this never comes to rest while {asked}: {names}"
-            hint = "change on the way what the guard asks for, or let an event lead on"
+            message = f"this loop never ends while {asked}: {names}"
+            hint = "change a value that the guard checks, or wait for an event"
             report(ALWAYS_LOOP, way[0].where, message, hint, related=[(t.where, "then here") for t in way[1:]])
 
 

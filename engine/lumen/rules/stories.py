@@ -113,8 +113,8 @@ class _Script:
             f"write `{inner[0]}`: a state without an `id` is called by its path" if inner else did_you_mean(name, names)
         )
         if state and rest:
-            hint = f"it is called by its id: `{name.removesuffix(rest)}{state.name}`"
-        message = f"`{self.behavior}` has no state that is called `{name}`"
+            hint = f"write its id: `{name.removesuffix(rest)}{state.name}`"
+        message = f"`{self.behavior}` has no state `{name}`"
         file = f"behaviors/{self.behavior}.yaml"
         self.report(
             UNKNOWN_STATE,
@@ -135,7 +135,7 @@ class _Script:
             cause = f"behaviors/{self.behavior}.yaml context {key}"
             self.report(UNKNOWN_CONTEXT_KEY, path, message, hint, key=True, cause=cause)
         elif self.sound and not fits(value, check := type_checks(self.machine)[key]):
-            hint = f"it begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}"
+            hint = f"its initial value is {json.dumps(self.machine.context[key], ensure_ascii=False)}"
             self.report(WRONG_TYPE, path, f"`{key}` {refusal(value, check)}", hint)
 
     def sensor(self, path: NodePath, sensor: str) -> None:
@@ -152,7 +152,7 @@ class _Script:
         known = {*self.events, *raised(document), *sent_to(self.draft, machine)}
         if event not in known:
             waited = {d for d in descriptors(machine) if "*" not in d}
-            message = f"nothing in `{self.behavior}` knows the event `{event}`"
+            message = f"nothing in `{self.behavior}` uses the event `{event}`"
             hint = did_you_mean(event, known | waited)
             self.report(UNKNOWN_EVENT, path, message, hint, cause=f"name {event}")
 

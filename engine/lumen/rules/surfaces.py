@@ -14,13 +14,11 @@ ATTAINABLE_RANGE = Code(
     "attainable-range", "controllers", WARNING, "an output uses only a small part of its range, or goes beyond it"
 )
 COARSE_RESOLUTION = Code(
-    "coarse-resolution", "controllers", WARNING, "an output is sampled too coarsely for the accuracy that it states"
+    "coarse-resolution", "controllers", WARNING, "the resolution of an output is too low for its `accuracy`"
 )
-NO_DEFAULT = Code("no-default", "controllers", WARNING, "an output has no default, and somewhere no rule for it fires")
-NOT_AT_REST = Code(
-    "not-at-rest", "controllers", WARNING, "an output is not zero where the input is at its neutral point"
-)
-NOT_MONOTONE = Code("not-monotone", "controllers", WARNING, "an output turns back while its input goes on")
+NO_DEFAULT = Code("no-default", "controllers", WARNING, "an output has no default, and for some inputs no rule fires")
+NOT_AT_REST = Code("not-at-rest", "controllers", WARNING, "an output is not zero at the neutral point of its input")
+NOT_MONOTONE = Code("not-monotone", "controllers", WARNING, "an output changes direction although its input does not")
 SURFACE_STEP = Code("surface-step", "controllers", WARNING, "an output jumps while its input hardly moves")
 
 
@@ -125,7 +123,7 @@ def check(controller: ControllerDefinition, report: DocumentReport, seen: Surfac
     for found, step in seen.steps:
         where = controller.outputs[found.output].where
         message = (
-            f"`{found.output}` jumps from {step.low:.3g} to {step.high:.3g} where `{found.input}` passes {step.x:.4g}"
+            f"`{found.output}` jumps from {step.low:.3g} to {step.high:.3g} when `{found.input}` passes {step.x:.4g}"
         )
         report(SURFACE_STEP, where, message, "let neighbouring terms overlap, without vertical edges", key=True)
     for found in seen.slices:
@@ -140,9 +138,9 @@ def _silence(
     point = seen.silent.get(variable.name)
     if point is not None and variable.default is None:
         where = ", ".join(f"{name} = {x:.4g}" for name, x in point.items() if name in asked(controller, variable.name))
-        lack = "it has nothing to keep at first" if variable.lock_previous else "it has no default"
+        lack = "it has no earlier value to keep" if variable.lock_previous else "it has no default"
         message = f"`{variable.name}` has no value at {where}: no rule fires, and {lack}"
-        report(NO_DEFAULT, variable.where, message, "write `default: 0`, or cover it by rules", key=True)
+        report(NO_DEFAULT, variable.where, message, "write `default: 0`, or add rules for this case", key=True)
 
 
 def _reached(
@@ -165,10 +163,10 @@ def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) ->
     off = seen.off.get(variable.name, 0.0)
     if variable.accuracy is not None and off > variable.accuracy:
         message = (
-            f"with {variable.resolution:,} points `{variable.name}` is off by {off:.2g}, and {variable.accuracy:g} is"
-            " stated"
+            f"with {variable.resolution:,} points, `{variable.name}` is off by {off:.2g}, but its `accuracy` is"
+            f" {variable.accuracy:g}"
         )
-        hint = f"raise `resolution` to {RESOLUTION_FACTOR * variable.resolution:,}, or state a greater `accuracy`"
+        hint = f"raise `resolution` to {RESOLUTION_FACTOR * variable.resolution:,}, or write a larger `accuracy`"
         report(COARSE_RESOLUTION, (*variable.where, "accuracy"), message, hint)
 
 
@@ -179,9 +177,9 @@ def _turns(controller: ControllerDefinition, found: Slice, report: DocumentRepor
     extremes = list(_extremes(found, least))
     if len(extremes) > 2:
         x, y = extremes[1]
-        way = "rises" if y > extremes[0][1] else "falls"
-        message = f"`{output.name}` {way} until `{found.input}` is {x:.4g}, and then turns back"
-        hint = "look at the order of the terms, and at which rule concludes which"
+        way, back = ("rises", "falls") if y > extremes[0][1] else ("falls", "rises")
+        message = f"`{output.name}` {way} until `{found.input}` is {x:.4g}, and then {back}"
+        hint = "check the order of the terms and the conclusions of the rules"
         report(NOT_MONOTONE, output.where, message, hint, key=True)
 
 
@@ -214,7 +212,9 @@ def _rests(controller: ControllerDefinition, found: Slice, report: DocumentRepor
     output, variable = controller.outputs[found.output], controller.inputs[found.input]
     value = seen.rest[output.name]
     if abs(value) > REST_SHARE * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:
-        message = f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} and not 0"
-        hint = "the term in the middle of the input should lead to the one around 0"
+        message = (
+            f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} instead of 0"
+        )
+        hint = "let the rule for the middle term of the input conclude the output term around 0"
         others = [(variable.where, "its neutral point")]
         report(NOT_AT_REST, output.where, message, hint, key=True, related=others)

@@ -12,7 +12,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 
-CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` comes before the `do` beside it can be done")
+CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` ends a state before its `do` can finish")
 
 
 SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1
@@ -37,8 +37,8 @@ def _cut(
             continue
         texts = [step for step in state.do if isinstance(step.action, SayText) and duration((step,), motions) > delay]
         what = "saying this" if texts else "its `do`"
-        message = f"`{state.name}` is left after {delay:g} s, and {what} takes about {length:.1f} s"
-        hint = f"give it at least {length + 1:.0f} s" + (", or say less" if texts else "")
+        message = f"`{state.name}` is left after {delay:g} s, but {what} takes about {length:.1f} s"
+        hint = f"give it at least {length + 1:.0f} s" + (", or shorten the text" if texts else "")
         key = transition.where if isinstance(transition.where[-1], str) else transition.where[:-1]
         first = texts[0].where if texts else (*state.where, "do")
         report(CUT_SHORT, key, message, hint, key=True, related=[(first, "this takes longer")])

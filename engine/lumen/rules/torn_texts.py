@@ -12,7 +12,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import value_at
 
 CUT_TEXT = Code("cut-text", "speech", WARNING, "a text is cut off by ` #`, which begins a comment")
-TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is torn by a comma or a colon")
+TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is split by a comma or a colon")
 
 _CUT = re.compile(r" +#(?=[^\s#!:-])")
 _HAS_CUT = re.compile(r"[^\s#] +#[^\s#!:-]")
@@ -46,7 +46,7 @@ def _cut(report: DocumentReport) -> None:
         if found := _CUT.match(line, place.end_column - 1):
             shown = line[found.end() - 1 :].rstrip()
             message = f"` #` begins a comment here: `{shown[:40]}` is not part of the text"
-            report(CUT_TEXT, path, message, "put quotes around the text, or a blank behind the `#` of a comment")
+            report(CUT_TEXT, path, message, "put quotes around the text, or a space after the `#` of a comment")
 
 
 def _torn(report: DocumentReport) -> None:
@@ -82,7 +82,7 @@ def _mapped(report: DocumentReport) -> None:
         if isinstance(value, dict) and len(value) == 1 and lines[place.line - 1][place.column - 1] != "{":
             ((key, rest),) = value.items()
             if isinstance(rest, str) and " " in f"{key}{rest}":
-                message = f"this is no text but a map with the key `{key}`, since a colon ends a key"
+                message = f"this is not a text but a map with the key `{key}`, because a colon ends a key"
                 report(TORN_TEXT, path, message, f'put quotes around a text with a colon in it: "{key}: {rest}"')
 
 

@@ -17,7 +17,7 @@ from lumen.rules.walk import action_sites
 
 CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "curly quotes are used where YAML needs straight ones")
 LOOKS_LIKE_NUMBER = Code(
-    "looks-like-number", "text", WARNING, "a value looks like one number and is read as another, or as a text"
+    "looks-like-number", "text", WARNING, "a value looks like a number, but is read as another number or as a text"
 )
 LOOKS_LIKE_TRUTH = Code("looks-like-truth", "text", WARNING, "`yes`, `no`, `on` or `off` is a text, not true or false")
 NOT_FILLED_IN = Code("not-filled-in", "speech", WARNING, "the robot would say the name of a value instead of the value")
@@ -78,16 +78,16 @@ def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath,
 def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     """Only where data stands: among phrases, `no` is a word."""
     if isinstance(value, str) and (meant := _TRUTHS.get(value.lower())) and any(key in _DATA for key in path[:-1]):
-        hint = f'write `{meant}`, or put it in quotes where the text is meant: "{value}"'
+        hint = f'write `{meant}`, or put it in quotes if you mean the text: "{value}"'
         report(LOOKS_LIKE_TRUTH, path, f"this is the text `{value}`, not `{meant}`", hint)
 
 
 def _number(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     if isinstance(value, int) and not isinstance(value, bool) and _ZEROS.fullmatch(source):
-        hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for the octal number, or quotes for a text: "{source}"'
-        report(LOOKS_LIKE_NUMBER, path, f"`{source}` is the number {value}: its zeros do not count", hint)
+        hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for an octal number, or quotes for a text: "{source}"'
+        report(LOOKS_LIKE_NUMBER, path, f"`{source}` is the number {value}: leading zeros are ignored", hint)
     elif isinstance(value, str) and _GROUPED.fullmatch(source) and any(key in _DATA for key in path[:-1]):
-        hint = f"write `{source.replace('_', '')}`, or put it in quotes where the text is meant"
+        hint = f"write `{source.replace('_', '')}`, or put it in quotes if you mean the text"
         report(LOOKS_LIKE_NUMBER, path, f"`{source}` is a text, not a number", hint)
 
 
@@ -98,7 +98,7 @@ def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) 
         return  # told already
     if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
         hint = f'write straight quotes: "{source[1:-1]}"'
-        report(CURLY_QUOTES, path, "these quotes are part of the text: YAML knows only straight ones", hint)
+        report(CURLY_QUOTES, path, "these quotes are part of the text: YAML accepts only straight ones", hint)
 
 
 def _strange(report: DocumentReport) -> None:
@@ -110,7 +110,7 @@ def _strange(report: DocumentReport) -> None:
         start, line = found.place.column - 1, lines[found.place.line - 1]
         said = line[start : found.place.end_column - 1] if found.place.line == found.place.end_line else ""
         if found.severity is ERROR and _CURLY.search(said[:1] + said[-1:]):
-            hint = "write straight quotes: YAML and expressions know only these"
+            hint = "write straight quotes: YAML and expressions accept only these"
             report.diagnostics[i] = replace(found, hint=hint)
 
 
@@ -121,10 +121,10 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
             for template in (t for texts in site.step.action.texts.values() for t in texts):
                 said = template.shown
                 if foreign := next((f for f in map(_foreign, _OF_OTHERS.finditer(said), repeat(machine)) if f), None):
-                    report(NOT_FILLED_IN, template.where, f"`{foreign[0]}` is said as it stands here", foreign[1])
+                    report(NOT_FILLED_IN, template.where, f"the robot would say `{foreign[0]}` literally", foreign[1])
                 elif found := _HALF.search(said) or _SIGNS.search(said) or _BARE.fullmatch(said):
                     name = found[0] if found.re is _BARE else found[1]
-                    message = f"`{found[0]}` is said as it stands here"
+                    message = f"the robot would say `{found[0]}` literally"
                     report(NOT_FILLED_IN, template.where, message, f"write `{{{{ {name} }}}}`")
 
 
@@ -133,7 +133,7 @@ def _foreign(found: re.Match[str], machine: MachineDefinition) -> tuple[str, str
     if found[0].startswith("{%"):
         return found[0], "texts have no `{% … %}`: write `{{ CONDITION ? 'one text' : 'another' }}`"
     if found[0].startswith("{#"):
-        return found[0], "texts have no `{# … #}`: write a comment of YAML, `# …`, outside of the text"
+        return found[0], "texts have no `{# … #}`: write a YAML comment, `# …`, outside the text"
     form, name = next((form, name) for form, name in found.groupdict().items() if name)
     if name in machine.context:
         return found[0], f"write `{{{{ context.{name} }}}}`"

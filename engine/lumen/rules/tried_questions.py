@@ -10,8 +10,8 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.knowledge import words_of
 from lumen.rules.lookups import first
 
-ASKED_TWICE = Code("asked-twice", "knowledge", WARNING, "a question to try passages with stands somewhere else, too")
-UNKNOWN_PASSAGE = Code("unknown-passage", "references", ERROR, "a passage is named that is not in knowledge/")
+ASKED_TWICE = Code("asked-twice", "knowledge", WARNING, "a question to try passages with is written twice")
+UNKNOWN_PASSAGE = Code("unknown-passage", "references", ERROR, "a name refers to a passage that is not in knowledge/")
 
 
 class _Text(NamedTuple):
@@ -38,9 +38,9 @@ def check(draft: ProjectDraft) -> None:
         for text in _tried(questions):
             here = _place(report, text)
             if (there := stand.setdefault(text.key, here)) != here:
-                hint = "ask the same in other words: these say nothing of how like a question has to be"
-                related = Related(there, "it stands here, too")
-                message = f"`{text.said}` stands in {there.file}, too"
+                hint = "use other words: the same question twice tests nothing new"
+                related = Related(there, "the other one is here")
+                message = f"`{text.said}` is also in {there.file}"
                 report.diagnostics.append(ASKED_TWICE.at(here, message, hint, (related,)))
 
 

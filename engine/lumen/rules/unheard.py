@@ -16,8 +16,8 @@ from lumen.rules.naming import heard_rows, read_names, trees
 from lumen.rules.walk import expression_sites
 from lumen.rules.word_tables import WordTables, known_by, slot_place, word_tables, written_phrases
 
-UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "a row with `not` or `asked` is about a name that no row hears")
-UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row reads what a slot of a phrase catches")
+UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "a row with `not` or `asked` has a name that no other row has")
+UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row uses the value of a slot")
 
 Reads = dict[str, dict[int, set[str | None]]]
 """Of each behaviour what each row reads of `heard`, by its number; None among it if that may be anything."""
@@ -47,7 +47,7 @@ def _unheard(rows: HeardRows, row: SaidRow) -> None:
     asked = {text for state in around for transition in state.transitions for text in _quoted(transition)}
     for name in row.hears.names:
         if name not in heard | asked:
-            message = f"`{row.hears.key}` is about `{name}`, which no row of {shown(row.state)} or around it hears"
+            message = f"`{row.hears.key}` needs a row `{name}` in {shown(row.state)} or around it"
             hint = did_you_mean(name, heard) if nearest(name, heard) else f"add a row `{name}`, or delete this one"
             rows.report(UNHEARD_NAME, row.path, message, hint, key=True)
 
@@ -88,6 +88,6 @@ def _unread(draft: ProjectDraft, tables: WordTables, name: str, reads: Reads) ->
     for phrase, slot in slots:
         if slot.name not in read | _NO_SLOTS:
             read.add(slot.name)
-            message = f"no row with `{name}` reads what `{slot.name}` catches"
-            hint = f"read `heard.{slot.name}` in a row, or write the phrase without a slot"
+            message = f"no row with `{name}` uses the value of the slot `{slot.name}`"
+            hint = f"use `heard.{slot.name}` in a row, or write the phrase without a slot"
             phrase.report.diagnostics.append(UNUSED_SLOT.at(slot_place(phrase, slot), message, hint))

@@ -15,7 +15,7 @@ from lumen.loading.units import ANGLES, LENGTHS
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
-WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is given in another unit than the file's")
+WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is not in the unit of the file")
 
 
 MAX_WALK_DISTANCE = 20.0
@@ -51,7 +51,7 @@ def _radians(report: DocumentReport, body: Body | None) -> None:
         return
     for path, angle in small:
         hint = f"write {round(angle * 180 / pi):g}"
-        report(WRONG_UNIT, path, f"{angle:g} deg is very little: it looks like radians", hint)
+        report(WRONG_UNIT, path, f"{angle:g} deg is very small: it looks like radians", hint)
 
 
 def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[NodePath, float]]:
@@ -103,15 +103,19 @@ def _look(report: DocumentReport, path: NodePath, wanted: str, value: float, uni
         return
     low, high = (round(limit / ANGLES[unit], 2) for limit in (least, most))
     shown = round(value / ANGLES[unit], 3)
-    hint = f"it goes from {low:g} to {high:g} {unit}"
+    hint = f"write an angle from {low:g} to {high:g} {unit}"
     if unit == "rad" and least <= value * ANGLES["deg"] <= most:
-        hint = "write `units: {angle: deg}` at the top: this file counts in radians"
+        hint = "write `units: {angle: deg}` at the top: the angles of this file are in radians"
     report(WRONG_UNIT, path, f"the head can't turn to {shown:g} {unit}", hint)
 
 
 def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> None:
-    message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} times around"
-    hint = "write `units: {angle: deg}` at the top: this file counts in radians" if unit == "rad" else "turn once"
+    message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} full turns"
+    hint = (
+        "write `units: {angle: deg}` at the top: the angles of this file are in radians"
+        if unit == "rad"
+        else "write at most one full turn"
+    )
     report(WRONG_UNIT, path, message, hint)
 
 
@@ -127,12 +131,12 @@ def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length
         ("vtheta", move.vtheta, most.theta, angle, ANGLES[angle]),
     ):
         if abs(value) > limit * SPEED_TOLERANCE:
-            message = f"the robot does not walk at {value / size:g} {unit}/s: {limit / size:.2g} {unit}/s at most"
+            message = f"the robot can't walk at {value / size:g} {unit}/s: at most {limit / size:.2g} {unit}/s"
             report(
                 WRONG_UNIT,
                 (*path, key),
                 message,
-                "write a smaller speed: it would only walk as fast as it can",
+                "write a lower speed",
             )
 
 
@@ -140,8 +144,12 @@ def _walk(report: DocumentReport, path: NodePath, value: float, unit: str, room:
     most = room[1] - room[0] if room else MAX_WALK_DISTANCE
     if abs(value) <= most + 1e-6:
         return
-    where = "the stage is" if room else "a hall is at the most"
-    message = f"{value / LENGTHS[unit]:g} {unit} is farther than {where} wide ({most:g} m)"
+    where = "the stage" if room else "any hall"
+    message = f"a walk of {value / LENGTHS[unit]:g} {unit} is longer than {where} ({most:g} m)"
     smaller = next((u for u in ("cm", "mm") if u != unit and abs(value / LENGTHS[unit] * LENGTHS[u]) <= most), "")
-    hint = f"write `units: {{length: {smaller}}}` at the top, or metres" if smaller and unit == "m" else "walk less far"
+    hint = (
+        f"write `units: {{length: {smaller}}}` at the top, or convert it to metres"
+        if smaller and unit == "m"
+        else "write a shorter walk"
+    )
     report(WRONG_UNIT, path, message, hint)

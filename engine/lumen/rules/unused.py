@@ -20,19 +20,19 @@ from lumen.rules.naming import Named, heard_rows, named_in
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
 
-SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ in capital letters only")
+SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ only in capital letters")
 UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "no expression looks up a table of answers")
 UNUSED_CONTEXT_KEY = Code("unused-context-key", "references", WARNING, "a key of the context is never read")
 UNUSED_FILE = Code("unused-file", "references", INFO, "nothing uses a motion, behaviour or controller")
-UNUSED_LIST = Code("unused-list", "references", WARNING, "nothing reads a list")
-UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "nothing listens for a group of phrases")
-UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour names a words file")
+UNUSED_LIST = Code("unused-list", "references", WARNING, "nothing uses a list")
+UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "nothing uses a group of phrases")
+UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour uses a words file")
 
 
 _ASKED = {
-    "phrases": ("nothing asks for the phrases `{}`", "ask `heard(event.data.result, '{}')` somewhere", UNUSED_PHRASES),
-    "answers": ("nothing asks for the answers `{}`", "ask `lookup(event.data.result, '{}')` somewhere", UNUSED_ANSWERS),
-    "lists": ("nothing reads the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
+    "phrases": ("nothing uses the phrases `{}`", "write `heard(event.data.result, '{}')` in a guard", UNUSED_PHRASES),
+    "answers": ("nothing uses the answers `{}`", "write `lookup(event.data.result, '{}')` in a guard", UNUSED_ANSWERS),
+    "lists": ("nothing uses the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
 }
 """The tables, and for each what is said where nothing asks for it, and a hint."""
 
@@ -71,7 +71,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
             message = f"nothing waits for the event `{event}`"
-            hint = "react to it with `on:`, or delete it"
+            hint = "handle it under `on:`, or delete it"
             report(UNUSED_EVENT, ("events", event), message, hint, key=True, root=_states_of(report))
 
 
@@ -80,7 +80,7 @@ def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
     for name, words in draft.own_words.items():
         report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
         if not users and report.whole and draft.whole_behaviors:
-            message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
+            message, hint = f"no behaviour uses the words `{name}`", f"write `words: {name}` at the top of a behaviour"
             draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
         elif users and all(user in sound for user in users):
             named = [named_in(draft.behaviors[user]) for user in users]
@@ -103,7 +103,7 @@ def _unasked(
                 them = "it" if part == "lists" else "them"
                 advice = f"{hint.format(key)}, or delete {them}"
                 if hears and part != "lists":
-                    advice = f"list it under `hears` of a state: `{key}: …`, or delete {them}"
+                    advice = f"write `{key}: …` under `hears` of a state, or delete {them}"
                 report(code, (part, key), message.format(key), advice, key=True, root=root)
 
 
@@ -112,7 +112,7 @@ def _context(machine: MachineDefinition, report: DocumentReport, read: Collectio
     for key in report.document.data.get("context") or ():
         if key not in read:
             hint = "use it in an expression, or delete it"
-            what = "is set and never read" if key in written else "is declared and never used"
+            what = "is set but never read" if key in written else "is declared but never used"
             message, root = f"`{key}` {what}", _states_of(report)
             report(UNUSED_CONTEXT_KEY, ("context", key), message, hint, key=True, root=root)
 
@@ -150,9 +150,9 @@ def _files(draft: ProjectDraft) -> None:
     behaviors |= {i.behavior for m in draft.behaviors.values() for state in m.states.values() for i in state.invoke}
     controllers = {name for action in actions for name in names_in(action, "controller")}
     used: Mapping[str, tuple[str, Iterable[str], set[Any], str]] = {
-        "motions": ("motion", draft.motions, motions, "`play` it somewhere, or delete the file"),
-        "behaviors": ("behaviour", draft.behaviors, behaviors, "`invoke` it somewhere, or delete the file"),
-        "fuzzy": ("controller", draft.controllers, controllers, "`track` with it somewhere, or delete the file"),
+        "motions": ("motion", draft.motions, motions, "use it with `play`, or delete the file"),
+        "behaviors": ("behaviour", draft.behaviors, behaviors, "use it with `invoke`, or delete the file"),
+        "fuzzy": ("controller", draft.controllers, controllers, "use it with `track`, or delete the file"),
     }
     for folder, (what, names, wanted, hint) in used.items():
         for name in names if wanted.intersection(names) else ():  # where none is used, they are about to be
@@ -183,7 +183,7 @@ def _played(data: Any) -> set[str]:
 
 def _alike_files(draft: ProjectDraft) -> None:
     for file, other in _alike(draft.files):
-        message = f"{file} and {other} differ by case only, and some computers take them for one file"
+        message = f"{file} and {other} differ only in capital letters: some computers treat them as one file"
         draft.say(SAME_BUT_CASE, file, message, "rename one of them")
     if draft.settings and draft.main:
         own = [name for name, route in draft.settings.routes.items() if not route.built_in]
@@ -199,9 +199,9 @@ def _alike_inside(machine: MachineDefinition, report: DocumentReport) -> None:
 
 def _say_alike(report: DocumentReport, path: NodePath, names: Iterable[str]) -> None:
     for name, other in _alike(names):
-        message = f"`{name}` and `{other}` differ by case only"
-        related = [((*path, other), "the other one stands here")]
-        report(SAME_BUT_CASE, (*path, name), message, "give one of them another name", key=True, related=related)
+        message = f"`{name}` and `{other}` differ only in capital letters"
+        related = [((*path, other), "the other one is here")]
+        report(SAME_BUT_CASE, (*path, name), message, "rename one of them", key=True, related=related)
 
 
 def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:

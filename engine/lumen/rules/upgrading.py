@@ -46,7 +46,7 @@ def upgraded(
     said = _said(_document(now, MAIN_FILE))
     if said > vocabulary:
         raise UsageError(
-            f"{MAIN_FILE} is written for vocabulary {said}, and this Lumen reads {vocabulary}: install a newer one"
+            f"{MAIN_FILE} is written for vocabulary {said}, but this Lumen reads {vocabulary}: install a newer Lumen"
         )
     for number in range(said, vocabulary):
         for migration in migrations.get(number, ()):
@@ -71,7 +71,7 @@ def renamed_key(files: str, path: Sequence[str], name: str) -> Migration:
             if span.key and _fits(node, path):
                 if (*node[:-1], name) in document.spans:
                     where = f"{document.file}:{span.key.line}"
-                    raise UsageError(f"{where}: `{node[-1]}` is `{name}` now, and both stand here: delete one of them")
+                    raise UsageError(f"{where}: `{node[-1]}` is `{name}` now, but both are here: delete one of them")
                 yield Rewriting(span.key, f"`{node[-1]}` is `{name}` now", name)
 
     return migrate
@@ -84,14 +84,14 @@ def _fits(node: NodePath, path: Sequence[str]) -> bool:
 def _document(files: Mapping[str, bytes], file: str) -> Document:
     document = parse(file, files[file])[0] if file in files else None
     if document is None:
-        raise UsageError(f"{file} can't be read, so nothing is rewritten: `lumen lint` says what is wrong")
+        raise UsageError(f"{file} can't be read, so nothing is rewritten: run `lumen lint` to see why")
     return document
 
 
 def _said(main: Document) -> int:
     said = main.data.get(VOCABULARY_KEY, FIRST_VOCABULARY) if isinstance(main.data, Mapping) else None
     if type(said) is not int or said < FIRST_VOCABULARY:
-        raise UsageError(f"{MAIN_FILE} says no vocabulary that there could be: `lumen lint` says what is wrong")
+        raise UsageError(f"the vocabulary in {MAIN_FILE} is invalid: run `lumen lint` to see why")
     return said
 
 
@@ -101,14 +101,14 @@ def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | N
     if said == vocabulary:
         return None
     if said is not None:
-        return Rewriting(main.place((VOCABULARY_KEY,)), f"says vocabulary {vocabulary} now", str(vocabulary))
+        return Rewriting(main.place((VOCABULARY_KEY,)), f"the vocabulary is {vocabulary} now", str(vocabulary))
     first = next(iter(main.data), None)
     if first is None:
-        raise UsageError(f"{MAIN_FILE} is empty: `lumen lint` says what is missing")
+        raise UsageError(f"{MAIN_FILE} is empty: run `lumen lint` to see what is missing")
     key = main.place((first,), key=True)
     ahead = lines_of(main.text)[key.line - 1][: key.column - 1].strip("\ufeff ")
     if ahead.strip("{ "):
-        raise UsageError(f"{MAIN_FILE}: write `{VOCABULARY_KEY}: {vocabulary}` as its first key, by hand")
+        raise UsageError(f"{MAIN_FILE}: write `{VOCABULARY_KEY}: {vocabulary}` as the first key by hand")
     after = ", " if ahead else line_break + " " * (key.column - 1)
     place = key._replace(end_line=key.line, end_column=key.column)
-    return Rewriting(place, f"says vocabulary {vocabulary} now", f"{VOCABULARY_KEY}: {vocabulary}{after}")
+    return Rewriting(place, f"the vocabulary is {vocabulary} now", f"{VOCABULARY_KEY}: {vocabulary}{after}")

@@ -11,8 +11,10 @@ from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
 
-BLOCKED_PLACE = Code("blocked-place", "robot", WARNING, "a place is in something solid of the hall, or too near it")
-BLOCKED_WAY = Code("blocked-way", "robot", WARNING, "the straight way from one place to the next is not free")
+BLOCKED_PLACE = Code(
+    "blocked-place", "robot", WARNING, "a place is inside a solid object of the hall, or too close to one"
+)
+BLOCKED_WAY = Code("blocked-way", "robot", WARNING, "the straight way from one place to the next is blocked")
 
 ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.2
 """How far it has to be to what is solid, from where the robot stands: nearer it does not set out; and where it passes,
@@ -43,8 +45,8 @@ def check(draft: ProjectDraft) -> None:
         room = nearest(solid, point, point)
         if room < ROOM_TO_STAND:
             shut.add(name)
-            what = "inside of something solid" if not room else f"{room:.2f} m from something solid"
-            hint = f"put it {ROOM_TO_STAND:g} m away at least: nearer the robot does not set out"
+            what = "inside a solid object" if not room else f"{room:.2f} m from a solid object"
+            hint = f"put it at least {ROOM_TO_STAND:g} m away: from any closer, the robot does not start to walk"
             draft.main(BLOCKED_PLACE, ("places", name), f"`{name}` is {what} in {draft.settings.hall}", hint, key=True)
     for behavior, machine in draft.behaviors.items():
         _ways(draft, behavior, machine, {START: GroundPoint(0.0, 0.0), **places}, solid, shut)
@@ -66,10 +68,10 @@ def _ways(
         room = nearest(solid, points[before], points[walk.to])
         if room < ROOM_TO_PASS:
             told.add(pair)
-            begin = f"`{before}`" if before else "where the robot starts"
+            begin = f"`{before}`" if before else "the start"
             how = "leads through" if not room else f"passes {room:.2f} m from"
-            hint = "put a place beside it, and walk there first: the robot walks straight from place to place"
-            message = f"the straight way from {begin} to `{walk.to}` {how} something solid in the hall"
+            hint = "put a place beside the object, and walk there first"
+            message = f"the straight way from {begin} to `{walk.to}` {how} a solid object in the hall"
             draft.report("behaviors", behavior)(BLOCKED_WAY, (*walk.where, "walk", "to"), message, hint)
 
 

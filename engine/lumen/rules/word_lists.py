@@ -7,7 +7,7 @@ from lumen.loading.settings import said_at
 from lumen.rules.naming import heard_rows
 
 MISSING_WORDS = Code(
-    "missing-words", "hearing", WARNING, "a language of the project has no words by which sentences are read"
+    "missing-words", "hearing", WARNING, "a language of the project lacks the word lists for reading sentences"
 )
 
 _NEEDED = {
@@ -34,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
     if missing:
         language, names = next(iter(missing.items()))
         what = "; ".join(f"`{one}` has no {', '.join(f'`{name}`' for name in lists)}" for one, lists in missing.items())
-        message = f"{what}: sentences in it are read word by word"
+        message = f"{what}: the robot reads such sentences word by word"
         hint = f"write `{names[0]}: {{{language}: […]}}` under `phrases` of a words file that the behaviour names"
         path = (*said_at(settings, main, "languages"), settings.languages.index(language))
         main(MISSING_WORDS, path, message, hint)

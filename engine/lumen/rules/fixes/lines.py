@@ -65,7 +65,7 @@ def fewer_ignores(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     if left := [code for code in re.findall(r"[^,\s]+", codes) if code != source.at(place)]:
         start = line.find("[", comment.start()) + 2
         spot = place._replace(column=start, end_column=start + len(codes))
-        return [Fix(f"ignore {', '.join(left)} only", (Edit(spot, ", ".join(left)),))]
+        return [Fix(f"ignore only {', '.join(left)}", (Edit(spot, ", ".join(left)),))]
     if not line[: comment.start()].strip():
         return [Fix("delete the comment", (Edit(source.whole(place.line), ""),))]
     spot = place._replace(column=comment.start() + 1, end_column=len(line) + 1)

@@ -89,7 +89,7 @@ def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = Non
         for event in events:
             if event.name.endswith(".command.it"):
                 return _answer(event)
-    return DONE if isinstance(command, Live) else "it does not come to an end"
+    return DONE if isinstance(command, Live) else "it does not end"
 
 
 def _answer(event: Event) -> str:

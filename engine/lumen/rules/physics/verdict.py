@@ -55,14 +55,16 @@ class _Judge:
         most = max(tried, key=lambda outcome: outcome.tilt)
         if self._case.living:
             if not failed and most.tilt >= MAX_LIVING_TILT:
-                message = f"the torso leans {most.tilt:.0f} deg when the robot lives like this: a push tips it"
+                message = f"the torso leans {most.tilt:.0f} deg when the robot lives like this: a push can tip it over"
                 yield self._found(
-                    UNSTEADY, message, "smaller sways, or slower ones", self._keys(most.leaned, self._legs)
+                    UNSTEADY, message, "make the sways smaller or slower", self._keys(most.leaned, self._legs)
                 )
             return
         if not failed and most.tilt >= FALLING_TILT:
-            message = f"the torso leans {most.tilt:.0f} deg when the robot {self._when()}: at 45 it counts as fallen"
-            yield self._found(UNSTEADY, message, "bow less deep", self._keys(most.leaned, self._legs))
+            message = (
+                f"the torso leans {most.tilt:.0f} deg when the robot {self._when()}: at 45 deg, it counts as fallen"
+            )
+            yield self._found(UNSTEADY, message, "make the robot lean less", self._keys(most.leaned, self._legs))
             return  # the rest comes of it
         worst = [*self._worst(SELF_COLLISION, lambda o: o.collisions, MAX_CONTACT_TIME)]
         if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
@@ -77,7 +79,7 @@ class _Judge:
     def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
         """It falls, or does not come to its end: with the robot itself, or with some others."""
         worst = failed[0]
-        what = "falls" if worst.answer == FELL else f"does not come to its end: {worst.answer}"
+        what = "falls" if worst.answer == FELL else f"does not finish: {worst.answer}"
         if worst.answer == "done":
             what = "needs another attempt"
         elif worst.answer != FELL and itself:
@@ -86,16 +88,16 @@ class _Judge:
             return
         if itself and worst.answer == FELL:
             message = f"the robot falls here, at {worst.at:.1f} s, when it {self._when()}"
-            hint = "slower, smaller, or with the weight over the foot that stands"
+            hint = "make the motion slower or smaller, or keep the weight over the standing foot"
             yield self._found(FALLS, message, hint, self._keys(worst.at, self._legs))
             return
         tried = len(self._rehearsal.tried)
         if len(failed) <= (MAX_FAILED_SHARE * tried if self._case.passage else 0):
             return
-        message = f"{len(failed)} of {tried} robots, each a little different, {_plural(what)} here"
+        message = f"{len(failed)} of {tried} slightly different robots {_plural(what)} here"
         if not self._case.passage:
             message += f" when they {self._when(plural=True)}"
-        hint = "it holds on the robot of the model alone: slower, or smaller, leaves a margin"
+        hint = "make it slower or smaller, so that it works on other robots than the model, too"
         yield self._found(UNSTEADY, message, hint, self._keys(worst.at, self._legs))
 
     def _worst(
@@ -156,16 +158,16 @@ class _Judge:
 def _words(code: Code, what: str, at: float, value: float) -> tuple[str, str]:
     """What is wrong, and what to do."""
     if code == SELF_COLLISION:
-        message = f"{what} run into each other here, at {at:.1f} s, for {value:.1f} s"
-        return message, "lead one of them around the other: a keyframe between, or a wider pose"
+        message = f"{what} collide here, at {at:.1f} s, for {value:.1f} s"
+        return message, "move one of them around the other: add a keyframe in between, or use a wider pose"
     if code == FEET_SLIDE:
         message = f"{_name(what)} slides {100 * value:.1f} cm while it bears load, from {at:.1f} s"
         return message, "keep the soles flat and the hips between the feet, or lift the foot"
     if code == COMES_LATE:
-        message = f"{_name(what)} is {degrees(value):.0f} deg behind here, at {at:.1f} s: its motor can't follow"
+        message = f"{_name(what)} is {degrees(value):.0f} deg behind here, at {at:.1f} s: its motor can't keep up"
         return message, "give it more time, or less weight to move"
-    message = f"{_name(what)} gives all it can here, from {at:.1f} s, for {value:.1f} s"
-    return message, "its motor gets hot and comes late: slower, or with less weight on it"
+    message = f"the motor of {_name(what)} is at its limit here, from {at:.1f} s, for {value:.1f} s"
+    return message, "make the motion slower, or put less weight on the joint, so that the motor stays cool and keeps up"
 
 
 def _name(what: str) -> str:
