@@ -133,7 +133,7 @@ def test_a_saved_one_is_tried_with_the_others(tmp_path: Path, capsys: pytest.Cap
     ("saying", "message"),
     [
         (Saying("guide", "choice", "danse", "en", "dance"), "has no row `danse` (did you mean `dance`?"),
-        (Saying("guide", "chioce", "dance", "en", "dance"), "no state that is called `chioce`"),
+        (Saying("guide", "chioce", "dance", "en", "dance"), "no state `chioce`"),
         (Saying("giude", "choice", "dance", "en", "dance"), "no behaviour `giude`"),
         (Saying("guide", "choice", "dance", "fr", "danse"), "does not speak `fr`"),
         (Saying("guide", "choice", "dance", "", "dance"), "`language` is one"),

@@ -32,10 +32,10 @@ def test_lint_tells_what_is_wrong_with_it() -> None:
         "term-order",
     ]  # fmt: skip
     assert [message for code, _, message in found if code in ("not-at-rest", "not-monotone")] == [
-        "at rest, with `FaceXLoc` at 160, `AngleX` is 5.97 and not 0",
-        "`AngleX` rises until `FaceXLoc` is 160, and then turns back",
-        "at rest, with `FaceYLoc` at 120, `AngleY` is -2.07 and not 0",
-        "`AngleY` falls until `FaceYLoc` is 120, and then turns back",
+        "at rest, with `FaceXLoc` at 160, `AngleX` is 5.97 instead of 0",
+        "`AngleX` rises until `FaceXLoc` is 160, and then falls",
+        "at rest, with `FaceYLoc` at 120, `AngleY` is -2.07 instead of 0",
+        "`AngleY` falls until `FaceYLoc` is 120, and then rises",
     ]
 
 

@@ -173,7 +173,7 @@ def test_what_is_typed_without_end_is_a_line(
 @pytest.mark.parametrize(
     ("arguments", "part"),
     [
-        (["--select", "speling"], "no code `speling`"),
+        (["--select", "speling"], "there is no code `speling`"),
         (["--select", ""], "a code is missing"),
         (["--ignore", "unkown-state"], "did you mean `unknown-state`?"),
         (["/dev/null/x"], "does not exist"),
@@ -242,7 +242,7 @@ def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain"]) == 0
     assert all(f"  {code} " in line for code, line in zip(CODES, rows(capsys.readouterr().out), strict=True))
     assert main(["explain", "unkown-state"]) == 2
-    assert capsys.readouterr().err == "lumen explain: no code `unkown-state`: did you mean `unknown-state`?\n"
+    assert capsys.readouterr().err == "lumen explain: there is no code `unkown-state`: did you mean `unknown-state`?\n"
 
 
 def rows(shown: str) -> list[str]:

@@ -52,8 +52,8 @@ ROWS: dict[str, tuple[dict[str, str], dict[str, list[str]], list[str]]] = {
         HEARING,
         [
             "1:1 unknown-behavior | did you mean `tour`?",
-            "3:3 unknown-state | did you mean `talk.ask`? these hear `talk`, `talk.ask`",
-            "5:5 unknown-row | did you mean `dance`? there are `dance`, `else`, `faq`, `not dance`",
+            "3:3 unknown-state | did you mean `talk.ask`? states with `hears`: `talk`, `talk.ask`",
+            "5:5 unknown-row | did you mean `dance`? available: `dance`, `else`, `faq`, `not dance`",
             "7:29 unknown-slot | did you mean `n`?",
             "8:7 unknown-language | it speaks `en`, `id`",
             "9:32 unknown-slot | did you mean `answer`?",
@@ -63,7 +63,7 @@ ROWS: dict[str, tuple[dict[str, str], dict[str, list[str]], list[str]]] = {
     "a state that hears nothing": (
         {A: "tour:\n  idle: {else: {en: [a, b]}, dance: {en: [c]}}\n"},
         HEARING,
-        ["2:3 unknown-row | these hear `talk`, `talk.ask`"],
+        ["2:3 unknown-row | states with `hears`: `talk`, `talk.ask`"],
     ),
     "a behaviour that hears nothing": (
         {A: "tour: {idle: {else: {en: [a]}}}\n"},

@@ -468,7 +468,7 @@ def of(name: str) -> str:
 
 def test_a_star_above_the_end_is_found() -> None:
     assert lint(of("star-before-done.yaml")) == [
-        "7:13 shadowed-transition: this is never taken: the transition in line 5 always is, before it"
+        "7:13 shadowed-transition: this is never taken: the transition in line 5 always comes first"
         " (write `onDone` above `on`, or name the events instead of `*`)"
     ]
 
@@ -498,8 +498,8 @@ def test_an_end_below_a_key_that_handles_it(state: str, found: bool) -> None:
 @for_each(
     ("name", "message"),
     [
-        ("endless-guarded.yaml", "6:59 always-loop: this never comes to rest while `context.balance > 300` is false"),
-        ("endless-invoke.yaml", "4:44 endless-chain: this never comes to rest: `done.invoke.quick` of `work`"),
+        ("endless-guarded.yaml", "6:59 always-loop: this loop never ends while `context.balance > 300` is false"),
+        ("endless-invoke.yaml", "4:44 endless-chain: this loop never ends: `done.invoke.quick` of `work`"),
     ],
 )
 def test_an_endless_chain_is_found(name: str, message: str) -> None:
@@ -519,7 +519,7 @@ def endless(states: str) -> list[str]:
     """Return lint's findings on endless chains of these states; `touched` enters `a`, and `c` is quiet."""
     chart = f"initial: c\ncontext: {{n: 0}}\nstates: {{c: {{on: {{touched: a}}}}, {states}}}\n"
     found = lint(chart, **{name: text for name, text in INVOKED.items() if name in states})
-    assert not any(" never comes to rest" in line for line in found) or not rests(chart), found
+    assert not any("this loop never ends" in line for line in found) or not rests(chart), found
     return [line.partition(": ")[2] for line in found if "endless-chain" in line or "always-loop" in line]
 
 
@@ -591,12 +591,12 @@ def rests(chart: str) -> bool:
     ],
 )  # fmt: skip
 def test_endless_chains_of_every_make(states: str, way: str) -> None:
-    assert [f"never comes to rest: {way} (" in line for line in endless(states)] == ([True] if way else [])
+    assert [f"never ends: {way} (" in line for line in endless(states)] == ([True] if way else [])
 
 
 def test_an_always_of_states_with_states_within_is_endless_too() -> None:
     chart = "initial: a\nstates: {a: {always: b, states: {x: {}}}, b: {always: a, states: {y: {}}}}\n"
-    assert [line.split()[1] for line in lint(chart) if "never comes to rest" in line] == ["endless-always:"]
+    assert [line.split()[1] for line in lint(chart) if "this loop never ends" in line] == ["endless-always:"]
 
 
 def test_an_endless_chain_of_behaviours_within_behaviours_is_found() -> None:
@@ -604,7 +604,7 @@ def test_an_endless_chain_of_behaviours_within_behaviours_is_found() -> None:
         "initial: a\nstates: {a: {invoke: {behavior: outer, onDone: a}, on: {touched: b}}, b: {after: {5s: a}}}\n",
         **INVOKED,
     )
-    assert any("never comes to rest: `done.invoke.outer` of `a`" in line for line in found)
+    assert any("never ends: `done.invoke.outer` of `a`" in line for line in found)
 
 
 @for_each(
@@ -625,7 +625,7 @@ def test_an_endless_chain_of_behaviours_within_behaviours_is_found() -> None:
     ],
 )  # fmt: skip
 def test_endless_chains_while_a_guard_stays_false(states: str, way: str) -> None:
-    assert [f"never comes to rest {way} (" in line for line in endless(states)] == ([True] if way else [])
+    assert [f"never ends {way} (" in line for line in endless(states)] == ([True] if way else [])
 
 
 def test_the_error_of_an_endless_chain_names_its_transitions() -> None:
@@ -666,7 +666,7 @@ def test_which_targets_leave_other_regions(way: str, found: bool) -> None:
 def test_reenter_without_a_target_is_found() -> None:
     assert lint(of("reenter-nothing.yaml")) == [
         "7:21 no-effect: `reenter` has no effect without a `target`: the state is not left"
-        " (write `target: .` to begin `speak` anew, or delete `reenter`)"
+        " (write `target: .` to restart `speak`, or delete `reenter`)"
     ]
 
 
@@ -710,7 +710,7 @@ def test_the_end_of_an_invocation_that_inner_states_handle(within: str, found: b
 def test_no_unlike_event_is_proposed() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6
-    hint = "(declare it under `events:`, or give a route of lumen.yaml this `event`)"
+    hint = "(declare it under `events:`, or give a route in lumen.yaml this `event`)"
     assert all(line.endswith(hint) for line in found)
 
 

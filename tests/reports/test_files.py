@@ -83,8 +83,8 @@ def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
         ("bom-inside.yaml", ["8:1 yaml-syntax | delete it"]),
         ("anchor-twice.yaml", []),
         ("alias-slip.yaml", ["11:9 yaml-syntax | did you mean `*steps`?"]),
-        ("phrases-as-text.yaml", ["4:13 foreign-pattern | write a phrase for each: [dance, dance for me]"]),
-        ("phrases-with-commas.yaml", ["3:15 foreign-pattern | write a phrase for each: [dance, dance for me]"]),
+        ("phrases-as-text.yaml", ["4:13 foreign-pattern | write separate phrases: [dance, dance for me]"]),
+        ("phrases-with-commas.yaml", ["3:15 foreign-pattern | write separate phrases: [dance, dance for me]"]),
         ("braces-of-others.yaml", ["6:15 not-filled-in | write `{{ context.visitor }}`"]),
         ("filter.yaml", ["6:42 expression-syntax | there are no filters: delete `| title`"]),
         (
@@ -236,10 +236,10 @@ HEARD = """
 @for_each(
     ("phrases", "hints"),
     [
-        ('"hello, good morning"', ["write a phrase for each: [hello, good morning]"]),
-        ('"halt; stop"', ["write a phrase for each: [halt, stop]"]),
+        ('"hello, good morning"', ["write separate phrases: [hello, good morning]"]),
+        ('"halt; stop"', ["write separate phrases: [halt, stop]"]),
         ("halt / stop", ["write `(halt|stop)`, or a phrase for each"]),
-        ('"halt\\nstop now"', ["write a phrase for each: [halt, stop now]"]),
+        ('"halt\\nstop now"', ["write separate phrases: [halt, stop now]"]),
         ('["sit, please", "oh robot, (sit|rest)"]', []),
         ('"(run|walk), please"', []),
         (">\n      jump\n      now", []),

@@ -89,7 +89,7 @@ def test_never_counts_inside_and_in_passing(host: Story, capsys: pytest.CaptureF
 def test_a_name_that_is_not_there(host: Story, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["test", str(host("  - expect: {state: first/askin}\n")), "asked"]) == 1
     said = capsys.readouterr().err
-    assert "asked.yaml:3:21: error [unknown-state] `host` has no state that is called `first/askin`" in said
+    assert "asked.yaml:3:21: error [unknown-state] `host` has no state `first/askin`" in said
     assert "did you mean `first/asking`?" in said
     assert main(["test", str(host("  - expect: {state: faq/asking}\n")), "asked"]) == 1
     assert "did you mean `first/asking`?" in capsys.readouterr().err

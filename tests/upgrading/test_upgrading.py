@@ -63,7 +63,7 @@ def test_words_are_rewritten_where_they_stand_and_comments_stay() -> None:
         "behaviors/tour.yaml:5 `do` is `perform` now",
         "lumen.yaml:3 `hall` is `room` now",
         "motions/wave.yaml:1 `when: now` is `when: please` now",
-        "lumen.yaml:2 says vocabulary 3 now",
+        "lumen.yaml:2 the vocabulary is now 3",
     ]
 
 
@@ -79,19 +79,19 @@ def test_steps_begin_at_the_number_that_the_files_say_and_once_is_enough() -> No
 @for_each(
     ("files", "said"),
     [
-        ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, and this Lumen reads 3: install a newer one"),
-        ({"lumen.yaml": b"lumen: soon\n"}, "says no vocabulary that there could be"),
-        ({"lumen.yaml": b"lumen: true\n"}, "says no vocabulary that there could be"),
-        ({"lumen.yaml": b"lumen: 0\n"}, "says no vocabulary that there could be"),
-        ({"lumen.yaml": b"- a\n"}, "says no vocabulary that there could be"),
+        ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, but this Lumen reads 3: install a newer Lumen"),
+        ({"lumen.yaml": b"lumen: soon\n"}, "the vocabulary in lumen.yaml is invalid"),
+        ({"lumen.yaml": b"lumen: true\n"}, "the vocabulary in lumen.yaml is invalid"),
+        ({"lumen.yaml": b"lumen: 0\n"}, "the vocabulary in lumen.yaml is invalid"),
+        ({"lumen.yaml": b"- a\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"{}\n"}, "is empty"),
         ({"lumen.yaml": b"a: [\n"}, "lumen.yaml can't be read, so nothing is rewritten"),
-        ({"lumen.yaml": b"? a\n: 1\n"}, "write `lumen: 3` as its first key, by hand"),
+        ({"lumen.yaml": b"? a\n: 1\n"}, "write `lumen: 3` as the first key by hand"),
         ({}, "lumen.yaml can't be read, so nothing is rewritten"),
         ({**FILES, "behaviors/b.yaml": b'a: "\n'}, "behaviors/b.yaml can't be read, so nothing is rewritten"),
         (
             {**FILES, "lumen.yaml": b"hall: a\nroom: b\n"},
-            "lumen.yaml:1: `hall` is `room` now, and both stand here: delete one of them",
+            "lumen.yaml:1: `hall` is `room` now, but both are here: delete one of them",
         ),
     ],
 )
@@ -151,12 +151,12 @@ def test_the_command_says_what_it_changed(tmp_path: Path, capsys: pytest.Capture
     assert main(["upgrade", str(tmp_path), "--check", "--format", "json"]) == 1
     assert json.loads(capsys.readouterr().out) == {
         "vocabulary": 1,
-        "rewritten": [{"file": "lumen.yaml", "line": 1, "why": "says vocabulary 1 now"}],
+        "rewritten": [{"file": "lumen.yaml", "line": 1, "why": "the vocabulary is now 1"}],
         "errors": None,
     }
     assert main(["upgrade", str(tmp_path)]) == 0
     said = capsys.readouterr().out
-    assert "says vocabulary 1 now\n1 place rewritten; the files are written for vocabulary 1\n" in said
+    assert "the vocabulary is now 1\n1 place rewritten; the files are written for vocabulary 1\n" in said
     assert (tmp_path / "lumen.yaml").read_bytes() != before
     assert main(["upgrade", str(tmp_path), "--check"]) == 0
     assert main(["lint", "--strict", str(tmp_path)]) == 0
@@ -194,8 +194,8 @@ def test_keys_of_2015_get_the_robot_and_stay_as_aliases(line_break: bytes) -> No
     after, done = with_robot_keys(files)
     assert after == files | {"lumen.yaml": NEW.replace(b"\n", line_break)}
     assert [f"{each.place.line} {each.why}" for each in done] == [
-        "4 `heard` holds the robot, and `lumen.audio.speech.recognition` is its alias",
-        "6 `face` holds the robot, and `lumen.visual.face.detection` is its alias",
+        "4 the key of `heard` now contains the robot, and `lumen.audio.speech.recognition` is its alias",
+        "6 the key of `face` now contains the robot, and `lumen.visual.face.detection` is its alias",
     ]
     assert with_robot_keys(after) == (after, [])
 

@@ -19,5 +19,5 @@ def check(draft: ProjectDraft) -> None:
                     continue
                 key = "onDone" if transition.exact else transition.event
                 where = transition.where[: len(transition.where) - transition.where[::-1].index(key)]
-                hint = "put the actions into the `entry` of the final state, or go to a state that is not final"
+                hint = "put the actions in the `entry` of the final state, or go to a state that is not final"
                 report(AFTER_THE_END, where, f"`{key}` is never taken: the behaviour has ended by then", hint, key=True)

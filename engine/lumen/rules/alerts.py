@@ -59,8 +59,8 @@ def _way(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> Non
         report(
             ALERT_WAY,
             (*where, said[1]),
-            f"`{said[0]}` and `{said[1]}` are in one item",
-            "split it into two items",
+            f"this recipient has both `{said[0]}` and `{said[1]}`",
+            "split it into two recipients",
             key=True,
         )
     else:
@@ -71,7 +71,7 @@ def _quiet(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> N
     begin, _, end = str(row.get("quiet", "")).partition("-")
     if end and begin.zfill(5) == end.zfill(5):
         hint = "write two different times, such as `22:00-07:00`, or `never`"
-        report(ALERT_QUIET, (*where, "quiet"), f"the quiet hours from {begin} to {end} have no length", hint)
+        report(ALERT_QUIET, (*where, "quiet"), f"the quiet hours begin and end at {begin}", hint)
 
 
 def _reached(report: DocumentReport, recipient: Recipient) -> None:

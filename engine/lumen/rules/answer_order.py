@@ -55,7 +55,7 @@ def _repeated(report: DocumentReport, table: str, rows: int) -> None:
         repeated = [(p, above) for p, above in zip(phrases, found, strict=True) if all(row < i for row, _ in above)]
         for phrase, above in repeated if len(repeated) < len(phrases) else ():
             row, path = above[0]
-            message = f"`{phrase.text}` is also in row {row + 1} of `{table}`, and that row answers"
+            message = f"`{phrase.text}` is also in row {row + 1} of `{table}`, which is used instead"
             report(
                 SHADOWED_PHRASE,
                 phrase.path,

@@ -26,7 +26,7 @@ def check(draft: ProjectDraft) -> None:
         for transition in marked:
             if event := next((event for event in SAFETY if hears(transition.event, event)), ""):
                 message = f"`approve` delays the reaction to `{event}` until a person approves it"
-                hint = "delete `approve` here, because the console may be unattended; write it on a later transition"
+                hint = "delete `approve` here, because the console may be unattended; add it to a later transition"
                 report(SAFETY_WAITS, (*transition.where, "approve"), message, hint, key=True)
             if event := next((event for event in sorted(own) if hears(transition.event, event)), ""):
                 message = f"`{event}` comes from a behaviour: only events from outside can wait for approval"

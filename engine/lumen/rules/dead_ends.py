@@ -56,7 +56,7 @@ def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
                     f"`{path}` remembers the final state of `{parent.name}`, so `{parent.name}` ends again at once"
                 )
                 hint = f"go to `{parent.name}` itself to restart it"
-                related = [(done[0].where, "this transition follows its end")]
+                related = [(done[0].where, "its end is handled here")]
                 report(HISTORY_OF_END, transition.where, message, hint, related=related)
 
 

@@ -73,7 +73,7 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
                 report(NO_EFFECT, (*state.where, idle[0]), message, hint, key=True)
         if "onError" in written and "do" not in written and not report.broken((*state.where, "do")):
             message = "`onError` has no effect in a state without a `do`: nothing can fail"
-            hint = "put it into the state whose `do` may fail, or write `on: {error.*: …}`"
+            hint = "move it to the state whose `do` may fail, or write `on: {error.*: …}`"
             report(NO_EFFECT, (*state.where, "onError"), message, hint, key=True)
 
 

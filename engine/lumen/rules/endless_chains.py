@@ -27,9 +27,7 @@ from lumen.rules.events import hears
 from lumen.rules.logic import tree
 from lumen.rules.statecharts import ALWAYS_LOOP, within
 
-ENDLESS_CHAIN = Code(
-    "endless-chain", "statecharts", WARNING, "transitions repeat in a circle for ever, without a guard or a delay"
-)
+ENDLESS_CHAIN = Code("endless-chain", "statecharts", WARNING, "transitions loop for ever, without a guard or a delay")
 
 MAX_STEPS = 1000
 """The most events and transitions of a chain that are followed: as many as the engine processes without a rest."""

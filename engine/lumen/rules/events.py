@@ -20,7 +20,7 @@ from lumen.rules.recipients import recipients, sent_to
 from lumen.rules.walk import action_sites
 
 UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")
-UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "nothing waits for an event that is raised or declared")
+UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "an event is raised or declared, but nothing waits for it")
 
 
 BUILT_IN_FAMILIES = (

@@ -17,9 +17,7 @@ from lumen.rules.statecharts import within
 from lumen.rules.word_tables import home_of
 
 NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never matches a sentence")
-SHADOWED_PHRASE = Code(
-    "shadowed-phrase", "hearing", WARNING, "a phrase, said alone, matches a different row from its own"
-)
+SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase by itself matches another row than its own")
 
 MAX_TRIED = 300
 """Sentences that are tried to find one that takes a row with `not` or `asked`."""
@@ -43,7 +41,9 @@ class _Examples(HeardRows):
     def check(self) -> None:
         for path, rows in self.by_state.items():
             if hiding := self.hiding(path):
-                message = f"no sentence reaches the rows of {shown(rows[0].state)}: {hiding} takes every sentence first"
+                message = (
+                    f"no sentence reaches the rows of {shown(rows[0].state)}: {hiding} handles every sentence first"
+                )
                 self.report(NEVER_HEARD, rows[0].path[:-1], message, "give that transition a `guard`", key=True)
                 continue
             for row in rows:
@@ -115,11 +115,11 @@ class _Examples(HeardRows):
         whole = words == example.text
         inner = other.state.path != row.state.path
         message = f"`{example.text}` of `{example.name}` {'first ' if inner else ''}matches the row {other.shown}"
-        message += "" if whole else f" by the words `{words}`"
+        message += "" if whole else f" because of the words `{words}`"
         if inner:
             hint = f"add `{example.name}` to that row, or remove `{words}` from its phrases"
         elif whole:
-            hint = f"delete it from one of the two, or put `{row.hears.key}` first: of equal rows, the upper one wins"
+            hint = f"delete it from one of the two, or put `{row.hears.key}` first: the first of two equal rows wins"
         else:
             hint = f"give this phrase more words, or put `{row.hears.key}` before `{other.hears.key}`"
         report, path = example.written.report, example.written.path
@@ -148,12 +148,12 @@ class _Examples(HeardRows):
         outer = row.state.path
         for state in [*self.around(outer)][1:]:
             if found := next((t for t in state.transitions if _takes_all(t)), None):
-                why = f"`{found.event}` of {shown(state)} takes the remaining sentences first"
+                why = f"`{found.event}` of {shown(state)} handles the remaining sentences first"
                 self.never(row, why, "give that transition a `guard`", found)
                 return
         leaves = self.leaves(outer)
         if outer not in leaves and leaves and all(self.ends(leaf, outer) for leaf in leaves):
-            self.never(row, "every inner state has its own `else`", "delete it, or one of those")
+            self.never(row, "every inner state has its own `else`", "delete this `else`, or one of those")
 
     def ends(self, leaf: str, outer: str) -> bool:
         """Whether an `else` between two states takes whatever is left."""
@@ -186,8 +186,8 @@ class _Examples(HeardRows):
                 if rivals and None not in rivals:
                     first = min(rival for rival in rivals if rival is not None)
                     message = f"this answer is never given: row {first + 1} matches `{texts[0]}` first"
-                    related = [(("answers", name, first), "of rows with equally many words, the first one wins")]
-                    home(SHADOWED_ANSWER, path, message, "put this row before it", key=True, related=related)
+                    related = [(("answers", name, first), "if rows match the same number of words, the first one wins")]
+                    home(SHADOWED_ANSWER, path, message, "put this row before that row", key=True, related=related)
 
     def rival(self, name: str, number: int, text: str) -> int | None:
         """The row of a table whose answer is given to a sentence in place of that one; None if there is no other."""

@@ -33,7 +33,7 @@ def check(draft: ProjectDraft) -> None:
         if first and report.whole:
             verb = "play" if isinstance(first.action, Play) else "walk"
             message = f"`{verb}` moves the legs here, but nothing in `{name}` handles a fall"
-            hint = "add `fallen:` to the outermost `on`, and a state that gets up: `do: {posture: Stand}`"
+            hint = "add `fallen:` to the outermost `on`, and a state in which the robot gets up: `do: {posture: Stand}`"
             report(UNHANDLED_FALL, (*first.where, verb), message, hint, key=True)
 
 

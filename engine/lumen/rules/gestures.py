@@ -36,6 +36,8 @@ def _speeds(library: GestureLibrary, report: DocumentReport, body: Body) -> None
         excesses = {j: v / (GESTURE_SHARE * body.joints[j].speed) for j, v in peak_speeds(gesture).items()}
         joint = max(excesses, key=lambda name: excesses[name])
         if excesses[joint] > 1.0:
-            message = f"`{gesture.name}` would move `{joint}` {excesses[joint]:.1f} times as fast as a gesture may"
+            message = (
+                f"`{gesture.name}` would move `{joint}` at {excesses[joint]:.1f} times the speed limit of a gesture"
+            )
             hint = f"give its longest movement {100 * (excesses[joint] - 1):.0f} % more time, or a smaller angle"
             report(TOO_FAST, gesture.where, message, hint, key=True)

@@ -108,7 +108,7 @@ def _taken_within(machine: MachineDefinition, state: State, report: DocumentRepo
         ]
         first = takers[0] if takers else None
         if first is not None and None not in takers:
-            message = f"this is never taken: the states inside `{state.name}` always take the event first"
+            message = f"this is never taken: the states inside `{state.name}` always handle the event first"
             hint = f"name the events there instead of `{first.event}`"
             related = [(first.where, "this is taken first")]
             report(SHADOWED_TRANSITION, end.where, message, hint, related=related)
@@ -158,9 +158,9 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
             return False
         line = report.document.place(earlier.where).line
         message = f"this is never taken: the transition in line {line} always comes first"
-        hint = "give that one a `guard`, or swap them"
+        hint = "give that transition a `guard`, or swap the two"
         if later.hears and not earlier.hears:
-            hint = "give that one a `guard`, or make it the row `else`"
+            hint = "give that transition a `guard`, or turn it into the row `else`"
         elif later.exact and not earlier.exact:
             key = later.where[len(machine.states[later.source].where)]
             hint = f"write `{key}` above `on`, or name the events instead of `{earlier.event}`"
@@ -173,10 +173,13 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     first, second = heard_call(one), heard_call(other)
     taken = _taken(first, second, machine) if first and second else frozenset()
     if _implies(later.guard.source, earlier.guard.source) and not _never(later.guard.source):
-        message, hint = "this is never taken: one with the same guard comes first", "delete one of the two"
+        message, hint = "this is never taken: an earlier transition has the same guard", "delete one of the two"
         if one != other:
             wide = _short(earlier.guard.shown)
-            message, hint = f"this is never taken: `{wide}` is true whenever this guard is", "put this one before it"
+            message, hint = (
+                f"this is never taken: `{wide}` is true whenever this guard is",
+                "put this transition before that one",
+            )
         report(SHADOWED_TRANSITION, later.where, message, hint, related=related)
         return True
     if taken and first and second and not _alike(earlier, later):

@@ -10,7 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import first
 
 CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages have the same question")
-OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "the last day of a passage has passed")
+OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "the `until` day of a passage has passed")
 LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is too long for the robot to say at once")
 UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a name refers to a robot that is not in lumen.yaml")
 

@@ -130,7 +130,7 @@ def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> Non
     for (one, a), (other, b) in combinations(places, 2):
         apart = hypot(a.x - b.x, a.y - b.y)
         if apart < a.within + b.within - 1e-9:
-            message = f"`{other}` is {apart:.2f} m from `{one}`: the robot could be at both"
+            message = f"`{other}` is {apart:.2f} m from `{one}`: the robot could be at both at once"
             hint = f"put them {a.within + b.within:.2f} m apart, or write a smaller `within` for each"
             related = [(("places", one), "the other one is here")]
             main(PLACES_TOO_CLOSE, ("places", other), message, hint, key=True, related=related)

@@ -74,7 +74,7 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
     """Report rows that are null and whose name is none of a route that comes with Lumen."""
     for name in names:
         if name not in BUILT_IN_ROUTES:
-            message = f"`null` removes a route that comes with Lumen, but `{name}` does not"
+            message = f"`null` removes a route that comes with Lumen, but `{name}` is not one of them"
             hint = (
                 f"{did_you_mean(name, BUILT_IN_ROUTES, 'available:')}; for your own route, write `key` and `direction`"
             )
@@ -100,7 +100,7 @@ def _carried(report: DocumentReport, route: Route) -> None:
             LONG_TTL,
             (*where, "ttl"),
             message,
-            f"write 2s to {LONGEST_COMMAND_TTL:g}s, which outlasts a short failure of the broker",
+            f"write 2s to {LONGEST_COMMAND_TTL:g}s, long enough for a short failure of the broker",
         )
     if route.carried is Carried.JOURNAL:
         for key, value in (("ttl", route.ttl), ("keep", route.keep), ("most", route.most)):

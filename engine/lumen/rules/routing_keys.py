@@ -13,7 +13,7 @@ from lumen.loading.settings import Settings
 ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has an invalid form")
 TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends with a key that Lumen itself uses for something else")
 SHARED_KEY = Code("shared-key", "routes", WARNING, "robots that share a bus use the same key")
-NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost one of Lumen's own")
+NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost the same as one of Lumen's own")
 
 MAX_ROUTING_KEY_BYTES = 255
 """Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""

@@ -29,7 +29,7 @@ HEDGED_CONCLUSION = Code(
 )
 IDLE_RULE = Code("idle-rule", "controllers", WARNING, "a rule has the weight 0")
 MISSING_RULE = Code("missing-rule", "controllers", WARNING, "a table of rules leaves out a case")
-SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another one")
+SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another rule")
 UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule uses a term")
 
 
@@ -65,7 +65,9 @@ def _hedged(block: RuleBlock, report: DocumentReport) -> None:
                 message = f"{said} always concludes `{one.term}` in full, even if the rule is hardly true"
                 report(HEDGED_CONCLUSION, rule.where, message, "delete `any`")
             elif "not" in one.hedges:
-                message = f"{said} concludes `{one.term}` to 1 minus the degree of the rule, not the values outside it"
+                message = (
+                    f"{said} concludes `{one.term}` to 1 minus the degree of the rule, instead of the values outside it"
+                )
                 hint = f"give `{one.variable}` a term for what you mean, and use it in the conclusion"
                 report(HEDGED_CONCLUSION, rule.where, message, hint)
             elif one.hedges and behind:

@@ -44,8 +44,8 @@ def check(draft: ProjectDraft) -> None:
 
 def _made(draft: ProjectDraft) -> None:
     """Who makes that event gives any key any value, whoever owns it."""
-    message = f"`{SHARED_EVENT}` changes keys of `shared` without their owners"
-    hint = "rename the event, and let the owner of the key assign it"
+    message = f"the event `{SHARED_EVENT}` bypasses the owners of the keys of `shared`"
+    hint = "use another event, and let the owner of the key assign it"
     if draft.settings and draft.main:
         for route in draft.settings.routes.values():
             if route.event == SHARED_EVENT:

@@ -90,7 +90,7 @@ class _Ways:
                 where, kinds = (*path, name, field), (FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
                 found = self.field(route, field, where, kinds, "a channel holds a number or a boolean", key=True)
                 if found and found.kind is not FieldKind.BOOLEAN and not _ranged(found):
-                    message = f"`{field}` has no range to map to 0 to 255"
+                    message = f"`{field}` has no range, so it can't be mapped to 0 to 255"
                     hint = f"write `minimum` and `maximum` in schemas/messages/{route.schema}.schema.json"
                     self.report(SHOW_FIELD, where, message, hint, key=True)
 
@@ -146,7 +146,9 @@ class _Ways:
             return None
         if known[name].kind not in kinds:
             hint = f"{can}: give the field such a `type` in schemas/messages/{route.schema}.schema.json"
-            self.report(SHOW_FIELD, path, f"the type of `{name}` of `{route.name}` can't be sent there", hint, key=key)
+            self.report(
+                SHOW_FIELD, path, f"`{name}` of `{route.name}` has a type that can't be sent there", hint, key=key
+            )
             return None
         return known[name]
 

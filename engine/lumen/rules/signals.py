@@ -144,7 +144,9 @@ def _fits(report: DocumentReport, variable: Variable, path: NodePath, what: str,
     if (isinstance(low, int | float) and variable.minimum < low) or (
         isinstance(high, int | float) and variable.maximum > high
     ):
-        message = f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, but {what} from {takes}"
+        message = (
+            f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, but {what} goes from {takes}"
+        )
         hint = "narrow the range, and adjust its terms"
         report(RANGE_BEYOND_FIELD, (*variable.where, "range"), message, hint, related=[(path, "it is bound here")])
 
@@ -152,7 +154,7 @@ def _fits(report: DocumentReport, variable: Variable, path: NodePath, what: str,
 def _threshold(draft: ProjectDraft, report: DocumentReport, variable: Variable, signal: ThresholdBinding) -> None:
     key = "above" if signal.rising else "below"
     if not variable.minimum < signal.threshold < variable.maximum:
-        message = f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, and never crosses"
+        message = f"`{variable.name}` goes from {variable.minimum:g} to {variable.maximum:g}, so it never crosses"
         report(
             THRESHOLD_OUT_OF_RANGE,
             (*signal.where, key),

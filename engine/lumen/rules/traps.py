@@ -84,7 +84,7 @@ def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -
 
 def _number(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     if isinstance(value, int) and not isinstance(value, bool) and _ZEROS.fullmatch(source):
-        hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for an octal number, or quotes for a text: "{source}"'
+        hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for an octal number, or "{source}" for a text'
         report(LOOKS_LIKE_NUMBER, path, f"`{source}` is the number {value}: leading zeros are ignored", hint)
     elif isinstance(value, str) and _GROUPED.fullmatch(source) and any(key in _DATA for key in path[:-1]):
         hint = f"write `{source.replace('_', '')}`, or put it in quotes if you mean the text"

@@ -10,7 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.knowledge import words_of
 from lumen.rules.lookups import first
 
-ASKED_TWICE = Code("asked-twice", "knowledge", WARNING, "a question to try passages with is written twice")
+ASKED_TWICE = Code("asked-twice", "knowledge", WARNING, "a test question for the passages occurs twice")
 UNKNOWN_PASSAGE = Code("unknown-passage", "references", ERROR, "a name refers to a passage that is not in knowledge/")
 
 

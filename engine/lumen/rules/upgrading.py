@@ -101,7 +101,7 @@ def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | N
     if said == vocabulary:
         return None
     if said is not None:
-        return Rewriting(main.place((VOCABULARY_KEY,)), f"the vocabulary is {vocabulary} now", str(vocabulary))
+        return Rewriting(main.place((VOCABULARY_KEY,)), f"the vocabulary is now {vocabulary}", str(vocabulary))
     first = next(iter(main.data), None)
     if first is None:
         raise UsageError(f"{MAIN_FILE} is empty: run `lumen lint` to see what is missing")
@@ -111,4 +111,4 @@ def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | N
         raise UsageError(f"{MAIN_FILE}: write `{VOCABULARY_KEY}: {vocabulary}` as the first key by hand")
     after = ", " if ahead else line_break + " " * (key.column - 1)
     place = key._replace(end_line=key.line, end_column=key.column)
-    return Rewriting(place, f"the vocabulary is {vocabulary} now", f"{VOCABULARY_KEY}: {vocabulary}{after}")
+    return Rewriting(place, f"the vocabulary is now {vocabulary}", f"{VOCABULARY_KEY}: {vocabulary}{after}")

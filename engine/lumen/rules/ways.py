@@ -46,7 +46,7 @@ def check(draft: ProjectDraft) -> None:
         if room < ROOM_TO_STAND:
             shut.add(name)
             what = "inside a solid object" if not room else f"{room:.2f} m from a solid object"
-            hint = f"put it at least {ROOM_TO_STAND:g} m away: from any closer, the robot does not start to walk"
+            hint = f"put it at least {ROOM_TO_STAND:g} m away: closer than that, the robot does not start to walk"
             draft.main(BLOCKED_PLACE, ("places", name), f"`{name}` is {what} in {draft.settings.hall}", hint, key=True)
     for behavior, machine in draft.behaviors.items():
         _ways(draft, behavior, machine, {START: GroundPoint(0.0, 0.0), **places}, solid, shut)

@@ -34,7 +34,8 @@ def check(draft: ProjectDraft) -> None:
     if missing:
         language, names = next(iter(missing.items()))
         what = "; ".join(f"`{one}` has no {', '.join(f'`{name}`' for name in lists)}" for one, lists in missing.items())
-        message = f"{what}: the robot reads such sentences word by word"
+        languages = "these languages" if len(missing) > 1 else "this language"
+        message = f"{what}: the robot reads {languages} word by word"
         hint = f"write `{names[0]}: {{{language}: […]}}` under `phrases` of a words file that the behaviour names"
         path = (*said_at(settings, main, "languages"), settings.languages.index(language))
         main(MISSING_WORDS, path, message, hint)

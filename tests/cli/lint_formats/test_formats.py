@@ -33,7 +33,7 @@ FOUND = Findings(
         Diagnostic("unknown-state", "there is no state `gret`", Place("behaviors/tour.yaml", 3, 19, 3, 23),
                    "did you mean `greet`?", related=(Related(Place("behaviors/tour.yaml", 4, 3, 4, 8), "it is here"),)),
         Diagnostic("unused-ignore", "there is no `unused-event` here to ignore",
-                   Place("behaviors/tour.yaml", 3, 43, 3, 55), "delete this", Severity.WARNING),
+                   Place("behaviors/tour.yaml", 3, 43, 3, 55), "delete this comment", Severity.WARNING),
         Diagnostic("unknown-context-key", "the context has no `nmae`", Place("behaviors/tour.yaml", 5, 30, 5, 34)),
         Diagnostic("duplicate-key", "`greet` stands twice in the same place", BEHIND,
                    related=(Related(Place("behaviors/tour.yaml", 4, 3, 4, 8), "first here"),)),

@@ -97,7 +97,7 @@ class _Judge:
         message = f"{len(failed)} of {tried} slightly different robots {_plural(what)} here"
         if not self._case.passage:
             message += f" when they {self._when(plural=True)}"
-        hint = "make it slower or smaller, so that it works on other robots than the model, too"
+        hint = "make it slower or smaller, so that it also works on robots that differ from the model"
         yield self._found(UNSTEADY, message, hint, self._keys(worst.at, self._legs))
 
     def _worst(
