@@ -147,13 +147,13 @@ def test_what_is_another_is_judged(
 
 def test_a_package_that_is_installed_later_counts(lint: Run, judged: list[int], project: Path, tmp_path: Path) -> None:
     edit(project / "models/tiny.yaml", "mjcf: tiny.xml", f"mjcf: '{PACKED}:tiny.xml'")
-    assert f"no package `{PACKED}`" in lint()
+    assert f"no installed package `{PACKED}`" in lint()
     package = tmp_path / "packages" / PACKED
     package.mkdir()
     (package / "__init__.py").touch()
     shutil.copy(BASE / MODEL, package)
     invalidate_caches()
-    assert f"no package `{PACKED}`" not in lint()
+    assert f"no installed package `{PACKED}`" not in lint()
     judged.clear()
     lint()
     assert not judged

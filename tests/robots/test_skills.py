@@ -98,7 +98,7 @@ def test_lint_says_at_the_verb_what_is_left_out_and_nothing_is_wrong(table: Path
         (7, 10, "info"),
         (8, 10, "info"),
     ]
-    assert found[0].message == "lamp has no legs and no wheels, so the robot leaves out `walk`"
+    assert found[0].message == "lamp has no legs and no wheels, so it leaves out `walk`"
     assert "base: {kind: biped}" in found[0].hint
 
 

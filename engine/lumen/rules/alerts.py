@@ -89,7 +89,7 @@ def _reached(report: DocumentReport, recipient: Recipient) -> None:
             _web(report, url, (*recipient.where, "webhook"))
         case Mail(host=host, security="none") if not loopback(host):
             hint = "write `starttls` or `tls`: without encryption, Lumen does not send the name and the password"
-            report(ALERT_IN_CLEAR, (*recipient.where, "mail", "security"), f"mails to {host} are not encrypted", hint)
+            report(ALERT_IN_CLEAR, (*recipient.where, "mail", "security"), f"emails to {host} are not encrypted", hint)
 
 
 def _web(report: DocumentReport, url: str, where: NodePath) -> None:

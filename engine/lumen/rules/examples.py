@@ -115,7 +115,7 @@ class _Examples(HeardRows):
         whole = words == example.text
         inner = other.state.path != row.state.path
         message = f"`{example.text}` of `{example.name}` {'first ' if inner else ''}matches the row {other.shown}"
-        message += "" if whole else f" because of the words `{words}`"
+        message += "" if whole else f" because of `{words}`"
         if inner:
             hint = f"add `{example.name}` to that row, or remove `{words}` from its phrases"
         elif whole:
@@ -187,7 +187,14 @@ class _Examples(HeardRows):
                     first = min(rival for rival in rivals if rival is not None)
                     message = f"this answer is never given: row {first + 1} matches `{texts[0]}` first"
                     related = [(("answers", name, first), "if rows match the same number of words, the first one wins")]
-                    home(SHADOWED_ANSWER, path, message, "put this row before that row", key=True, related=related)
+                    home(
+                        SHADOWED_ANSWER,
+                        path,
+                        message,
+                        f"put this row before row {first + 1}",
+                        key=True,
+                        related=related,
+                    )
 
     def rival(self, name: str, number: int, text: str) -> int | None:
         """The row of a table whose answer is given to a sentence in place of that one; None if there is no other."""

@@ -112,7 +112,7 @@ class _Questions(HeardRows):
         if not any(home_of(self.draft, self.behavior, k, name) for k in keys if name in getattr(self.machine, k)):
             remedy = f"write your own phrases for `{name}`, without `{words}`: the present ones come with Lumen"
         else:
-            remedy = f"give that phrase more words, or a full stop, so that only `{words}` alone matches `{name}`"
+            remedy = f"give that phrase more words, or end it with a full stop to match only `{words}` alone"
         return f"{remedy}; or delete the question if that row is right for it"
 
 

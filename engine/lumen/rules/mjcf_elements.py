@@ -99,7 +99,7 @@ def _too_many(name: str, attributes: Mapping[str, str]) -> str:
     for keys, most in _BOUNDS.get(name, ()):
         words = (word for key in keys for word in attributes.get(key, "").split())
         if (product := prod(abs(_number(word)) or 1.0 for word in words)) > most:
-            return f"{' times '.join(f'`{key}`' for key in keys)} of {product:,.0f}: at most {most:,.0f}"
+            return f"{' × '.join(f'`{key}`' for key in keys)} = {product:,.0f}, but at most {most:,.0f}"
     return ""
 
 

@@ -63,8 +63,8 @@ def _crossing(
     region = "one region" if transition.source == path else "another region"
     message = f"`{target}` is in {region}, so all of {whole} is left and restarted"
     hint = (
-        f"write `actions: {{raise: …}}` with an event that the region of `{target}` waits for: otherwise"
-        f" speech in {' and '.join(others)} is cut off, and timers restart"
+        f"use `actions: {{raise: …}}` with an event that the region of `{target}` waits for: a transition cuts off"
+        f" speech in {', '.join(others)} and restarts timers"
     )
     report(CROSSES_REGIONS, transition.where, message, hint)
 

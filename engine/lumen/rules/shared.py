@@ -38,7 +38,7 @@ def check(draft: ProjectDraft) -> None:
             hint = did_you_mean(f"{SHARED}.{key}", [f"{SHARED}.{name}" for name in settings.shared], "lumen.yaml has")
             report(UNKNOWN_CONTEXT_KEY, where, message, hint, key=True)
         elif (owner := settings.shared[key].owner) != settings.robot:
-            hint = f"let `{owner}` assign it when it receives `send: {{to: {owner}, event: …}}`"
+            hint = f"let `{owner}` assign it, and request that with `send: {{to: {owner}, event: …}}`"
             report(NOT_OWNER, where, f"`{key}` belongs to `{owner}`, but `{settings.robot}` assigns it", hint, key=True)
 
 

@@ -22,4 +22,4 @@ def check(draft: ProjectDraft) -> None:
             if lack := tracking_lack(controller, body) if controller else lack_of(action, body):
                 verb = verb_of(action).name  # type: ignore[arg-type]
                 path: NodePath = first(report, (*site.step.where, verb), site.step.where)
-                report(LEFT_OUT, path, f"{lack.message}, so the robot leaves out `{verb}`", lack.hint, key=True)
+                report(LEFT_OUT, path, f"{lack.message}, so it leaves out `{verb}`", lack.hint, key=True)

@@ -262,4 +262,4 @@ def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
             message = f"this answer is never given: row {first + 1} matches `{phrases[0]}` first"
             related = [(("answers", table, first), "the first row with a matching phrase wins")]
             path = ("answers", table, i, "phrases")
-            report(SHADOWED_ANSWER, path, message, "put this row before that row", key=True, related=related)
+            report(SHADOWED_ANSWER, path, message, f"put this row before row {first + 1}", key=True, related=related)

@@ -122,9 +122,8 @@ def check(controller: ControllerDefinition, report: DocumentReport, seen: Surfac
         _coarse(variable, report, seen)
     for found, step in seen.steps:
         where = controller.outputs[found.output].where
-        message = (
-            f"`{found.output}` jumps from {step.low:.3g} to {step.high:.3g} when `{found.input}` passes {step.x:.4g}"
-        )
+        low, high = round(step.low, 9) + 0.0, round(step.high, 9) + 0.0  # -0.0 becomes 0.0
+        message = f"`{found.output}` jumps from {low:.3g} to {high:.3g} when `{found.input}` passes {step.x:.4g}"
         report(SURFACE_STEP, where, message, "let neighbouring terms overlap, without vertical edges", key=True)
     for found in seen.slices:
         if controller.inputs[found.input].neutral is not None:

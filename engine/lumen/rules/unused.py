@@ -31,7 +31,11 @@ UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour uses a 
 
 _ASKED = {
     "phrases": ("nothing uses the phrases `{}`", "write `heard(event.data.result, '{}')` in a guard", UNUSED_PHRASES),
-    "answers": ("nothing uses the answers `{}`", "write `lookup(event.data.result, '{}')` in a guard", UNUSED_ANSWERS),
+    "answers": (
+        "nothing uses the answers `{}`",
+        "write `lookup(event.data.result, '{}')` in an expression",
+        UNUSED_ANSWERS,
+    ),
     "lists": ("nothing uses the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
 }
 """The tables, and for each what is said where nothing asks for it, and a hint."""
