@@ -644,7 +644,8 @@ def test_the_error_of_an_endless_chain_names_its_transitions() -> None:
 
 def test_a_target_in_another_region_is_found() -> None:
     (found,) = lint(of("other-region.yaml"))
-    assert found.startswith("6:103 crosses-regions: `demo` is in another region, so all of `hello` is left and restarted")
+    message = "`demo` is in another region, so all of `hello` is left and restarted"
+    assert found.startswith(f"6:103 crosses-regions: {message} (")
     assert "an event that the region of `demo` waits for" in found
 
 
