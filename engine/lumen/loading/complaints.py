@@ -8,7 +8,7 @@ from typing import Any
 from lumen.interpreters.json_schema import occurs
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, mean, nearest
 from lumen.language.lookalikes import other_sign, typed
-from lumen.loading.schema_messages import Error, describe, node, wording
+from lumen.loading.schema_messages import Error, describe, like, node, wording
 
 MISSING_KEY = Code("missing-key", "shape", ERROR, "a key that is needed is not there")
 ONE_VERB = Code("one-verb", "shape", ERROR, "an item has no verb, or more than one")
@@ -72,7 +72,8 @@ def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
     """A key that is not there, told in the words of that schema, which describes it."""
     absent = [key for key in error.validator_value if key not in error.instance]
     missing = next((key for key in absent if error.message.startswith(repr(key))), absent[0])
-    hint = describe(_property(schema, missing)) or f"write `{missing}:` here"
+    shown = like((missing,), _property(schema, missing)).replace("write it as in", "add it, as in")
+    hint = shown or describe(_property(schema, missing)) or f"add `{missing}:` here"
     message = f"{node(path)} needs the key `{missing}`"
     if holder := next((k for k, v in error.instance.items() if isinstance(v, Mapping) and missing in v), ""):
         message += f", which stands in its `{holder}`"

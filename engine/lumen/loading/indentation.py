@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from lumen.loading.slips import Slip
 
@@ -13,25 +14,64 @@ AMONG_KEYS, DELETE_HYPHEN = "an item of a list stands among keys", "delete the `
 _KEYED = re.compile(r" *[\w.#\"'*]+:(?: |$)")
 _VALUED = re.compile(r" *[\w.#\"'*]+: +\S")
 _ITEM = re.compile(r" *- ")
+_NAMED = re.compile(r" *(?:- +)?(?P<key>[^\s\"'#\[\]{},:-][^\s:]*):(?: |$)")
 
 
 def indent(line: str) -> int:
-    """How many blanks it begins with."""
+    """Return how many spaces a line begins with."""
     return len(line) - len(line.lstrip(" "))
 
 
-def _says(line: str) -> bool:
+def is_content(line: str) -> bool:
     """Whether a line holds more than a comment."""
     return bool(line.strip()) and not line.lstrip().startswith("#")
+
+
+def holder(lines: Sequence[str], row: int, depth: int) -> str:
+    """The key that would hold the line of that index at that depth; "" at the top level.
+
+    "- N" is the list item that begins in line N.
+    """
+    is_item = bool(_ITEM.match(lines[row]))
+    for i in range(row - 1, -1, -1):
+        line = lines[i]
+        if not is_content(line):
+            continue
+        hyphen = _ITEM.match(line)
+        start = len(hyphen[0]) if hyphen else indent(line)
+        if hyphen and start == depth and not is_item:
+            return f"- {i + 1}"
+        if (start < depth or (is_item and not hyphen and start == depth)) and (named := _NAMED.match(line)):
+            return named["key"]
+    return ""
+
+
+def move_hint(lines: Sequence[str], rows: Sequence[int], shift: int) -> str:
+    """Say by how much to indent the lines of these indices, and what holds them then."""
+    first, much = lines[rows[0]], abs(shift)
+    count = "1 space" if much == 1 else f"{much} spaces"
+    amount = f"{count.replace(' ', ' more ')}" if shift > 0 else count.replace(" ", " fewer " if much > 1 else " less ")
+    inner = holder(lines, rows[0], indent(first) + shift)
+    goal = f"into the list item of line {inner[2:]}" if inner.startswith("- ") else f"under `{inner}`"
+    siblings = sum(is_content(lines[i]) and indent(lines[i]) == indent(first) for i in rows)
+    named = _NAMED.match(first)
+    what = f"`{named['key']}`" if named and not _ITEM.match(first) else "this line"
+    if siblings > 1 and not _ITEM.match(lines[rows[-1]]):
+        what, them = f"lines {rows[0] + 1} to {rows[-1] + 1}", "them"
+    elif len(rows) > 1:
+        what, them = f"{what} and the lines under it", "them"
+    else:
+        them = "it"
+    return f"indent {what} by {amount} to put {them} {goal if inner else 'at the top level'}"
 
 
 def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
     """An item among keys, or a key among items, in the line of that index: the line before it tells which."""
     here = lines[index]
-    above = next((line for line in reversed(lines[:index]) if _says(line) and indent(line) <= indent(here)), "")
-    below = next((line for line in lines[index + 1 :] if _says(line) and indent(line) <= indent(here)), "")
+    above = next((line for line in reversed(lines[:index]) if is_content(line) and indent(line) <= indent(here)), "")
+    below = next((line for line in lines[index + 1 :] if is_content(line) and indent(line) <= indent(here)), "")
     column = indent(here)
-    if not _says(here):
+    if not is_content(here):
         return
     among = [line for line in (above, below) if _ITEM.match(line) and indent(line) in (column, column - 2)]
     if among and indent(among[0]) < column and here[column] not in "{[":
@@ -60,7 +100,7 @@ def _usual(lines: Sequence[str], index: int) -> bool:
 
 def too_deep(lines: Sequence[str], row: int) -> Iterator[Slip]:
     """A key that stands further in than the one above it, which has its value already."""
-    above = next((line for line in reversed(lines[:row]) if _says(line)), "")
+    above = next((line for line in reversed(lines[:row]) if is_content(line)), "")
     if _KEYED.match(lines[row]) and _VALUED.match(above) and indent(lines[row]) > indent(above):
         yield from _moved(lines, row, [indent(above)])
 
@@ -70,38 +110,41 @@ def depths(lines: Sequence[str], row: int) -> Iterator[Slip]:
 
     Where a line stands as deep as some before it, one between them that stands further out has cut it off.
     """
-    told = [i for i in range(row, max(row - LINES_BACK, 0) - 1, -1) if _says(lines[i])]
+    told = [i for i in range(row, max(row - LINES_BACK, 0) - 1, -1) if is_content(lines[i])]
     known = [indent(lines[i]) for i in told]
     here = indent(lines[row])
     above = [i for i in told if i < row and indent(lines[i]) < here]
+    texts = [len(found[0]) for i in told if (found := _ITEM.match(lines[i]))]
     for i in [*above, row] if here in known[1:] else [row, *above]:
-        yield from _moved(lines, i, known)
+        yield from _moved(lines, i, [*known, *texts])
+    inner = next((a for a, b in pairwise(told[1:]) if indent(lines[a]) > here > indent(lines[b])), None)
+    if inner is not None:  # the first one of a block, and those after it are further out
+        yield from _moved(lines, inner, [here])
 
 
 def _moved(lines: Sequence[str], index: int, known: Sequence[int]) -> Iterator[Slip]:
     here, block = indent(lines[index]), [index]
     for j in range(index + 1, len(lines)):
-        if _says(lines[j]) and indent(lines[j]) <= here:
+        if is_content(lines[j]) and indent(lines[j]) <= here:
             break
         block.append(j)
     bare = lines[index].rstrip().endswith(":")
-    inner = next((indent(lines[j]) for j in block[1:] if bare and _says(lines[j])), here + 80)
-    above = next((indent(line) for line in reversed(lines[:index]) if _says(line)), 0)
-    below = next((indent(line) for line in lines[index + 1 :] if _says(line)), 0)
+    inner = next((indent(lines[j]) for j in block[1:] if bare and is_content(lines[j])), here + 80)
+    above = next((indent(line) for line in reversed(lines[:index]) if is_content(line)), 0)
+    below = next((indent(line) for line in lines[index + 1 :] if is_content(line)), 0)
     for depth in sorted(
         {*known} - {here}, key=lambda at: (at >= inner, at not in (above, below), abs(at - here), at if bare else -at)
     ):
-        much = abs(depth - here)
         way = "out" if depth > here else "in"
-        message = f"this line stands too far {way}: it begins in column {here + 1}, what is beside it in {depth + 1}"
-        blanks = "a blank" if much == 1 else f"{much} blanks"
-        hint = f"indent it by {blanks} more" if depth > here else f"take {blanks} away before it"
+        message = f"this line is too far {way}: it begins in column {here + 1}, the lines beside it in {depth + 1}"
         for part in ([index], block) if depth < inner else (block,):
-            meant = {j: _shifted(lines[j], depth - here) for j in part}
+            hint = move_hint(lines, part, depth - here)
+            meant = {j: shifted(lines[j], depth - here) for j in part}
             yield Slip(index + 1, 1, max(here, 1), message, hint, meant, only_whole=True)
 
 
-def _shifted(line: str, much: int) -> str:
+def shifted(line: str, much: int) -> str:
+    """The line with that many more spaces before it, or fewer if the number is negative."""
     if not line.strip():
         return line
     return " " * much + line if much > 0 else line[min(-much, indent(line)) :]

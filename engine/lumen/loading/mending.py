@@ -5,7 +5,7 @@ may have slipped is looked for in the lines before, and each is tried: what make
 mended text has as many lines as it had.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 
 import yaml
@@ -18,8 +18,11 @@ from lumen.loading.line_marks import closers, marks_of
 from lumen.loading.slips import Slip, brackets, colons, flows, not_closed, quotes, signs
 from lumen.loading.yaml_composer import shielded
 
-MAX_MENDS = 60
+MAX_MENDS = 120
 """Changes that are tried."""
+
+MAX_JUDGED = 12
+"""Changes that make a file YAML and are compared by what its schema refuses after them."""
 
 MAX_CHARACTERS = 200_000
 """Of a text in which it is looked for."""
@@ -37,13 +40,20 @@ QUOTED_LINES_BACK = 400
 """Lines before it where a quote or a bracket may have been opened."""
 
 
-def mistake(text: str, row: int, failed: int) -> tuple[Slip, str] | None:
+def mistake(
+    text: str, row: int, failed: int, misfits: Callable[[str], int | None] | None = None
+) -> tuple[Slip, str] | None:
     """What slipped at or before the line `row`, and the text as it was meant; None where nothing lets a reader get
     further than to the line `failed` (both count from 0).
+
+    `misfits` counts what the file's schema refuses in a text. Of several changes that make the file YAML, the one with
+    the fewest misfits was the mistake.
     """
     if len(text) > MAX_CHARACTERS:
         return None
     lines, best, reached = lines_of(text), None, failed
+    whole: tuple[Slip, str] | None = None
+    fewest, judged = 0, 0
     at, left = min(row, len(lines) - 1), MAX_READ
     tried: set[tuple[tuple[int, str], ...]] = set()
     for slip in islice(chain(_candidates(lines, at), depths(lines, at)), MAX_MENDS):
@@ -57,10 +67,18 @@ def mistake(text: str, row: int, failed: int) -> tuple[Slip, str] | None:
         mended = "\n".join(slip.meant.get(i, line) for i, line in enumerate(lines))
         stop = failure(mended)
         if stop is None:
-            return slip, mended
+            wrong = misfits(mended) if misfits else 0
+            if wrong == 0:
+                return slip, mended
+            judged += 1
+            if wrong is not None and (whole is None or wrong < fewest):
+                whole, fewest = (slip, mended), wrong
+            if judged >= MAX_JUDGED:
+                break
+            continue
         if stop > reached and not slip.only_whole:
             best, reached = (slip, mended), stop
-    return best
+    return whole or best
 
 
 def failure(text: str) -> int | None:

@@ -59,6 +59,24 @@ _KINDS: Mapping[str, _Kind] = {
 }
 
 
+def kind_of_file(file: str) -> str:
+    """The kind of file that belongs at that path of a project; empty for any other file."""
+    path = PurePosixPath(file)
+    by_name = {"lumen.yaml": "lumen", "fleet.yaml": "fleet"}.get(file)
+    folder = (
+        "motions"
+        if path.parent.parent == PurePosixPath("motions")
+        and path.parent.name
+        not in (
+            "life",
+            "gestures",
+        )
+        else str(path.parent)
+    )
+    by_folder = next((kind for kind, known in _KINDS.items() if known.folder == f"{folder}/"), "")
+    return by_name or (by_folder if path.suffix == ".yaml" else "")
+
+
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
     """Whether the data is that of another kind of file, and has nothing that makes one of this kind; it is reported."""
     own = _KINDS[kind]

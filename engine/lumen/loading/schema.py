@@ -3,7 +3,7 @@
 import json
 import re
 from collections.abc import Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from lumen.errors import LumenError
@@ -13,9 +13,11 @@ from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.loading.document import TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.misindented import KeyNames, key_names, misindented
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
+from lumen.loading.yaml_reader import read_text
 
 FILE_KINDS = (
     "lumen",
@@ -50,17 +52,20 @@ def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
     names stand in what was taken out.
     """
     said: set[NodePath] = set()
-    for _ in range(MAX_PRUNING_ROUNDS):
+    moved: Mapping[Complaint, str] = {}
+    for turn in range(MAX_PRUNING_ROUNDS):
         try:
             if _schema(kind).fits(report.document.data):
                 return report.document.data
             if misplaced(report.document.data, kind, report):
                 return None
             found = list(_complaints(_schema(kind), report.document.data))
+            if not turn:
+                moved = misindented(report.document, found, _key_names(kind), partial(_judged, kind))
         except RecursionError:
             report(TOO_LARGE, (), "the file is nested too deeply to be read", hint="use fewer levels")
             return None
-        doomed = _judge(found, report, said)
+        doomed = _judge(found, report, said, moved, _key_names(kind))
         if () in doomed:
             return None
         if not doomed:
@@ -68,6 +73,15 @@ def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
         prune(report, doomed)
         report.pruned |= {(*c.about, c.suggestion) for c in found if c.suggestion}
     return None
+
+
+def misfits(kind: str, text: str) -> int | None:
+    """The number of findings of the schema of that kind in a text that is only tried; None if it is not YAML."""
+    try:
+        found = _judged(kind, text)
+    except RecursionError:
+        return None
+    return None if found is None else len(found)
 
 
 def load_schema(kind: str) -> Any:
@@ -106,7 +120,20 @@ def _complaints(schema: JsonSchema, data: Any) -> Iterator[Complaint]:
         yield from complaints(error, schema.schema)
 
 
-def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) -> set[NodePath]:
+@cache
+def _key_names(kind: str) -> KeyNames:
+    return key_names(_schema(kind).schema)
+
+
+def _judged(kind: str, text: str) -> list[Complaint] | None:
+    """What the schema of that kind refuses in a text; None if it is not YAML."""
+    document = read_text(text)
+    return list(_complaints(_schema(kind), document.data)) if document else None
+
+
+def _judge(
+    found: list[Complaint], report: DocumentReport, said: set[NodePath], moved: Mapping[Complaint, str], names: KeyNames
+) -> set[NodePath]:
     """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
     suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
     doomed = {c.doomed for c in found if c.doomed is not None}
@@ -114,8 +141,16 @@ def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) 
     spoken: set[NodePath] = set()
     for complaint in found:
         about = complaint.about
+        if complaint in moved:
+            if hint := moved[complaint]:
+                beside = (*about[:-1], complaint.missing)
+                path, key = (beside, True) if beside in report.document.spans else (complaint.path, complaint.key)
+                report(complaint.code, path, complaint.message, hint=hint, key=key)
+                report.lost |= {str(key) for key in about[-1:] if key in names.declared}  # it is no event or state
+            spoken.add(complaint.path)
+            continue
         if complaint.missing and (beside := (*about[:-1], complaint.missing)) in outdented:
-            message = f"{complaint.message}, which stands beside it"
+            message = f"{complaint.message}, which is beside it"
             report(complaint.code, beside, message, hint=f"indent `{complaint.missing}` further", key=True)
             continue
         if any(path[: len(beside)] == beside for beside in outdented for path in (about, complaint.path)):
@@ -129,7 +164,7 @@ def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) 
         if not (follows or lost or meant or tagged or complaint.path in spoken or complaint.path in said):
             hint = complaint.hint
             if complaint.path in emptied.values():
-                hint = f"indent what follows it further: {hint}"
+                hint = "indent the lines that belong under it further than its key"
             elif complaint.code == WRONG_TYPE and (comment := _comment(report, complaint.path)):
                 hint = f'`#` begins a comment: put quotes around it: "{comment}"'
             cause = _cause(complaint, report)

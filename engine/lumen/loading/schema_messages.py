@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.interpreters.json_schema import occurs
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.language.durations import duration_hint
+from lumen.language.durations import duration_hint, meant_duration
 from lumen.language.lookalikes import other_sign, typed
 from lumen.loading.bracketed_texts import slot_signs
 from lumen.loading.units import seconds
@@ -61,11 +61,11 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
     match error.validator:
         case "type":
             wanted = [bound] if isinstance(bound, str) else bound
+            right = _transition(value, wanted, path) or _instead(value, wanted, error.schema)
+            hint = right or like(path, error.schema, wanted) or hint
             if value is None:
                 return f"{name} is empty, it should be {_either(wanted)}", hint
-            return f"{name} should be {_either(wanted)}, not {kind(value)}", _instead(
-                value, wanted, error.schema
-            ) or hint
+            return f"{name} should be {_either(wanted)}, not {kind(value)}", hint
         case "enum" | "const":
             choices = bound if error.validator == "enum" else [bound]
             allowed = [_short(v) for v in choices if v is not None]
@@ -78,6 +78,10 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
             if occurs(bound, plain := typed(value)) and plain != value:
                 return f"{name} can't be `{_short(value)}`", f"write `{plain}`: {other_sign(value)}"
             return f"{name} can't be `{_short(value)}`", small
+        case "minimum" | "maximum" if {"minimum", "maximum"} <= error.schema.keys():
+            low, high = error.schema["minimum"], error.schema["maximum"]
+            way = "least" if error.validator == "minimum" else "most"
+            return f"{name} is {value:g}, it should be at {way} {bound:g}", f"write a number from {low:g} to {high:g}"
         case "minimum":
             return f"{name} is {value:g}, it should be at least {bound:g}", hint
         case "maximum":
@@ -110,6 +114,59 @@ def describe(schema: Any) -> str:
     examples = [e for e in given if not isinstance(e, dict | list)] or [_flow(e) for e in given if len(_flow(e)) <= 40]
     shown = ", ".join(f"`{e}`" for e in examples[:3])
     return f"{text}, as in {shown}" if text and shown else text or (f"as in {shown}" if shown else "")
+
+
+def like(path: NodePath, schema: Any, wanted: Iterable[str] = ()) -> str:
+    """The key at the end of a path with an example of its schema that has one of the wanted types; "" without one."""
+    if not isinstance(schema, dict) or not path or not isinstance(path[-1], str):
+        return ""
+    types = {*wanted} or {*_JSON_TYPES.values()}
+    fitting = (e for e in schema.get("examples", ()) if _JSON_TYPES.get(type(e)) in types and len(_flow(e)) <= 40)
+    example = next(fitting, None)
+    return f"write it as in `{path[-1]}: {_flow(example)}`" if example is not None else ""
+
+
+_JSON_TYPES = {dict: "object", list: "array", str: "string", int: "number", float: "number", bool: "boolean"}
+
+
+def _transition(value: Any, wanted: Collection[str], path: NodePath) -> str:
+    """What to write in place of a transition that lacks its state, or its time or event."""
+    key, holder = path[-1] if path else "", path[-2] if len(path) > 1 else ""
+    if value is None and (key in _MOMENTS or holder in _WAITED):
+        moment = _MOMENTS[key] if key in _MOMENTS else _moment(holder, str(key))
+        return f"write `{_yaml(str(key))}: STATE`, where STATE is the state to enter {moment}"
+    if key not in _WAITED or "object" not in wanted:
+        return ""
+    if isinstance(value, list) and len(value) == 2 and all(isinstance(v, str) for v in value):
+        return f"write `{key}: {{{_yaml(value[0])}: {value[1]}}}`"
+    if not isinstance(value, str | int | float) or isinstance(value, bool):
+        return ""
+    text = str(value)
+    if key == "after" and not (text := meant_duration(value)):
+        return f"write `after: {{TIME: {_short(value)}}}`, where TIME is how long to wait, such as `30s`"
+    if key == "at" and not re.match(r"\d{1,2}:\d\d|.* \d{1,2}:\d\d", text):
+        return f"write `at: {{TIME: {_short(value)}}}`, where TIME is a time of day, such as `18:00`"
+    return f"write `{key}: {{{_yaml(text)}: STATE}}`, where STATE is the state to enter {_moment(key, text)}"
+
+
+_MOMENTS: Mapping[str | int, str] = {
+    "onDone": "when this one is done",
+    "onError": "after an error",
+    "always": "at once",
+}
+_WAITED = ("after", "at", "on")
+
+
+def _moment(key: str | int, text: str) -> str:
+    """When a row of `after`, `at` or `on` enters its state, as in "after 30 s"."""
+    if key == "after":
+        return f"after {re.sub(r'(?<=[0-9])(?=[a-z])', ' ', text)}"
+    return f"at {text}" if key == "at" else f"on the event `{text}`"
+
+
+def _yaml(key: str) -> str:
+    """A key as it is written in YAML: a time of day is in quotes."""
+    return f'"{key}"' if ":" in key or " " in key else key
 
 
 def _flow(value: Any) -> str:

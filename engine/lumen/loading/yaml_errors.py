@@ -1,7 +1,8 @@
 """What to say of a file that is not YAML: where it went wrong, in a student's words."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import yaml
@@ -27,6 +28,12 @@ _HINTS = {
 _SMALLER = "split it, or use fewer levels and aliases"
 _CONFLICT = re.compile(r"(<{7}|={7}|>{7})(?= |$)")
 _NOT_ALLOWED = yaml.reader.Reader.NON_PRINTABLE
+TABBED = re.compile(r"[ \t]*\t[ \t]*")
+"""The beginning of a line that is indented with a tab."""
+
+TAB_WIDTHS = (2, 4, 8)
+"""How many spaces a tab may have been meant for."""
+
 _MOST_NULS = 0.2
 """The share of zero bytes above which a file is read as UTF-16 without a mark at its beginning."""
 
@@ -99,13 +106,13 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if "\t" in (before := source[: mark.column + 1]) and not before.strip():
         column = before.index("\t") + 1
         place = Place(file, failed + 1, column, failed + 1, column + 1)
-        return TAB.at(place, "a line is indented with a tab", "YAML is indented with spaces: use two")
+        return TAB.at(place, "this line is indented with a tab, YAML allows only spaces", _spaces(file, lines, failed))
     if "quoted scalar" in context or _begins_late(error, lines):
         mark = error.context_mark  # type: ignore[attr-defined]
     from lumen.loading.mending import mistake  # only where something slipped
     from lumen.loading.slips import NOT_CLOSED
 
-    if slipped := mistake(text, mark.line, failed):
+    if slipped := mistake(text, mark.line, failed, _misfits(file)):
         slip, _ = slipped
         place = Place(file, slip.line, slip.column, slip.line, slip.column + slip.length)
         return YAML_SYNTAX.at(place, slip.message, slip.hint)
@@ -116,6 +123,28 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     detail = f"{problem} {context}" if context else problem
     hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
     return YAML_SYNTAX.at(place, f"this is not YAML: {detail}", hint)
+
+
+def _misfits(file: str) -> Callable[[str], int | None] | None:
+    """Counts what the schema of that file refuses in a text; None for a file without a schema."""
+    from lumen.loading.misplaced import kind_of_file  # these import what imports this module
+    from lumen.loading.schema import misfits
+
+    kind = kind_of_file(file)
+    return partial(misfits, kind) if kind else None
+
+
+def _spaces(file: str, lines: Sequence[str], row: int) -> str:
+    """How many spaces to write in place of the tabs in that line: as many as `lint --fix` writes."""
+    misfits, before = _misfits(file), TABBED.match(lines[row])
+    assert before
+    for width in TAB_WIDTHS:
+        starts = (found.end() if (found := TABBED.match(line)) else 0 for line in lines)
+        mended = (line[:n].replace("\t", " " * width) + line[n:] for n, line in zip(starts, lines, strict=True))
+        if misfits and misfits("\n".join(mended)) == 0:
+            spaces = len(before[0].replace("\t", " " * width))
+            return f"indent it with {spaces} spaces: `lumen lint --fix` writes {width} spaces for each tab"
+    return "delete the tab, and indent with spaces as in the lines around it"
 
 
 def _unknown_alias(file: str, error: UnknownAliasError) -> Diagnostic:

@@ -68,6 +68,19 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
     return document, reader.diagnostics
 
 
+def read_text(text: str) -> Document | None:
+    """The document in a text that is only tried, None if anything is wrong with it as YAML; nothing is kept."""
+    try:
+        node = compose(text)
+    except (yaml.YAMLError, TooLargeError):
+        return None
+    if node is None:
+        return None
+    reader = _Reader("", text)
+    data = reader.read(node, (), None, 0)
+    return None if reader.diagnostics else Document("", data, reader.spans, text)
+
+
 def _block(
     file: str, text: str, node: yaml.Node, path: NodePath, key: yaml.Node
 ) -> tuple[Any, dict[NodePath, NodeSpan]] | None:

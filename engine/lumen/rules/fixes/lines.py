@@ -3,21 +3,21 @@
 import re
 
 from lumen.language.diagnostics import Diagnostic, Place
+from lumen.loading.yaml_errors import TAB_WIDTHS, TABBED
 from lumen.rules.fixes.edits import Edit, FileText, Fix
 
-_INDENT = re.compile(r"^[ \t]*\t[ \t]*")
 _COMMENT = re.compile(r"[ \t]*#[ \t]*lumen:[ \t]*ignore.*")
 
 
 def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """Tabs in the indentation of the file as two, four or eight spaces each."""
-    lines = [(n, m) for n, line in enumerate(source.lines, 1) if (m := _INDENT.match(line))]
+    lines = [(n, m) for n, line in enumerate(source.lines, 1) if (m := TABBED.match(line))]
     return [
         Fix(
             f"write {wide} spaces for each tab",
             tuple(Edit(Place(source.file, n, 1, n, m.end() + 1), m[0].replace("\t", " " * wide)) for n, m in lines),
         )
-        for wide in (2, 4, 8)
+        for wide in TAB_WIDTHS
     ]
 
 

@@ -1,0 +1,247 @@
+"""Blocks at the wrong depth in a file that is YAML: the move after which the schema accepts more of the file.
+
+A key one level too far out is a key of something else, where it may mean nothing, or another thing: `onDone` among
+the states is a state. The schema's own words for that would mislead. So blocks near a finding are moved, and if all
+that goes wrong after a move also went wrong before it, and less goes wrong, the indentation was the mistake.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from lumen.language.diagnostics import NodePath
+from lumen.language.text_lines import lines_of
+from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint
+from lumen.loading.document import Document
+from lumen.loading.indentation import holder, indent, is_content, move_hint, shifted
+
+MAX_TRIES = 24
+"""Moves that are tried in one file."""
+
+MAX_CHARACTERS = 400_000
+"""Characters that are read in all to try moves."""
+
+MAX_LEVELS = 3
+"""Levels by which a block may be too far in, or out."""
+
+_CODES = frozenset((MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE))
+_BEGINNING = re.compile(r"( *)(- +)?(?:([^\s\"'#\[\]{},:][^\s:]*):(?= |$))?")
+
+Judge = Callable[[str], list[Complaint] | None]
+"""All complaints about the text of a file; None if it is not YAML."""
+
+
+_What = tuple[str, str, str]
+
+
+class _Move(NamedTuple):
+    """The lines of these indices, and by how many spaces they move in (or out, if negative)."""
+
+    rows: tuple[int, ...]
+    shift: int
+
+
+class KeyNames(NamedTuple):
+    """All names that a schema declares, and the keys whose children have names of the author's own."""
+
+    declared: frozenset[str]
+    open: frozenset[str]
+
+
+def key_names(schema: Mapping[str, Any]) -> KeyNames:
+    """Collect the names of a schema's keys."""
+    declared, free, waiting = set[str](), set[str](), [schema]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, dict):
+            properties = item.get("properties")
+            for name, inner in properties.items() if isinstance(properties, dict) else ():
+                declared.add(name)
+                if _is_open(inner, schema):
+                    free.add(name)
+            waiting += item.values()
+        elif isinstance(item, list):
+            waiting += item
+    return KeyNames(frozenset(declared), frozenset(free))
+
+
+def _is_open(schema: Any, root: Mapping[str, Any]) -> bool:
+    for _ in range(5):
+        if not isinstance(schema, dict) or "$ref" not in schema:
+            break
+        schema = root.get("$defs", {}).get(schema["$ref"].rpartition("/")[2])
+    named = ("additionalProperties", "patternProperties", "propertyNames")
+    return (
+        isinstance(schema, dict) and "properties" not in schema and any(isinstance(schema.get(k), dict) for k in named)
+    )
+
+
+def misindented(
+    document: Document, found: Sequence[Complaint], names: KeyNames, judge: Judge
+) -> Mapping[Complaint, str]:
+    """The complaints that come from a wrong depth: the one to report has the hint, those that follow from it none."""
+    lines, before = lines_of(document.text), Counter(map(_what, found))
+    if not document.spans or len(document.text) > MAX_CHARACTERS:
+        return {}
+    complained = {row for complaint in found for row in _rows(complaint, document, lines)}
+    solved: dict[Complaint, str] = {}
+    tried: set[_Move] = set()
+    for complaint in found:
+        if complaint in solved or complaint.suggestion or complaint.code not in _CODES:
+            continue
+        best, gone = None, Counter[_What]()
+        for move in _moves(complaint, document, lines, names, complained):
+            if len(tried) >= MAX_TRIES or len(tried) * len(document.text) > MAX_CHARACTERS:
+                break
+            if move in tried:
+                continue
+            tried.add(move)
+            mended = [shifted(line, move.shift) if i in move.rows else line for i, line in enumerate(lines)]
+            after = judge("\n".join(mended))
+            if after is None or (left := Counter(map(_what, after))) - before:
+                continue
+            less = before - left
+            if less[_what(complaint)] and less.total() > gone.total():
+                best, gone = move, less
+            if not left:
+                break
+        those = [c for c in found if c not in solved and gone[_what(c)] > 0]
+        if best and those:
+            solved |= dict.fromkeys(those, "")
+            solved[_first(those, best, document, lines)] = move_hint(lines, best.rows, best.shift)
+    return solved
+
+
+def _first(those: Sequence[Complaint], move: _Move, document: Document, lines: Sequence[str]) -> Complaint:
+    """The complaint to report of those that a move solves: about an empty key, else about the line that moves."""
+    empty = (c for c in those if _is_empty(c, document))
+    missing = (c for c in those if c.missing)
+    near = (c for c in those if move.rows[0] in _rows(c, document, lines)[:1])
+    return next(empty, None) or next(missing, None) or next(near, those[0])
+
+
+def _what(complaint: Complaint) -> _What:
+    """The complaint without the place where it is in the file, which a move changes."""
+    return complaint.code, complaint.message, complaint.missing
+
+
+def _is_empty(complaint: Complaint, document: Document) -> bool:
+    """Whether it is about a value that is missing, since its lines are too far out."""
+    if complaint.code != WRONG_TYPE or complaint.path not in document.spans:
+        return False
+    value = document.spans[complaint.path].value
+    return (value.line, value.column) == (value.end_line, value.end_column)
+
+
+def _rows(complaint: Complaint, document: Document, lines: Sequence[str]) -> list[int]:
+    """The lines in which the keys begin that it may be about, the innermost first."""
+    paths: list[NodePath] = [
+        complaint.path[:n] for n in range(len(complaint.path), max(len(complaint.path) - 3, 0), -1)
+    ]
+    if complaint.missing:
+        paths.insert(0, (*complaint.about[:-1], complaint.missing))
+    rows = []
+    for path in paths:
+        place = (span := document.spans.get(path)) and (span.key or span.value)
+        if place and not lines[place.line - 1][: place.column - 1].strip(" -"):
+            rows.append(place.line - 1)
+    return list(dict.fromkeys(rows))
+
+
+def _moves(
+    complaint: Complaint, document: Document, lines: Sequence[str], names: KeyNames, complained: set[int]
+) -> Iterator[_Move]:
+    """The moves that may solve a complaint, the likeliest first."""
+    rows = _rows(complaint, document, lines)
+    empty = bool(rows) and _is_empty(complaint, document)
+    if empty:
+        below = next((i for i in range(rows[0] + 1, len(lines)) if is_content(lines[i])), None)
+        if below is not None and indent(lines[below]) <= indent(lines[rows[0]]):
+            rows.insert(0, below)
+    elif rows:
+        above = next((i for i in range(rows[0] - 1, -1, -1) if is_content(lines[i])), None)
+        if above is not None and lines[above].rstrip().endswith(":") and indent(lines[above]) >= indent(lines[rows[0]]):
+            rows.append(above)
+    for row in rows:
+        block = _block(lines, row)
+        group = _group(lines, row, complained)
+        cut = next((i for i in block[1:] if i in complained and is_content(lines[i])), row + 1)
+        for depth in _depths(lines, row):
+            if not _is_sensible(lines, row, depth, names, empty, complaint.path[-1:]):
+                continue
+            for part in dict.fromkeys((group, block, tuple(range(row, cut)), (row,))):
+                yield _Move(part, depth - indent(lines[row]))
+
+
+def _block(lines: Sequence[str], row: int) -> tuple[int, ...]:
+    """That line and the lines below it that are further in."""
+    end = row + 1
+    for i in range(row + 1, len(lines)):
+        if is_content(lines[i]):
+            if indent(lines[i]) <= indent(lines[row]) and not (
+                _starts(lines[row])[1] == 0 and _is_item_of(lines, row, i)
+            ):
+                break
+            end = i + 1
+    return tuple(range(row, end))
+
+
+def _is_item_of(lines: Sequence[str], row: int, i: int) -> bool:
+    """Whether the line `i` is an item of the list of a key in the same column."""
+    return indent(lines[i]) == indent(lines[row]) and _starts(lines[i])[1] > 0 and lines[row].rstrip().endswith(":")
+
+
+def _group(lines: Sequence[str], row: int, complained: set[int]) -> tuple[int, ...]:
+    """The block of that line and those after it in the same column that are complained of as well."""
+    rows = _block(lines, row)
+    while True:
+        following = next((i for i in range(rows[-1] + 1, len(lines)) if is_content(lines[i])), None)
+        if following not in complained or following is None or indent(lines[following]) != indent(lines[row]):
+            return rows
+        rows = tuple(range(row, _block(lines, following)[-1] + 1))
+
+
+def _depths(lines: Sequence[str], row: int) -> list[int]:
+    """The depths at which that line might have been meant to be, the nearest first."""
+    here, inner, outer = indent(lines[row]), set[int](), set[int]()
+    lowest = here
+    for i in range(row - 1, -1, -1):
+        if not is_content(lines[i]):
+            continue
+        depth, item = _starts(lines[i])
+        bare = lines[i].rstrip().endswith(":") and depth + item <= here
+        found = {depth, depth + item} | ({depth + item + 2} if bare else set())
+        if depth < lowest:
+            outer |= {d for d in found if d < here}
+            inner |= {d for d in found if d > here and lowest == here}
+            lowest = depth
+        elif lowest == here:
+            inner |= {d for d in found if d > here}
+        if lowest == 0 and depth == 0 and here > 0:
+            break
+    return [*sorted(inner)[:MAX_LEVELS], *sorted(outer, reverse=True)[:MAX_LEVELS]]
+
+
+def _starts(line: str) -> tuple[int, int]:
+    """How many spaces a line begins with, and how wide the hyphen of its item is, with its spaces."""
+    found = _BEGINNING.match(line)
+    assert found
+    return len(found[1]), len(found[2] or "")
+
+
+def _is_sensible(lines: Sequence[str], row: int, depth: int, names: KeyNames, empty: bool, about: NodePath) -> bool:
+    """Whether the schema's keys stay among each other, and the author's own names too.
+
+    `about` is the key of the complaint: if it is `empty`, the names that belong under it may be any.
+    """
+    found = _BEGINNING.match(lines[row])
+    assert found
+    if found[2] or not found[3]:
+        return True
+    key, before, after = found[3], holder(lines, row, indent(lines[row])), holder(lines, row, depth)
+    if empty and about == (after,) != (key,):
+        return True
+    if key in names.declared:
+        return after not in names.open
+    return after in names.open and (empty or before not in names.open or before == after)
