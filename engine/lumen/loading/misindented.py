@@ -16,7 +16,7 @@ from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_K
 from lumen.loading.document import Document
 from lumen.loading.indentation import holder, indent, is_content, move_hint, shifted
 
-MAX_TRIES = 24
+MAX_TRIES = 12
 """Moves that are tried in one file."""
 
 MAX_CHARACTERS = 400_000
