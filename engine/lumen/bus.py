@@ -38,5 +38,5 @@ def _open(url: str, sender: str) -> Bus:
 
         return AmqpBus(url, sender)
     known = "memory://, memory://NAME, amqp://HOST or amqps://HOST"
-    what = f"`{scheme}://` is no bus" if separator else "the address of a bus begins with `memory://` or `amqp://`"
+    what = f"`{scheme}://` is not a bus" if separator else "the address of a bus begins with `memory://` or `amqp://`"
     raise BusAddressError(f"{what}: write {known}")

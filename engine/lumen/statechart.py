@@ -148,9 +148,9 @@ class Interpreter(Generic[C]):
     ) -> None:
         need(machine, machines.MachineDefinition, "what an interpreter runs", "a Machine")
         if clock is not None and not (callable(getattr(clock, "now", None)) and callable(getattr(clock, "wait", None))):
-            raise UsageError(f"a clock has `now` and `wait`, which {clock!r} has not")
+            raise UsageError(f"a clock needs `now` and `wait`, but {clock!r} does not have them")
         if not callable(observe):
-            raise UsageError(f"`observe` is called with each step, which {observe!r} can't be")
+            raise UsageError(f"`observe` must be a function, which {observe!r} is not")
         self.machine = machine
         kept: Any = VirtualClock() if clock is None else clock
         self.clock = kept
@@ -205,7 +205,7 @@ class Interpreter(Generic[C]):
         they had left at the snapshot; `restart` after their whole delay.
         """
         if timers not in ("deadline", "remaining", "restart"):
-            raise UsageError(f"timers can't be `{timers}`: write `deadline`, `remaining` or `restart`")
+            raise UsageError(f"`timers` can't be `{timers}`: write `deadline`, `remaining` or `restart`")
         need(machine, machines.MachineDefinition, "what an interpreter runs", "a Machine")
         thawed = deserialize(machine, snapshot)
         it = cls(machine, VirtualClock(thawed.at) if clock is None else clock, observe=observe)
@@ -216,7 +216,7 @@ class Interpreter(Generic[C]):
     def start(self) -> Step:
         """Enter the initial states. Raises UsageError if called twice, or if `input` does not fit."""
         if self._snapshot is not None:
-            raise UsageError("the interpreter has been started already")
+            raise UsageError("the interpreter is already started")
         self._options["input"] = plain(self._options["input"], "input")
         first = self._take(initial(self.machine, at=self.clock.now(), **self._options))
         self.wake()
@@ -300,7 +300,7 @@ class Interpreter(Generic[C]):
     @property
     def _now(self) -> Snapshot:
         if self._snapshot is None:
-            raise UsageError("start the interpreter first")
+            raise UsageError("the interpreter is not started: call `start` first")
         return self._snapshot
 
     def _take(self, taken: Step) -> Step:

@@ -314,7 +314,7 @@ def test_saved_files_say_who_is_told_from_now_on(hall: Hall, web: Callable[..., 
     report = shown.reloader.last
     assert report
     assert (report.verdict, report.restart) == ("applied", [])
-    assert [str(change) for change in report.changes] == ["who is told of troubles (`alerts`) changed"]
+    assert [str(change) for change in report.changes] == ["the recipients of alerts (`alerts`) changed"]
     shown.stop()
     hall.live(2)
     until(lambda: other.of("stopped"))

@@ -249,7 +249,7 @@ def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytes
         ("amqp://127.0.0.1:1/", "no broker listens at 127.0.0.1:1"),
         ("amqp://guest:secret@127.0.0.1:{port}/", "refuses user `guest`"),
         ("amqp://guest:guest@127.0.0.1:{port}/nowhere", "virtual host `nowhere`"),
-        ("redis://h/", "`redis://` is no bus"),
+        ("redis://h/", "`redis://` is not a bus"),
     ],
 )
 @pytest.mark.parametrize("verb", [["doctor"], ["topic", "list"], ["stop"]])

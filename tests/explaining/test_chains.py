@@ -117,7 +117,7 @@ def test_it_ends_at_a_person_a_file_or_the_start() -> None:
     play.take(entered_directly(play.machine, play.now, "c", goto))
     assert play.why("c") == ["person: Budi let it enter c (lumen goto)"]
     play.take(Step(None, ("c",), ("a",), (), play.now._replace(configuration=frozenset("a"))))
-    assert play.why("a") == ["file: the files were saved, and taken over while it ran"]
+    assert play.why("a") == ["file: the files were saved and reloaded while it ran"]
 
 
 def test_a_message_says_its_key_its_sender_and_its_id() -> None:
@@ -191,7 +191,7 @@ def test_a_do_that_has_not_come_so_far() -> None:
     play = Play({"initial": "a", "states": {"a": {"do": [{"say": "One"}, {"say": "Two"}, {"say": "Three"}]}}})
     near, far = why_not(play.steps, "two").reasons, why_not(play.steps, "three").reasons
     assert near[0].change == {"event": "done.command.d1"}
-    assert far[0].note == "more has to be done before it"
+    assert far[0].note == "other actions come before it"
     assert "at its 1st of 3: it waits for d1" in far[0].text
 
 

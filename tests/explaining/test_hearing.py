@@ -93,8 +93,8 @@ def test_what_becomes_of_each_row(text: str, fates: dict[str, str]) -> None:
         ("dance", "Well. Please don't dance!", "“dance” is negated in “Please don't dance”", 1, {}),
         ("not dance", "dance", "“dance” is not negated in “dance”", 1, {}),
         ("dance", "Why do you dance?", "“dance” is part of the question “Why do you dance”", 1, {}),
-        ("asked dance", "dance", "“dance” is part of no question in “dance”", 1, {}),
-        ("sing|refusal", "there is no lift", "“no” counts alone only, and is part of “there is no lift”", 1, {}),
+        ("asked dance", "dance", "“dance” is not part of a question in “dance”", 1, {}),
+        ("sing|refusal", "there is no lift", "“no” counts only as a whole clause, but is part of “there is no lift”", 1, {}),
         ("sing|refusal", "well", "none of its phrases is in “well”", 0, {}),
         ("named", "my name is Ani", "“my name is Ani” in “my name is Ani”", 3, {
             "heard.phrase": "my name is Ani", "heard.name": "Ani",
@@ -167,7 +167,7 @@ def _leads(play: Play, change: Any, number: int, state: str) -> bool | None:
          "offer → sorry, hears not dance; heard came, but “Dance” is not negated in “Dance”",
          {"event.data.result": "no dance"}),
         ("Dance", "asked", "unheard",
-         "offer → asked, hears asked dance; heard came, but “Dance” is part of no question in “Dance”",
+         "offer → asked, hears asked dance; heard came, but “Dance” is not part of a question in “Dance”",
          {"event.data.result": "who dance"}),
         ("Sing for me", "answered", "unheard",
          "offer → answered, hears faq; heard came, but none of its phrases is in “Sing for me”",
@@ -227,7 +227,7 @@ def test_a_guard_on_what_was_caught_depends_on_what_is_said() -> None:
     play = Play(chart({"named": {"target": "met", "guard": "size(heard.name) > 900"}}))
     play.happen("heard", {"result": "my name is Budi"})
     assert refused(play, "met")["note"] == (
-        "no other value of heard.name was found with which it would have been taken"
+        "no other value of heard.name was found that would have selected it"
     )
 
 
@@ -272,9 +272,9 @@ def test_an_invoked_behaviour_that_listens_keeps_else_from_going() -> None:
     host = {"states": {"playing": {"invoke": {"behavior": "quiz"}, "hears": {"else": "lost"}}, "lost": {}}}
     play = Play(host, quiz=quiz)
     play.happen("heard", {"result": "hm"})
-    assert refused(play, "lost")["text"] == ("playing → lost, hears else; heard came, what runs within it listens, too")
+    assert refused(play, "lost")["text"] == ("playing → lost, hears else; heard came, a behaviour that it invokes also listens")
     line = IgnoredEvents().line(play.machine, play.steps[-1].step)
-    else_too = "hears else is false in playing (what runs within it listens, too)"
+    else_too = "hears else is false in playing (a behaviour that it invokes also listens)"
     assert line == f"“hm” while quiz/ask hears nothing of it, and {else_too}"
 
 

@@ -115,7 +115,7 @@ def test_what_only_else_took_was_not_understood(text: str, is_understood: bool) 
             "now sets `visitor` on `hears my_name`"
         ]),
         ({"dance": "dance", "sing": "sing"}, {"sing": "sing", "dance": "dance"}, [
-            "asks its rows of `hears` in another order"
+            "tries its rows of `hears` in another order"
         ]),
     ],
 )  # fmt: skip

@@ -26,8 +26,8 @@ def test_before_is_the_measure_that_it_is_compared_with(source: str, expected: s
     ("source", "offset", "said"),
     [
         ("fals > 0", 0, "there is no measure `fals`"),
-        ("falls > 0 || before", 13, "`before` stands for no measure here"),
-        ("falls + errors > before", 17, "`before` stands for no measure here"),
+        ("falls > 0 || before", 13, "`before` has no measure to refer to here"),
+        ("falls + errors > before", 17, "`before` has no measure to refer to here"),
         ("before.fals > 1", 0, "there is no measure `fals`"),
         ("falls >", 7, ""),
     ],

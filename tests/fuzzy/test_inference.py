@@ -153,7 +153,7 @@ def test_lock_previous_takes_the_value_handed_in() -> None:
 
 def test_without_a_default_silence_is_an_error() -> None:
     c = controller(rules=["if a is mid then c is small"])
-    with pytest.raises(LumenError, match="no rule for `c` fires at a = 0, b = 1: give it a default"):
+    with pytest.raises(LumenError, match="no rule for `c` fires at a = 0, b = 1: add a `default` to the output"):
         c.evaluate({"a": 0, "b": 1})
     with pytest.raises(LumenError, match="no rule for `c` fires at a = 11, b = 1"):
         c.evaluate_batch({"a": [5, 11], "b": [1, 1]})

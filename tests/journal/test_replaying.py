@@ -30,7 +30,7 @@ PATIENT = settings(
     phases=(Phase.reuse, Phase.generate),  # shrinking a run with files takes minutes
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
 )
-UNWRITTEN = "where the behaviour stood could not be written"
+UNWRITTEN = "the behaviour's state could not be written to the journal"
 MOVES = st.lists(st.sampled_from(["go", "go", "reload", "crash"]), min_size=1, max_size=4)
 
 

@@ -176,7 +176,7 @@ def test_somebody_who_is_forgotten_is_in_no_file_and_nothing_else_is_lost(disk: 
     assert not [entry for entry in entries if entry.redacted and getattr(entry, "digest", "")]
     again = Recorded(disk.folder, bundles={PROJECT.hash: PROJECT}).again()
     assert not [row for row in again if row.differs]
-    assert [row.unknown for row in again if row.unknown] == ["somebody who is forgotten was named"] * 2
+    assert [row.unknown for row in again if row.unknown] == ["an entry names a visitor whose data was deleted"] * 2
     assert again[-1].step is not None
 
 

@@ -206,7 +206,7 @@ def test_patience_ends(waving: Live) -> None:
 
 def test_what_needs_a_restart_is_named(live: Live) -> None:
     live.edit("stage: {x: [-0.4, 0.4]", "stage: {x: [-0.3, 0.4]", "lumen.yaml")
-    live.until_told("the saved files are good: the stage changed: active from the next start on")
+    live.until_told("the saved files are good: the stage changed: it takes effect at the next start")
     assert live.transcript.count("the stage changed") == 1
     assert live.status.bodies[-1]["restart"]
     assert live.show.loop.project.stage

@@ -55,7 +55,7 @@ def test_hints_say_what_an_after_and_a_beat_mean() -> None:
     greet = line_of(TOUR, "          greet:")
     here = next(line for line in sorted(found) if line > greet)
     assert SHIPPED.text(TOUR).split("\n")[here - 1].strip() == "after: {30s: goodbye}"
-    assert found[here].text == "24 s after its do"
+    assert found[here].text == "24 s after its `do`"
     assert "takes about 6.0 s" in found[here].more
     touched = found[line_of(TOUR, "      touched: {on: {released: free}, after: {2s: ")]
     assert touched.text == "after entering"

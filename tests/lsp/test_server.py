@@ -142,7 +142,7 @@ def test_lenses_hints_signatures_folds_links_highlights_and_symbols(client: Clie
     assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 2)
     whole = {"start": {"line": 0, "character": 0}, "end": {"line": 900, "character": 0}}
     hints = client.request("textDocument/inlayHint", textDocument=document, range=whole)
-    assert {"24 s after its do", "after entering"} <= {hint["label"] for hint in hints}
+    assert {"24 s after its `do`", "after entering"} <= {hint["label"] for hint in hints}
     asking = text.replace("guard: context.name_tries < 2", "guard: heard(event.data.result, 'english')", 1)
     client.change(TOUR, asking, 7)
     help = client.ask("signatureHelp", TOUR, *at(asking, "heard(event.data.result, 'engl|ish')"))

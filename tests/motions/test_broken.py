@@ -49,7 +49,7 @@ def test_what_the_schema_took_out_is_not_asked_for() -> None:
 
 
 def test_a_million_keyframes_are_refused_at_once() -> None:
-    with pytest.raises(ProjectError, match="1,000,000 keyframes are too many"):
+    with pytest.raises(ProjectError, match="1,000,000 keyframes are too many for one list"):
         Motion.from_dict({"keyframes": [{"at": "1s", "joints": {"HeadYaw": 0.1}}] * 1_000_000})
 
 

@@ -65,7 +65,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
                 "  show: {mqtt: {host: h, routes: {state: lamp/state}}}\n  memory: {here: false",
             )
         ],
-        ["what is said of the modules changed: active from the next start on", SHOW_CHANGED],
+        ["the settings of the modules changed: it takes effect at the next start", SHOW_CHANGED],
         Risk.RESTART,
     ),
     (
@@ -130,11 +130,11 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         ["fuzzy rule 2 of `head` changed: `if FaceXLoc is Zero then AngleX is Positive`"],
         Risk.MOTION,
     ),
-    ("tracking", [("fuzzy/head.yaml", "hold: 2s", "hold: 3s")], ["`head` tracks otherwise: `hold`"], Risk.MOTION),
+    ("tracking", [("fuzzy/head.yaml", "hold: 2s", "hold: 3s")], ["`head` tracks differently: `hold`"], Risk.MOTION),
     (
         "the stage",
         [("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]")],
-        ["the stage changed: active from the next start on"],
+        ["the stage changed: it takes effect at the next start"],
         Risk.RESTART,
     ),
     (
@@ -219,7 +219,7 @@ def test_a_revision_is_compared_and_every_configuration_told(
         out[:3] == [TOUR, "  state `talk.ask` removed (behavior)", "  `talk` begins in `talk.dance` now (behavior)"]
         or out
     )
-    assert "refused talk.ask: `talk.ask` is active and gone, and no `onReload` says where to go instead" in out
+    assert "refused talk.ask: `talk.ask` is active but gone, and no `onReload` names another state" in out
     assert "kept    idle" in out
     assert out[-1] == "3 configurations: 1 refused, 2 kept"
     tour.write_text(tour.read_text().replace("talk: {", "talk: {onReload: .dance, "))

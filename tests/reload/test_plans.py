@@ -100,7 +100,7 @@ def test_on_reload_says_where_to_go_after_the_old_exit_actions() -> None:
     assert active(plan) == {"talk", "talk.dance"}
     assert plan.leaving == (Log("asked"),)
     assert plan.entering == (Start("d1", Say("new")),)
-    assert plan.notes == ("`talk.ask` is gone: on to `talk.dance`",)
+    assert plan.notes == ("`talk.ask` is gone: the behaviour goes to `talk.dance`",)
 
 
 def test_an_on_reload_further_out_counts_where_none_is_nearer() -> None:
@@ -117,7 +117,7 @@ def test_what_a_state_does_is_waited_for_only_where_it_is_gone_or_changed() -> N
     assert isinstance(reload(DANCING, talk({"ask": ASK, "dance": {"do": [{"play": "x"}]}})), MigrationDelay)
     ask = {**ASK, "after": {"5s": "ask"}}
     gone = reload(DANCING, talk({"ask": ask}))
-    assert gone == MigrationDelay("`talk.dance` is gone, and is still doing something", "talk.dance")
+    assert gone == MigrationDelay("`talk.dance` is gone, but is still busy", "talk.dance")
     assert isinstance(reload(DANCING, talk({"ask": ask}), now=True), Refusal)
     plan = planned(DANCING, talk({"ask": ask}, onReload=".ask"), now=True)
     assert plan.leaving == (Cancel("d1"),)
@@ -204,7 +204,7 @@ def test_a_name_edited_twice_in_the_same_line_is_followed() -> None:
     [
         ({"visitor": "nobody", "tries": 0}, "Ada", ()),
         ({"visitor": None, "tries": 0}, "Ada", ()),
-        ({"visitor": 0, "tries": 0}, 0, ("`visitor` begins anew: it was a string and is a number now",)),
+        ({"visitor": 0, "tries": 0}, 0, ("`visitor` starts again with its first value: it was a string and is a number now",)),
         ({"tries": 0}, None, ("`visitor` is forgotten",)),
     ],
 )

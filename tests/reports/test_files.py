@@ -89,9 +89,9 @@ def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
         ("filter.yaml", ["6:42 expression-syntax | there are no filters: delete `| title`"]),
         (
             "homoglyph.yaml",
-            ["6:5 unknown-key | did you mean `onDone`? `о` is another letter than `o`: U+043E"],
+            ["6:5 unknown-key | did you mean `onDone`? `о` is a different letter from `o`: U+043E"],
         ),
-        ("other-minus.motion.yaml", ["2:32 wrong-type | write `-0.5`: `−` is another minus than `-`"]),
+        ("other-minus.motion.yaml", ["2:32 wrong-type | write `-0.5`: `−` is a different minus from `-`"]),
         ("at-iso.yaml", ["4:10 bad-time | write `2026-12-24 18:00`"]),
     ],
 )
@@ -215,10 +215,10 @@ def test_the_difference_between_look_alike_words_is_reported(content: bytes, exp
 @for_each(
     ("value", "expected"),
     [
-        ("０．５", "write `0.5`: `０` is another digit than `0`: U+FF10"),
+        ("０．５", "write `0.5`: `０` is a different digit from `0`: U+FF10"),
         ("–0.5", "write `-0.5`: `–` is another minus"),
         ("−0,5", "write a point: -0.5"),
-        ("٣", "write `3`: `٣` is another digit than `3`"),
+        ("٣", "write `3`: `٣` is a different digit from `3`"),
     ],
 )
 def test_a_number_with_look_alike_characters_is_corrected(value: str, expected: str) -> None:
@@ -263,7 +263,7 @@ def test_a_text_of_several_phrases_is_reported(phrases: str, hints: list[str]) -
         ("Hello, {name}", "not-filled-in | write `{{ context.NAME }}`; `context` has no `name`"),
         ("{% if context.visitor %}Hi{% endif %}", "not-filled-in | texts have no `{% … %}`"),
         ("{# a note #} Hi", "not-filled-in | texts have no `{# … #}`"),
-        ("Hello, {{{ context.visitor }}}!", "expression-syntax | write two on each side: `{{ context.visitor }}`"),
+        ("Hello, {{{ context.visitor }}}!", "expression-syntax | write two braces on each side: `{{ context.visitor }}`"),
         ("{{ context.visitor | length }}", "expression-syntax | there are no filters: write `size(context.visitor)`"),
         (
             "{{ context.visitor | default('you') }}",
@@ -516,7 +516,7 @@ def test_a_folder_elsewhere_shows_no_names(tmp_path: Path) -> None:
     (tmp_path / "secrets").mkdir()
     (tmp_path / "secrets" / "tops3cret.yaml.txt").write_text("a")
     (root / "fuzzy").symlink_to(tmp_path / "secrets")
-    hint = "put a folder of the project in its place: what lies elsewhere is not read"
+    hint = "replace it with a folder inside the project: Lumen reads nothing outside"
     assert findings(root) == [f"fuzzy:1 unreadable-file | {hint}"]
 
 
@@ -540,7 +540,7 @@ def test_a_folder_that_can_not_be_read_is_not_an_empty_one(
     (root / folder).mkdir(exist_ok=True)
     closed(monkeypatch, root / folder)
     told = findings(root)
-    assert f"{folder}:1 unreadable-file | put a folder there that can be read, or delete it" in told
+    assert f"{folder}:1 unreadable-file | make it a readable folder, or delete it" in told
     assert not [each for each in told if "missing" in each], told
     with pytest.raises(ProjectError, match="this can't be read: permission denied"):
         load(root)
@@ -613,7 +613,7 @@ def test_one_of_two_files_with_the_same_name_is_reported(tmp_path: Path) -> None
     if len(list((root / "motions").iterdir())) == 1:
         pytest.skip("this file system holds one file of that name")
     [told] = findings(root)
-    assert told.endswith("not-read | join them, or give one of them another name")
+    assert told.endswith("not-read | combine them, or rename one of them")
 
 
 def lumen(root: Path, *words: str, **settings: str) -> tuple[int, str]:

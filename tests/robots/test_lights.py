@@ -36,7 +36,7 @@ def test_what_is_wrong_comes_with_what_would_be_right() -> None:
     assert light_fault("eyes", "blue") == ""
     assert light_fault("eyes", "bleu") == "there is no colour `bleu`: did you mean `blue`?"
     assert light_fault("eye", "blue").startswith("there is no light `eye`: did you mean `eyes`?")
-    assert light_fault("eyes", "#12g") == "`#12g` is no colour: write its name, or # and six digits, as in `#12a0ff`"
+    assert light_fault("eyes", "#12g") == "`#12g` is not a colour: write a name, or # and six digits, as in `#12a0ff`"
 
 
 def test_both_robots_and_motions_have_the_same_groups_and_colours() -> None:

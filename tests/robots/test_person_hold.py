@@ -32,7 +32,7 @@ def test_what_moves_it_is_refused_and_the_rest_is_not(behavior: bool) -> None:
     assert [hold.admit(command, behavior=behavior) for command in MOVING] == [""] * len(MOVING)
     hold.stop("Ada")
     for command in MOVING:
-        assert hold.admit(command, behavior=behavior) == "Ada stopped the robot: hold its head, or say `lumen resume`"
+        assert hold.admit(command, behavior=behavior) == "Ada stopped the robot: hold its head, or run `lumen resume`"
     assert [hold.admit(command, behavior=behavior) for command in STILL] == [""] * len(STILL)
     hold.release("Bo")
     assert hold.admit(Wake(), behavior=behavior) == ""
@@ -59,7 +59,7 @@ def test_while_the_behaviour_lets_it_rest_only_the_behaviour_moves_it() -> None:
     assert hold.admit(Wake(), behavior=False) == ""
     hold.admit(Rest(), behavior=True)
     assert (
-        hold.admit(Wake(), behavior=False) == "the behaviour lets the robot rest: hold its head, or say `lumen resume`"
+        hold.admit(Wake(), behavior=False) == "the behaviour lets the robot rest: hold its head, or run `lumen resume`"
     )
     assert hold.admit(Wake(), behavior=True) == ""
     assert hold.admit(Wake(), behavior=False) == ""
@@ -109,7 +109,7 @@ def test_over_the_bus_it_is_stopped_asked_and_let_go_on() -> None:
     assert [command for _, command in stand.robot.started] == [Rest("Ada")]
     assert ask(stand, "avatar.NAO.stop", "stopped")["stopped_by"] == "Ada"
     refused = ask(stand, "avatar.NAO.command", "wakeUp")
-    assert refused == "command failed: Ada stopped the robot: hold its head, or say `lumen resume`"
+    assert refused == "command failed: Ada stopped the robot: hold its head, or run `lumen resume`"
     aim = {"type": "motion", "method": "setAngles", "parameter": {"jointNames": ["HeadYaw"], "angles": [0.1]}}
     stand.bus.publish("avatar.NAO.aim", aim)
     stand.live(0.04)

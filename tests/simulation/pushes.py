@@ -40,12 +40,12 @@ def standing(robot: SimulatedRobot) -> None:
 
 
 def walking(robot: SimulatedRobot) -> None:
-    """It walks on at 0.1 m/s."""
+    """It keeps walking at 0.1 m/s."""
     robot.start("it", Move(0.1, 0.0, 0.0))
 
 
 def walking_briskly(robot: SimulatedRobot) -> None:
-    """It walks on at 0.2 m/s, which takes the brisk pace."""
+    """It keeps walking at 0.2 m/s, which takes the brisk pace."""
     robot.start("it", Move(0.2, 0.0, 0.0))
 
 

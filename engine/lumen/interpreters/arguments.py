@@ -35,7 +35,7 @@ def need_number(value: Any, what: str, *, finite: bool = True) -> None:
     except (TypeError, ValueError, OverflowError):
         sound = False
     if not sound:
-        raise UsageError(f"{what} has to be a number, not {_shown(value)}")
+        raise UsageError(f"{what} must be a number, not {_shown(value)}")
 
 
 def need_numbers(values: Any, what: str) -> None:
@@ -49,7 +49,7 @@ def need_path(value: Any) -> Path:
     """The path of a file; raises UsageError where it is none."""
     need(value, (str, Path), "the path of a file", "a text or a Path")
     if "\0" in str(value):
-        raise UsageError("the path of a file has a character in it that no path has")
+        raise UsageError("the path of a file contains a character that is not allowed in paths")
     return Path(value)
 
 

@@ -36,23 +36,23 @@ def unescaped(url: str) -> str:
 def fault_of_broker(url: str) -> str:
     """The fault of an address that can't be a broker's, with the remedy; empty for a possible address."""
     if signs := unescaped(url):
-        return f"in a name or a password write {signs}, and behind the host %40 for `@`"
+        return f"write {signs}, and %40 for `@` after the host"
     try:
         parts = urlsplit(url)
         host = parts.hostname
     except ValueError:  # its text may hold the password
-        return "its host is none, or it holds a sign that no address may hold"
+        return "its host is not valid, or it contains a character that is not allowed in an address"
     if not host:
-        return "there is no host in it"
+        return "it has no host"
     try:
         parts.port  # noqa: B018  it raises if the port is not valid
     except ValueError:
-        return "its port is no number from 0 to 65535"
+        return "its port is not a number from 0 to 65535"
     if parts.fragment:
         return "write %23 for `#`"
     segment = parts.path[1:]
     if "/" in segment.removesuffix("/") or segment == "/":
         meant, bare = quote(unquote(segment), safe=""), segment.strip("/")
         other = f" (or /{bare})" if bare and "/" not in bare else ""
-        return f"a virtual host is one segment, its slashes are %2F: write /{meant}{other} for /{segment}"
+        return f"a virtual host is one segment, with %2F for each slash: write /{meant}{other} for /{segment}"
     return ""

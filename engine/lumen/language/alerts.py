@@ -9,13 +9,13 @@ from lumen.language.diagnostics import NodePath
 
 KINDS: Mapping[str, str] = {
     "fallen": "the robot fell and does not get up",
-    "stopped": "somebody stopped the robot",
+    "stopped": "a person stopped the robot",
     "lost": "the robot, the brain or a module is gone, or back",
     "broker": "the message broker can't be reached, or accepts no messages",
     "refused": "saved files were refused, or taken back",
-    "start": "the exhibition could not start, or was ended by an error",
-    "crashed": "it ended without notice, or a part of it gave up",
-    "disk": "the disk is full, or can't be written",
+    "start": "the exhibition could not start, or an error ended it",
+    "crashed": "the exhibition ended unexpectedly, or a part of it failed for good",
+    "disk": "the disk is full, or Lumen can't write to it",
     "battery": "the robot's battery is low",
     "hot": "the robot's motors are hot",
 }

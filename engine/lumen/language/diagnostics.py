@@ -174,7 +174,7 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
     if left := len(others) - len(shown):
         shown[-1] = Related(shown[-1].place, f"and here, and in {left} more")
     if many and first.cause != cause == first.root:
-        first = replace(first, hint=f"look first at {cause}: it is in the way in {len(findings)} places")
+        first = replace(first, hint=f"look at {cause} first: it causes the problem in {len(findings)} places")
     return replace(first, related=(*first.related, *shown))
 
 

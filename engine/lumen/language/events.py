@@ -43,7 +43,7 @@ RECORDED = "recorded"
 FALLEN = "fallen"
 """The event of a robot that has fallen."""
 
-HELD = "hold its head, or say `lumen resume`"
+HELD = "hold its head, or run `lumen resume`"
 """The end of the reason with which a robot that a person keeps still refuses to move."""
 
 MISSED = "missed"

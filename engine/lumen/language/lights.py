@@ -82,5 +82,5 @@ def light_fault(group: str, colour: object) -> str:
     if rgb(colour) is not None:
         return ""
     if not isinstance(colour, str) or colour.startswith("#"):
-        return f"`{colour}` is no colour: write its name, or # and six digits, as in `#12a0ff`"
+        return f"`{colour}` is not a colour: write a name, or # and six digits, as in `#12a0ff`"
     return f"there is no colour `{colour}`: {did_you_mean(colour, COLOURS)}"

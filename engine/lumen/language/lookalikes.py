@@ -23,7 +23,7 @@ def difference(word: str, other: str) -> str:
     if word == other or typed(word) != typed(other):
         return ""
     if unicodedata.normalize("NFC", word) == unicodedata.normalize("NFC", other):
-        return "they look equal, but the accents of one are characters of their own: type the word again"
+        return "they look equal, but one has its accents as separate characters: type the word again"
     return next(_odd(word), "") or next((f"there {said}" for said in _odd(other)), "")
 
 
@@ -39,12 +39,12 @@ def _odd(text: str) -> Iterator[str]:
             continue
         code = f"U+{ord(sign):04X} {unicodedata.name(sign, '')}".strip()
         if not (meant := typed(sign)):
-            yield f"it holds an invisible character, {code}"
+            yield f"it contains an invisible character, {code}"
         elif sign.isalpha():
-            yield f"`{sign}` is another letter than `{meant}`: {code}"
+            yield f"`{sign}` is a different letter from `{meant}`: {code}"
         elif sign.isdigit():
-            yield f"`{sign}` is another digit than `{meant}`: {code}"
+            yield f"`{sign}` is a different digit from `{meant}`: {code}"
         elif meant == "-":
-            yield f"`{sign}` is another minus than `-`: {code}"
+            yield f"`{sign}` is a different minus from `-`: {code}"
         else:
-            yield f"`{sign}` is another sign than `{meant}`: {code}"
+            yield f"`{sign}` is a different character from `{meant}`: {code}"

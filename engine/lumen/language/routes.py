@@ -12,14 +12,14 @@ FACE, HEARD, COMMAND, STOP = "face", "heard", "command", "stop"
 
 MEANINGS: Mapping[str, str] = {
     IMAGE: "what the robot's camera sees",
-    JOINT: "where its joints stand; `track` follows nothing without it",
+    JOINT: "the angles of its joints; without it `track` does not work",
     SONAR: "how far away the nearest echoes are",
     TACTILE: "which of its sensors are pressed",
     BATTERY: "how full its battery is",
-    FACE: "where a visitor's face stands in the camera's image; simulated visitors are seen on it",
-    HEARD: "what a visitor said; what is typed, and what a story's visitor says, comes on it",
-    COMMAND: "what other modules ask of the robot",
-    STOP: "that the robot has to rest or to stop, on a way of its own",
+    FACE: "where a visitor's face is in the camera's image; simulated visitors appear on it",
+    HEARD: "what a visitor said, typed or says in a story",
+    COMMAND: "commands of other modules to the robot",
+    STOP: "commands to rest or to stop, on a separate route",
 }
 """The routes whose names mean something to Lumen itself, and what each is for; all others are the exhibition's own."""
 

@@ -7,7 +7,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, JOINT_PATHS, BaseKind
 
-_WOULD_GIVE = " under `roles` of its body would give it"
+_WOULD_GIVE = " under `roles` of its body would add it"
 
 
 class Lack(NamedTuple):
@@ -26,7 +26,7 @@ def lack_of(command: object, body: Body) -> Lack | None:
             return Lack(f"{body.name} has no legs and no wheels", wanted + _WOULD_GIVE)
         case Look() if not any(role in roles.head for role in HEAD_ROLES):
             return Lack(
-                f"{body.name} has no head that turns", "`head: {yaw: …}` under `roles` of its body would give it"
+                f"{body.name} has no head that turns", "`head: {yaw: …}` under `roles` of its body would add it"
             )
         case Leds(colours) if colours and not any(group in roles.lights for group in colours):
             names = ", ".join(f"`{group}`" for group in colours)

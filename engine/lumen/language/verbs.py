@@ -50,11 +50,11 @@ C = TypeVar("C")
 class Quantity(Enum):
     """What a value of the YAML counts, and so how it becomes the command's."""
 
-    PLAIN = "as it stands: a text, a number without a unit, true or false"
+    PLAIN = "used as written: a text, a number without a unit, true or false"
     LENGTH = "in the file's unit of length, [m] in the command; per second, [m/s]"
     ANGLE = "in the file's unit of angles, [rad] in the command; per second, [rad/s]"
     DURATION = "a number and its unit, `500ms`, [s] in the command"
-    TEMPLATE = "a text that may hold `{{ expression }}`, which the step that begins the command fills in"
+    TEMPLATE = "a text that may hold `{{ expression }}`, replaced when the command begins"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,15 +131,15 @@ _POSTURE = Verb(
     "posture",
     Posture,
     (VerbField("name", names="posture"), VerbField("speed")),
-    lambda c: f"takes the posture {c.name}",
+    lambda c: f"goes into the posture {c.name}",
     lambda c: f"goes to `{c.name}` at speed {c.speed:g}",
 )
 _MOVE = Verb(
     "walk",
     Move,
     (VerbField("vx", Quantity.LENGTH), VerbField("vy", Quantity.LENGTH), VerbField("vtheta", Quantity.ANGLE)),
-    lambda c: f"walks on at {c.vx:g} m/s, {c.vy:g} m/s, {c.vtheta:.2f} rad/s",
-    lambda c: f"walks on at x {c.vx:g} m/s, y {c.vy:g} m/s, theta {c.vtheta:.3g} rad/s",
+    lambda c: f"keeps walking at {c.vx:g} m/s, {c.vy:g} m/s, {c.vtheta:.2f} rad/s",
+    lambda c: f"keeps walking at x {c.vx:g} m/s, y {c.vy:g} m/s, theta {c.vtheta:.3g} rad/s",
 )
 _GO_TO = Verb(
     "walk",
@@ -175,7 +175,7 @@ _VOLUME = Verb(
     Volume,
     (VerbField("level"),),
     lambda c: f"speaks with volume {c.level:g} from now on",
-    lambda c: f"speaks with volume {c.level:g} from then on",
+    lambda c: f"speaks with volume {c.level:g} from that moment on",
 )
 _SOUND = Verb(
     "sound",
@@ -201,7 +201,7 @@ _LANGUAGE = Verb(
     Language,
     (VerbField("language", names="language"),),
     lambda c: f"speaks {c.language} from now on",
-    lambda c: f"speaks `{c.language}` from then on",
+    lambda c: f"speaks `{c.language}` from that moment on",
     instant=True,
 )
 

@@ -60,7 +60,7 @@ class Actions:
             hint = "move it into the `do` of a state" + (
                 ", or `send` an event with a `delay`" if verb == "wait" else ""
             )
-            self.report(ONLY_IN_DO, (*where, verb), f"`{verb}` can stand only in `do`", hint=hint, key=True)
+            self.report(ONLY_IN_DO, (*where, verb), f"`{verb}` is allowed only in `do`", hint=hint, key=True)
             return None
         return self._verb(verb, body, (*where, verb))
 
@@ -141,7 +141,9 @@ class Actions:
         texts: dict[str, tuple[Template, ...]] = {}
         gestures: SaysGestures = "none" if "gestures" in table else ""
         if table.keys() == {"gestures"}:
-            self.report(MISSING_KEY, where, "nothing is said here", hint="write `any:` and the text beside it")
+            self.report(
+                MISSING_KEY, where, "there is no text to speak here", hint="add a text, or `any:` with a list of texts"
+            )
         for language, said in table.items():
             if language == "gestures":
                 continue

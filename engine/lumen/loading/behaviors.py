@@ -24,7 +24,7 @@ from lumen.loading.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
 
-NOT_WITHIN = Code("not-within", "statecharts", ERROR, "a state is not inside the state that is meant")
+NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the child named in `initial` is not inside its state")
 
 
 CONTEXT_PREFIX = "context"
@@ -202,7 +202,7 @@ class _Builder:
         for state in found:
             if state is home or not state.lies_in(home):
                 hint = did_you_mean(state.path, home.children, "it has")
-                self.report(NOT_WITHIN, where, f"`{state.path}` does not lie in {home.title}", hint=hint)
+                self.report(NOT_WITHIN, where, f"`{state.path}` is not inside {home.title}", hint=hint)
                 return []
         return found
 

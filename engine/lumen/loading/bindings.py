@@ -27,7 +27,7 @@ class Bindings:
 
     def inputs(self) -> Iterator[InputBinding]:
         """Each input that comes from a message, with its route and field."""
-        message, hint = "gets its value from nowhere", "route.field"
+        message, hint = "has no source for its value", "route.field"
         self.all_bound("inputs", self.sources, UNBOUND_INPUT, message, hint)
         for name, source in self.sources.items():
             if self.known("inputs", name) and isinstance(source, str):
@@ -42,10 +42,10 @@ class Bindings:
                 continue
             path: NodePath = ("bind", "inputs", name)
             if joint:
-                message = (
-                    f"`{name}` comes from the context, and `{joint}` moves a joint: joints are moved by messages only"
+                message = f"`{name}` comes from the context, and `{joint}` moves a joint: only messages can move joints"
+                self.report(
+                    UNBOUND_INPUT, path, message, hint="move the outputs that do not turn a joint to another controller"
                 )
-                self.report(UNBOUND_INPUT, path, message, hint="give what moves no joint a controller of its own")
             yield ContextInput(name, source["context"], path)
 
     def outputs(self) -> Iterator[OutputBinding]:
@@ -72,8 +72,10 @@ class Bindings:
         if "limits" in spec:
             low, high = (end * self.angle for end in spec["limits"])
             if not low < high:
-                message = f"the limits of `{spec['joint']}` leave it no way to move"
-                self.report(EMPTY_RANGE, (*path, "limits"), message, hint="the second number has to be greater")
+                message = f"the limits of `{spec['joint']}` allow no movement"
+                self.report(
+                    EMPTY_RANGE, (*path, "limits"), message, hint="write a second number that is greater than the first"
+                )
                 return
         yield OutputBinding(variable.name, spec["joint"], float(spec.get("gain", 1.0)), low, high, unit, path)
 

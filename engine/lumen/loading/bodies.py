@@ -16,8 +16,8 @@ from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.loading.roles import RoleReader
 from lumen.loading.units import ANGLES, LENGTHS
 
-UNKNOWN_MODEL = Code("unknown-model", "references", ERROR, "a robot's body is named that is not in models/")
-INCOMPLETE_POSTURE = Code("incomplete-posture", "robot", ERROR, "a posture leaves out a joint")
+UNKNOWN_MODEL = Code("unknown-model", "references", ERROR, "the named body is not in models/")
+INCOMPLETE_POSTURE = Code("incomplete-posture", "robot", ERROR, "a posture has no angle for a joint")
 JOINT_IN_TWO_PARTS = Code("joint-in-two-parts", "robot", ERROR, "a joint belongs to two parts of the body")
 JOINT_WITHOUT_PART = Code("joint-without-part", "robot", ERROR, "a joint belongs to no part of the body")
 UNSORTED_ROWS = Code("unsorted-rows", "robot", ERROR, "the rows of a table are not in rising order")
@@ -81,8 +81,8 @@ def build_likes(
         if data["like"] in bodies:
             found[name] = _Builder({"joints": {}, **data}, report).like(bodies[data["like"]], name)
         elif data["like"] not in names or "like" in (sources.get(data["like"], ((), None))[0] or ()):
-            hint = did_you_mean(data["like"], bodies, "there are") if bodies else "no other model is complete"
-            report(UNKNOWN_MODEL, ("like",), f"there is no model `{data['like']}` to be like", hint=hint)
+            hint = did_you_mean(data["like"], bodies, "there are") if bodies else "there is no complete model to choose"
+            report(UNKNOWN_MODEL, ("like",), f"no model is called `{data['like']}` to be like", hint=hint)
     return found
 
 
@@ -148,7 +148,7 @@ class _Builder:
             return None
         low, high = spec["range"]
         if not low < high:
-            hint = f"write [{high}, {low}]" if high < low else "the second number has to be greater"
+            hint = f"write [{high}, {low}]" if high < low else "write a second number that is greater than the first"
             self.report(EMPTY_RANGE, ("joints", name, "range"), f"`{name}` can't move in [{low}, {high}]", hint=hint)
             self.report.lost.add(name)
             return None
@@ -177,9 +177,9 @@ class _Builder:
         for part, names in (self.data.get("parts") or {}).items():
             for i, name in enumerate(names):
                 if self.known(name, ("parts", part, i)) and owner.setdefault(name, part) != part:
-                    message = f"`{name}` stands in `{owner[name]}` and in `{part}`"
-                    related = [(("parts", owner[name]), "the other part stands here")]
-                    hint = "a joint has one owner"
+                    message = f"`{name}` is in `{owner[name]}` and in `{part}`"
+                    related = [(("parts", owner[name]), "the other part is here")]
+                    hint = "name each joint in one part only"
                     self.report(JOINT_IN_TWO_PARTS, ("parts", part, i), message, hint=hint, related=related)
             parts[part] = tuple(n for n in names if owner.get(n) == part)
         for name in [n for n in self.joints if n not in owner and whole]:
@@ -211,7 +211,7 @@ class _Builder:
         biped = roles.base.kind is BaseKind.BIPED
         for name in (COMMON_POSTURE, BIPED_POSTURE) if biped else (COMMON_POSTURE,):
             if "postures" in self.data and name not in found and name not in self.report.lost:
-                who = "every robot on two legs has" if name == BIPED_POSTURE else "every robot has"
+                who = "every robot on two legs needs it" if name == BIPED_POSTURE else "every robot has"
                 message, hint = f"the robot has no posture `{name}`", f"{who} `{name}`: give the angle of each joint"
                 self.report(MISSING_KEY, ("postures",), message, hint=hint, key=True)
         return found
@@ -223,8 +223,8 @@ class _Builder:
         missing = [n for n in self.joints if n not in spec]
         if missing and not self.report.broken(path) and spec.keys() <= self.data["joints"].keys():
             names = ", ".join(f"`{n}`" for n in missing)
-            hint = "a posture holds every joint"
-            self.report(INCOMPLETE_POSTURE, path, f"`{posture}` says nothing of {names}", hint=hint, key=True)
+            hint = "a posture needs an angle for every joint"
+            self.report(INCOMPLETE_POSTURE, path, f"`{posture}` has no angle for {names}", hint=hint, key=True)
         return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
 
     def angle_of(self, name: str, value: float, path: NodePath) -> float:
@@ -232,7 +232,7 @@ class _Builder:
         joint, unit = self.joints[name], self.unit(name)
         angle = value * unit
         if not (isfinite(angle) and joint.minimum - POSTURE_TOLERANCE <= angle <= joint.maximum + POSTURE_TOLERANCE):
-            message = f"`{name}` can't stand at {value}"
+            message = f"`{name}` can't be at {value}"
             hint = f"it moves between {joint.minimum / unit:.6g} and {joint.maximum / unit:.6g}"
             self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, root=f"the range of `{name}` in models/")
         return min(max(angle, joint.minimum), joint.maximum)

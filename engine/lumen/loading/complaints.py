@@ -10,10 +10,10 @@ from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, mean
 from lumen.language.lookalikes import other_sign, typed
 from lumen.loading.schema_messages import Error, describe, like, node, wording
 
-MISSING_KEY = Code("missing-key", "shape", ERROR, "a key that is needed is not there")
+MISSING_KEY = Code("missing-key", "shape", ERROR, "a required key is missing")
 ONE_VERB = Code("one-verb", "shape", ERROR, "an item has no verb, or more than one")
-UNKNOWN_KEY = Code("unknown-key", "shape", ERROR, "a key is not known here")
-WRONG_KEY = Code("wrong-key", "shape", ERROR, "a name has a form that is not allowed")
+UNKNOWN_KEY = Code("unknown-key", "shape", ERROR, "a key is not allowed here")
+WRONG_KEY = Code("wrong-key", "shape", ERROR, "a name has a character or form that is not allowed")
 WRONG_TYPE = Code("wrong-type", "shape", ERROR, "a value has the wrong type: text, number, list or map")
 WRONG_VALUE = Code("wrong-value", "shape", ERROR, "a value is not one of those allowed")
 
@@ -76,10 +76,8 @@ def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
     hint = shown or describe(_property(schema, missing)) or f"add `{missing}:` here"
     message = f"{node(path)} needs the key `{missing}`"
     if holder := next((k for k, v in error.instance.items() if isinstance(v, Mapping) and missing in v), ""):
-        message += f", which stands in its `{holder}`"
-        hint = (
-            f"take blanks away before `{missing}:` and what is below it, so that it begins in the column of `{holder}:`"
-        )
+        message += f", which is inside its `{holder}`"
+        hint = f"indent `{missing}` and the lines under it less, so that it begins in the same column as `{holder}`"
         return Complaint(MISSING_KEY, (*path, holder, missing), message, hint, path, _spared(path), True, missing)
     return Complaint(MISSING_KEY, (*path, missing), message, hint, path, _spared(path), missing=missing)
 
@@ -88,8 +86,8 @@ def _dependents(error: Error, path: NodePath) -> Iterator[Complaint]:
     for key, needs in error.validator_value.items():
         for missing in needs:
             if key in error.instance and missing not in error.instance:
-                message = f"`{key}` needs `{missing}` beside it"
-                hint = f"write `{missing}:` in the same place"
+                message = f"`{key}` needs `{missing}` in the same place"
+                hint = f"add `{missing}:` beside it"
                 yield Complaint(MISSING_KEY, (*path, key), message, hint, path, (*path, key), True, missing)
 
 
@@ -110,18 +108,18 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
         hint = mean(key, meant) if meant else did_you_mean(key, free, "allowed here:")
         if rest and meant == first:
             value = rest if error.instance[key] is None else f"{rest}: …"
-            hint = f"`{first}` has no colon behind it: write `{first}: {value}`"
+            hint = f"`{first}` needs a colon after it: write `{first}: {value}`"
         elif torn:
-            meant, hint = "", f'a comma ends a text within braces: put quotes around the whole text: "{torn}"'
+            meant, hint = "", f'a comma ends a text inside braces: put quotes around the whole text: "{torn}"'
         elif key == "<<":
-            hint = "YAML 1.2 has no merge keys: write the keys themselves"
+            hint = "YAML 1.2 has no merge keys: write each key out"
         elif key.isdecimal() and not meant:
-            hint = "put a list into brackets, and write a number with a point, as in `0.5`"
+            hint = "put a list in brackets; write a decimal number with a point, as in `0.5`"
         elif not meant and (odd := other_sign(key)):
             hint = f"write `{typed(key).strip()}`: {odd}"
         elif not meant and (owner := _owner(key, root)):
-            hint = f"it belongs into {owner}"
-        message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"
+            hint = f"move it into {owner}"
+        message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key of this file"
         here = (*path, key)
         yield Complaint(UNKNOWN_KEY, here, message, hint, path, here, True, suggestion=meant)
 
@@ -165,15 +163,17 @@ def _bad_key(error: Error, path: NodePath) -> Complaint:
     here = (*path, error.instance)
     if error.validator == "enum":
         hint = did_you_mean(error.instance, map(str, error.validator_value), "allowed here:")
-        return Complaint(UNKNOWN_KEY, here, f"`{error.instance}` can't stand in {node(path)}", hint, path, here, True)
+        return Complaint(
+            UNKNOWN_KEY, here, f"`{error.instance}` is not allowed in {node(path)}", hint, path, here, True
+        )
     hint = describe(error.schema) or "use letters, digits and `_`"
     if odd := other_sign(error.instance):
         hint = f"write `{typed(error.instance).strip()}`: {odd}"
     if path[-1:] in (("say",), ("value",)) and re.search(r"\w \w", error.instance):
-        hint = "put quotes around the whole text, if this belongs to one: a comma ends a text within braces"
+        hint = "if this is part of a text, put quotes around the whole text: a comma ends a text inside braces"
     if code := _LANGUAGES.get(error.instance.lower(), ""):
-        hint = f"a language is written by its letters: `{code}`"
-    return Complaint(WRONG_KEY, here, f"`{error.instance}` can't be a key of {node(path)}", hint, path, here, True)
+        hint = f"write the language as a code: `{code}`"
+    return Complaint(WRONG_KEY, here, f"`{error.instance}` is not a valid key in {node(path)}", hint, path, here, True)
 
 
 def _is_one(error: Error) -> bool:
@@ -187,9 +187,9 @@ def _verbs(error: Error, path: NodePath) -> Complaint:
         within, hint = "one item", f"begin a new item: `- {keys[1]}: …`"
         if "minProperties" not in error.schema:  # a key that wants none beside it
             within, hint = node(path), "keep one of the two"
-        message = f"`{keys[0]}` and `{keys[1]}` stand in {within}, which says one thing only"
+        message = f"`{keys[0]}` and `{keys[1]}` are both in {within}, only one of them is allowed"
         return Complaint(ONE_VERB, (*path, keys[1]), message, hint, path, _spared(path), True)
-    message = f"{node(path)} says nothing: it needs one key, the verb"
+    message = f"{node(path)} is empty: it needs one key, the verb"
     return Complaint(ONE_VERB, path, message, "write the verb, as in `say: Hello`", path, _spared(path))
 
 

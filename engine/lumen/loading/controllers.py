@@ -50,8 +50,8 @@ def _tracking(data: Mapping[str, Any], report: DocumentReport, angle: float) -> 
     times = {key: seconds(data.get(key)) for key in ("hold", "search", "period", "stale", "every")}
     for key in ("period", "stale"):
         if times[key] == 0:
-            message = f"`{key}` has to be longer than nothing"
-            report(BAD_DURATION, ("track", key), message, hint="leave it out, or raise it")
+            message = f"`{key}` must be longer than 0"
+            report(BAD_DURATION, ("track", key), message, hint="write a longer time, or delete the key")
     said.update({key: time for key, time in times.items() if time is not None})
     for key in ("sweep", "ahead"):
         said[key] = {joint: float(value) * angle for joint, value in (data.get(key) or {}).items()}

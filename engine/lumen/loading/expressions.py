@@ -117,9 +117,11 @@ class Expressions:
         """With a word on where a name is known that is known elsewhere."""
         name = finding.message.split("`")[1] if finding.code == UNKNOWN_NAME else ""
         if name == HEARD:
-            return finding._replace(hint="it is known in the guard and actions of a row of `hears`: assign it there")
+            return finding._replace(
+                hint="it is defined only in the guard and actions of a row of `hears`: assign it to the context there"
+            )
         home = self.rounds.elsewhere(name) if name else ""
-        hint = f"it is an entry within `{home}` only, in its states, `on` and `after`"
+        hint = f"it is defined only inside `{home}`: in its states, `on` and `after`"
         return finding._replace(hint=hint) if home else finding
 
     def _calls_what_it_may(self, source: str, where: NodePath) -> bool:
@@ -137,8 +139,10 @@ class Expressions:
             return True
         drawing = next((name for name in sorted(DRAWING) if re.search(rf"\b{name}\s*\(", source)), "")
         if drawing:
-            hint = "assign what is drawn to a key of the context, and read that here"
-            self.report(MISPLACED_DRAW, where, f"`{drawing}` draws, which only `assign` may", hint)
+            hint = "assign the value to a key of `context`, and use that key here"
+            self.report(
+                MISPLACED_DRAW, where, f"`{drawing}` gives a random value, which is allowed only in `assign`", hint
+            )
         return not drawing
 
 

@@ -21,7 +21,7 @@ from lumen.loading.files import FLEET_FILE, MAX_FILE_BYTES
 from lumen.loading.regular_files import read_regular
 from lumen.loading.routes import duration
 
-BAD_SHARE = Code("bad-share", "fleet", ERROR, "a step of a rollout is a share that there can't be")
+BAD_SHARE = Code("bad-share", "fleet", ERROR, "a step of a rollout is not a valid share of the robots")
 
 
 def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
@@ -72,5 +72,5 @@ def _step(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> St
     target = step_target(row["to"])
     if target is None:
         hint = "write a share such as `10%`, more than 0 and at most 100, the name of a group, or `all`"
-        report(BAD_SHARE, (*where, "to"), f"`{row['to']}` is no share of the robots", hint)
+        report(BAD_SHARE, (*where, "to"), f"`{row['to']}` is not a share of the robots", hint)
     return target

@@ -55,16 +55,16 @@ def _sound(node: ExpressionNode, text: str, names: Sequence[str], report: Docume
             return refuse(UNKNOWN_FUNCTION, node.named, len(name), f"a formula has no function `{name}`", hint)
         case FunctionCall(name, arguments) if len(arguments) != FORMULA_FUNCTIONS[name]:
             wanted = FORMULA_FUNCTIONS[name]
-            message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it takes {wanted}"
+            message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it needs {wanted}"
             hint = f"write {name}({', '.join('ab'[:wanted])})"
             return refuse(WRONG_ARGUMENT_COUNT, node.named, len(name), message, hint)
         case Literal(value) if isinstance(value, bool) or not isinstance(value, int | float):
             length = node.end - node.offset
-            return refuse(TYPE_MISMATCH, node.offset, length, "a formula counts with numbers alone", "write a number")
+            return refuse(TYPE_MISMATCH, node.offset, length, "a formula can only contain numbers", "write a number")
         case Binary("in"):
-            return refuse(TYPE_MISMATCH, node.offset, 1, "a formula knows no lists", "compare with `==`")
+            return refuse(TYPE_MISMATCH, node.offset, 1, "a formula can't contain lists", "compare with `==`")
         case FunctionCall() | Literal() | Binary():
             return True
     if not isinstance(node, _PLAIN):
-        return refuse(TYPE_MISMATCH, node.offset, 1, "a formula knows no lists and no fields", "use numbers alone")
+        return refuse(TYPE_MISMATCH, node.offset, 1, "a formula can't contain lists or fields", "use numbers alone")
     return True

@@ -76,7 +76,7 @@ class _GestureReader:
         self._poses.roles.some(phase, path)
         for joint, (angle, place) in self._poses.read(phase, path).items():
             if joint in self._body.parts.get("legs", ()):
-                hint = "gestures are of head, arms and hands; a motion may move legs"
+                hint = "use only head, arms and hands here, or write a motion"
                 self._report(GESTURE_LEGS, place, f"`{joint}` is a joint of the legs", hint=hint, key=True)
             else:
                 found[joint] = angle - stands.get(joint, 0.0)
@@ -85,5 +85,5 @@ class _GestureReader:
     def _takes(self, text: str, path: NodePath) -> float:
         time = seconds(text) or 0.0
         if time <= 0.0:
-            self._report(BAD_DURATION, path, f"`{text}` is no time for a movement", hint="write at least 100ms")
+            self._report(BAD_DURATION, path, f"`{text}` is too short for a movement", hint="write at least 100ms")
         return max(time, 0.05)

@@ -44,7 +44,7 @@ class HearsKeys:
             several = "|".join(names)
             hint = f"write `{way} {several}` for any of them" if way else f"write `{several}` for any of them"
             hint += "" if way else f", or `not {names[-1]}` if it was refused" if names else ""
-            self.report(BAD_ROW, where, f"`{key}` is no row of `hears`", hint, key=True)
+            self.report(BAD_ROW, where, f"`{key}` is not a valid row of `hears`", hint, key=True)
             return "", ()
         found = [self.name(name, where) for name in rest.split("|")]
         return (way, tuple(filter(None, found))) if all(found) else ("", ())
@@ -59,16 +59,16 @@ class HearsKeys:
             return f"{variables[entry]}.{field}"
         if not name:
             hint = "name phrases, such as `yes|no`"
-            self.report(BAD_ROW, where, "a name is missing beside `|`", hint, key=True)
+            self.report(BAD_ROW, where, "a name is missing next to `|`", hint, key=True)
         elif name == "else":
             hint = "give `else` a row of its own"
             self.report(
-                BAD_ROW, where, "`else` can't be joined with names: it is for every other sentence", hint, key=True
+                BAD_ROW, where, "`else` can't be combined with names: it matches every other sentence", hint, key=True
             )
         else:
             hint, cause = did_you_mean(name, self.names, "there are"), ""
             if name in self.expressions.words.offered:
-                hint, cause = f"they come with Lumen: write `{COMMON}` under `words` at the top", f"words {COMMON}"
+                hint, cause = f"they come with Lumen: add `{COMMON}` under `words` at the top", f"words {COMMON}"
             message = f"there are no phrases or answers named `{name}`"
             if not self.report.follows(UNKNOWN_PHRASE, message):
                 found = UNKNOWN_PHRASE.at(self.place(name, where), message, hint, cause=cause)

@@ -12,16 +12,16 @@ from lumen.loading.numbers import finite
 from lumen.loading.units import ANGLES, LENGTHS
 
 DEFAULT_ROBOT = "NAO"
-ROBOTS_TWICE = Code("robots-twice", "robot", ERROR, "lumen.yaml says with `robot` and with `robots` who performs")
+ROBOTS_TWICE = Code("robots-twice", "robot", ERROR, "lumen.yaml has both `robot` and `robots`")
 
-HOW = "write `robot: {name: NAO, model: nao}` for one, `robots:` with a line for each for several"
+HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a line for each of several"
 
 
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
     """The robots by name, in the order written; the one of `robot:` where there is no `robots:`."""
     several = data.get("robots")
     if "robot" in data and several:
-        report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` both stand here", f"delete one: {HOW}", key=True)
+        report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` are both set", f"delete one: {HOW}", key=True)
     if "robot" not in data and not several and not any(path[:1] in (("robot",), ("robots",)) for path in report.pruned):
         report(MISSING_KEY, (), "`robot` is missing", f"Which robot performs: {HOW}")
     if not several:

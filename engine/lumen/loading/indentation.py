@@ -9,7 +9,7 @@ from lumen.loading.slips import Slip
 LINES_BACK = 60
 """Lines before the one at which a reader stopped where a block may stand at the wrong depth."""
 
-AMONG_KEYS, DELETE_HYPHEN = "an item of a list stands among keys", "delete the `- ` before it"
+AMONG_KEYS, DELETE_HYPHEN = "a list item is among the keys of a map", "delete the `- `"
 
 _KEYED = re.compile(r" *[\w.#\"'*]+:(?: |$)")
 _VALUED = re.compile(r" *[\w.#\"'*]+: +\S")
@@ -79,10 +79,10 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
     if among and not _ITEM.match(here):
         if _usual(lines, index):
             yield from _moved(lines, index, [column + 2])
-        hint = "write `- ` before it too, or delete the one above"
+        hint = "add `- ` before it, or delete the `- ` above"
         meant = {index: f"{here[: indent(among[0])]}- {here[column:]}"}
         what = "a key" if _KEYED.match(here) else "something"
-        message = f"{what} stands among the items of a list"
+        message = f"{what} is among the items of a list without a hyphen"
         yield Slip(index + 1, column + 1, len(here) - column, message, hint, meant)
         at = next(i for i in range(index - 1, -1, -1) if lines[i] == above) if above in among else index
         if at < index and _KEYED.match(here):  # rather all are keys, and the first has a hyphen

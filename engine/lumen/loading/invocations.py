@@ -41,7 +41,7 @@ def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
         for (one, _), (other, where) in combinations(uses, 2):
             if where not in said and _together(one, other):
                 said.add(where)
-                message = f"{one.title} invokes something as `{id}` too, and both can run at once"
+                message = f"{one.title} also invokes a behaviour as `{id}`, and both can run at once"
                 report(DUPLICATE_ID, where, message, hint="give each an `id` of its own")
 
 

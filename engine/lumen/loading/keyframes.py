@@ -11,18 +11,16 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import PoseReader
 from lumen.loading.units import seconds
 
-UNKNOWN_MOTION = Code("unknown-motion", "references", ERROR, "a motion is named that is not in motions/")
-HANDLES_WITHOUT_KEY = Code(
-    "handles-without-key", "motions", ERROR, "handles are given for a joint that has no key there"
-)
-MIXED_KEYFRAME = Code("mixed-keyframe", "motions", ERROR, "a keyframe is a block and a pose at once")
-MOTION_CYCLE = Code("motion-cycle", "motions", ERROR, "a motion plays itself in the end")
-NO_TEMPO = Code("no-tempo", "motions", ERROR, "beats are counted without a tempo")
+UNKNOWN_MOTION = Code("unknown-motion", "references", ERROR, "the named motion is not in motions/")
+HANDLES_WITHOUT_KEY = Code("handles-without-key", "motions", ERROR, "a joint has handles but no angle in this keyframe")
+MIXED_KEYFRAME = Code("mixed-keyframe", "motions", ERROR, "a keyframe is both a block and a pose")
+MOTION_CYCLE = Code("motion-cycle", "motions", ERROR, "a motion plays itself, directly or through another")
+NO_TEMPO = Code("no-tempo", "motions", ERROR, "a motion has beats but no tempo")
 NO_TIME = Code("no-time", "motions", ERROR, "a keyframe has no time")
 TIME_NOT_INCREASING = Code("time-not-increasing", "motions", ERROR, "a keyframe comes before the one above it")
 TOO_MANY_KEYS = Code("too-many-keys", "motions", ERROR, "a motion is longer than can be played")
-TWO_TIMES = Code("two-times", "motions", ERROR, "a keyframe has a time and a beat")
-ZERO_DURATION = Code("zero-duration", "motions", ERROR, "a motion takes no time")
+TWO_TIMES = Code("two-times", "motions", ERROR, "a keyframe has both a time and a beat")
+ZERO_DURATION = Code("zero-duration", "motions", ERROR, "a motion has no length")
 
 
 MAX_MOTION_KEYS = 200_000
@@ -88,7 +86,7 @@ class KeyframeReader:
             )
         for word in ("repeat", "speed"):
             if word in item:
-                hint = "put the keyframes that it is for into a block: `keyframes:` beside it"
+                hint = "put its keyframes into a block, as `keyframes:` beside it"
                 self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
         cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
         part = MotionDefinition("", 0.0, tracks, cues)
@@ -109,7 +107,9 @@ class KeyframeReader:
             if word in item:
                 hint = "put it into a keyframe of its own, with its own time"
                 what = "`keyframes`" if "keyframes" in item else "`play`"
-                self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` can't stand beside {what}", hint=hint, key=True)
+                self.report(
+                    MIXED_KEYFRAME, (*here, word), f"`{word}` is not allowed beside {what}", hint=hint, key=True
+                )
         if "play" in item:
             part = self._played(item["play"], here)
         else:
@@ -134,7 +134,7 @@ class KeyframeReader:
         if times > 1 and part.duration <= 0.0:
             if has_errors(self.report.diagnostics):
                 return part  # what would take its time is broken
-            hint = "its last keyframe says how long a round takes: give it a time above 0"
+            hint = "give its last keyframe a time above 0: that is the length of one round"
             self.report(ZERO_DURATION, here, "a block that is repeated needs a length", hint=hint)
             return part
         if _size(part) * times > MAX_MOTION_KEYS:
@@ -167,16 +167,16 @@ class KeyframeReader:
         gone = {(*here, key) for key in ("at", "beat", "keyframes", "play")}
         if "at" not in item and "beat" not in item and not self.report.pruned & gone:
             hint = "write `at: 1.5s`" if self.beat is None else "write `beat: 4` or `at: 1.5s`"
-            self.report(NO_TIME, here, "this keyframe does not say when", hint=hint)
+            self.report(NO_TIME, here, "this keyframe has no time", hint=hint)
 
     def _too_early(self, item: Mapping[str, Any], here: NodePath, begin: float, now: float) -> None:
         path = (*here, "at") if "at" in item else (*here, "beat") if "beat" in item else here
         if begin <= 0.0:
-            message, hint = "no joint can be there at once", "give the robot time: begin at 0.5s or later"
+            message, hint = "no joint can get there in no time", "begin at 0.5s or later"
         else:
             beats = f" (beat {now / self.beat:g})" if self.beat and "beat" in item else ""
-            message = f"at {begin:g} s is not after what stands before it"
-            hint = f"that lasts until {now:g} s{beats}; times count from the beginning of their list and increase"
+            message = f"at {begin:g} s is not after the keyframe before it"
+            hint = f"that lasts until {now:g} s{beats}; write increasing times, counted from the beginning of the list"
         cause = f"{self.report.document.file} {here[:-1]} until {now}"
         self.report(TIME_NOT_INCREASING, path, message, hint=hint, cause=cause)
 

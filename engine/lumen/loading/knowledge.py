@@ -8,7 +8,7 @@ from lumen.language.diagnostics import ERROR, Code
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.loading.document_report import DocumentReport
 
-BAD_DATE = Code("bad-date", "knowledge", ERROR, "a day of a passage can't be read, or its days are the wrong way round")
+BAD_DATE = Code("bad-date", "knowledge", ERROR, "a date of a passage is not valid, or its dates are in the wrong order")
 
 
 def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | None:
@@ -17,8 +17,8 @@ def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | 
         return None
     as_of, until = (_day(data, key, report) for key in ("as-of", "until"))
     if as_of and until and until < as_of:
-        message = f"it is true until {until}, and somebody made sure on {as_of}"
-        report(BAD_DATE, ("until",), message, "write a later day, or delete the passage")
+        message = f"it is valid until {until}, before its check on {as_of}"
+        report(BAD_DATE, ("until",), message, "write a later date, or delete the passage")
     return Passage(
         name,
         {language: _listed(questions) for language, questions in data["questions"].items()},
@@ -53,5 +53,5 @@ def _day(data: Mapping[str, Any], key: str, report: DocumentReport) -> date | No
     try:
         return date.fromisoformat(text) if text else None
     except ValueError:
-        report(BAD_DATE, (key,), f"there is no day `{text}`", "write year, month and day: 2015-11-21")
+        report(BAD_DATE, (key,), f"`{text}` is not a date", "write year, month and day: 2015-11-21")
         return None

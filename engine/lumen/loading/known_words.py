@@ -12,9 +12,9 @@ from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.words import WORDS_FOLDER, anyhow, tables
 
-UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "a words file is named that is not in behaviors/words/")
+UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "the named words file is not in behaviors/words/")
 DUPLICATE_WORDS = Code(
-    "duplicate-words", "references", ERROR, "two words files, or one and the behaviour, define the same name"
+    "duplicate-words", "references", ERROR, "a name is defined in two words files, or in a words file and the behaviour"
 )
 
 WordFiles = Mapping[str, BuiltFile[Words]]
@@ -128,8 +128,8 @@ class _Gatherer:
         other = self.borrowed.get((key, entry))
         first = self.place(self.files[other].report if other else self.report, key, entry)
         second = self.place(file.report, key, entry)
-        message = f"the {key} `{entry}` are given twice: in {first.file} and in {second.file}"
-        related = Related(second, "they are given again here")
+        message = f"the {key} `{entry}` are defined twice: in {first.file} and in {second.file}"
+        related = Related(second, "they are defined again here")
         hint = "give one of them another name, or join them"
         self.report.diagnostics.append(DUPLICATE_WORDS.at(first, message, hint, (related,)))
 

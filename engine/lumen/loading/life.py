@@ -24,7 +24,7 @@ def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> L
         return None
     if name == STILL:
         hint = "give the file another name, or delete it"
-        report(RESERVED_LIFE, (), "`still` is the style in which the robot does nothing: it has no file", hint=hint)
+        report(RESERVED_LIFE, (), "`still` always means that the robot does nothing, and needs no file", hint=hint)
     reader = _LifeReader(report, body, ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0))
     style = reader.read(data, name)
     reader.roles.tell_left_out("this style of life")
@@ -99,5 +99,5 @@ class _LifeReader:
         time = seconds(text) or 0.0
         if time < SHORTEST_PERIOD:
             hint = f"write at least {1000 * SHORTEST_PERIOD:g}ms"
-            self._report(BAD_DURATION, path, f"`{text}` is too short for what comes again and again", hint=hint)
+            self._report(BAD_DURATION, path, f"`{text}` is too short for a repeated movement", hint=hint)
         return max(time, SHORTEST_PERIOD)

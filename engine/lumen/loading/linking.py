@@ -11,8 +11,10 @@ from lumen.language.machines import Invoke, MachineDefinition
 from lumen.loading.document import TOO_LARGE
 from lumen.loading.document_report import DocumentReport
 
-UNKNOWN_BEHAVIOR = Code("unknown-behavior", "references", ERROR, "a behaviour is named that is not in behaviors/")
-INVOKE_CYCLE = Code("invoke-cycle", "statecharts", ERROR, "a behaviour would invoke itself in the end")
+UNKNOWN_BEHAVIOR = Code("unknown-behavior", "references", ERROR, "the named behaviour is not in behaviors/")
+INVOKE_CYCLE = Code(
+    "invoke-cycle", "statecharts", ERROR, "a behaviour would invoke itself, directly or through another"
+)
 
 
 MAX_INVOKE_DEPTH = 16
@@ -68,7 +70,7 @@ class _Linker:
         if wanted in self.way:
             way = " → ".join(f"`{n}`" for n in (*self.way[self.way.index(wanted) :], wanted))
             message = f"`{wanted}` would invoke itself without end: {way}"
-            report(INVOKE_CYCLE, where, message, hint="let one of them go on in a state of its own instead")
+            report(INVOKE_CYCLE, where, message, hint="in one of them, use a state in place of `invoke`")
         elif wanted not in self.names:
             hint = did_you_mean(wanted, self.names, "behaviors/ has")
             report(UNKNOWN_BEHAVIOR, where, f"there is no behaviour `{wanted}`", hint=hint)
@@ -79,7 +81,7 @@ class _Linker:
                 and self.levels[wanted] < MAX_INVOKE_DEPTH
             ):
                 return machine
-            hint = "put the states of some into one file"
+            hint = "combine some of the behaviours in one file"
             report(TOO_LARGE, where, f"more than {MAX_INVOKE_DEPTH} behaviours would run within one another", hint=hint)
         return None
 

@@ -11,8 +11,10 @@ from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document, NodeSpan
 from lumen.loading.yaml_reader import parse
 
-NO_FRONT_MATTER = Code("no-front-matter", "knowledge", ERROR, "a passage in Markdown does not begin with its data")
-STRAY_TEXT = Code("stray-text", "knowledge", ERROR, "text of a passage in Markdown stands beneath no language")
+NO_FRONT_MATTER = Code("no-front-matter", "knowledge", ERROR, "a Markdown passage does not begin with its data")
+STRAY_TEXT = Code(
+    "stray-text", "knowledge", ERROR, "text of a Markdown passage is not under a heading with its language"
+)
 
 MARKDOWN_SUFFIX = ".md"
 FENCE = "---"
@@ -27,14 +29,14 @@ def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Dia
     end = next((i for i, line in enumerate(lines) if i and line.rstrip() == FENCE), 0)
     if lines[0].rstrip() != FENCE or not end:
         hint = f"begin with a line `{FENCE}`, then `questions:` as in YAML, then a line `{FENCE}`"
-        return None, [NO_FRONT_MATTER.at(Place(file, 1, 1), "the passage has no data on top", hint)]
+        return None, [NO_FRONT_MATTER.at(Place(file, 1, 1), "the passage does not begin with its data", hint)]
     front = "\n".join(["", *lines[1:end], ""])
     document, found = parse(file, content if "\ufffd" in text else front.encode())
     if document is None or not isinstance(document.data, dict):
         return document, found
     answer, spans, strays = _answers(file, lines, end + 1)
     if "answer" in document.data:
-        found.append(_stray(document.place(("answer",), key=True), "the answer stands below the data"))
+        found.append(_stray(document.place(("answer",), key=True), "write the answer below the data"))
     found += strays
     data = {**document.data, **({"answer": answer} if answer else {})}
     return replace(document, data=data, spans={**document.spans, **spans}, text=text), found
@@ -58,7 +60,7 @@ def _answers(
             spans.setdefault(("answer",), NodeSpan(place, place))
             spans["answer", language] = NodeSpan(place, place)
         elif line.strip() and not language:
-            found.append(_stray(place, "this text stands beneath no language"))
+            found.append(_stray(place, "this text is not under a heading with its language"))
             language = " "
         elif line.strip() and language != " ":
             answer[language] = f"{answer[language]} {line.strip()}".strip()
@@ -67,4 +69,4 @@ def _answers(
 
 
 def _stray(place: Place, message: str) -> Diagnostic:
-    return STRAY_TEXT.at(place, message, "write a heading with the language, `# en`, and the answer beneath it")
+    return STRAY_TEXT.at(place, message, "write a heading with the language, such as `# en`, above the answer")

@@ -17,7 +17,7 @@ from lumen.loading.yaml_errors import NOT_UTF8, merge_conflict
 from lumen.loading.yaml_reader import EMPTY_FILE, parse
 
 JSON_SYNTAX = Code("json-syntax", "text", ERROR, "a message schema is not JSON")
-ENDLESS_REFERENCE = Code("endless-reference", "routes", ERROR, "a reference in a message schema leads back to itself")
+ENDLESS_REFERENCE = Code("endless-reference", "routes", ERROR, "a reference in a message schema refers to itself")
 FOREIGN_REFERENCE = Code("foreign-reference", "routes", ERROR, "a message schema refers to something outside itself")
 
 
@@ -53,7 +53,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     if isinstance(data, dict):
         examine(data, report)
     else:
-        report(WRONG_TYPE, (), "a message schema should be a map of keys and values", hint='as in {"type": "object"}')
+        report(WRONG_TYPE, (), "a message schema must be a map of keys and values", hint='as in {"type": "object"}')
     return (None if report.diagnostics else data), tuple(report.diagnostics)
 
 
@@ -93,13 +93,13 @@ def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
         if key == "pattern" or inner[-2:-1] == ("patternProperties",):
             _pattern(path, text, report)
         elif key == "$ref" and not text.startswith("#"):
-            hint = "write the definition into this file, under `$defs`"
-            report(FOREIGN_REFERENCE, path, f"`{text}` lies outside this file", hint=hint)
+            hint = "copy the definition into this file, under `$defs`"
+            report(FOREIGN_REFERENCE, path, f"`{text}` is outside this file", hint=hint)
         elif key == "$ref" and _target(data, text) is None:
             report(FOREIGN_REFERENCE, path, f"`{text}` is not in this schema", hint="name a definition under `$defs`")
         elif key == "$ref" and _circles(data, text):
-            hint = "let a reference stand in `properties` or `items`"
-            report(ENDLESS_REFERENCE, path, f"`{text}` leads back to itself, for the same value", hint=hint)
+            hint = "move the reference into `properties` or `items`"
+            report(ENDLESS_REFERENCE, path, f"`{text}` refers to itself for the same value", hint=hint)
 
 
 def _texts(data: Any) -> Iterator[tuple[NodePath, str, str]]:
@@ -124,7 +124,7 @@ def _pattern(path: NodePath, text: str, report: DocumentReport) -> None:
     try:
         compile_pattern(text)
     except ExpressionError as error:
-        report(WRONG_VALUE, path, f"`{text}` is no regular expression: {error.message}", hint=error.hint)
+        report(WRONG_VALUE, path, f"`{text}` is not a regular expression: {error.message}", hint=error.hint)
 
 
 def _target(data: Any, reference: str) -> Any:
@@ -175,11 +175,11 @@ def _syntax(file: str, content: bytes, error: Exception) -> Diagnostic:
     if conflict := merge_conflict(file, content.decode("utf-8", "replace")):
         return conflict
     if not content.strip():
-        return EMPTY_FILE.at(Place(file), "the file is empty", "write its content, or delete it")
+        return EMPTY_FILE.at(Place(file), "the file is empty", "add its content, or delete the file")
     if isinstance(error, json.JSONDecodeError):
         place = Place(file, error.lineno, error.colno, error.lineno, error.colno + 1)
         hint = "look for a missing comma, quote or bracket here or in the line above"
         return JSON_SYNTAX.at(place, f"this is not JSON: {error.msg}", hint)
     if isinstance(error, UnicodeDecodeError):
         return NOT_UTF8.at(Place(file), "the file is not UTF-8 text", "save it as UTF-8")
-    return TOO_LARGE.at(Place(file), "the file nests too deeply or holds too long a number", "simplify it")
+    return TOO_LARGE.at(Place(file), "the file is nested too deeply, or a number in it is too long", "simplify it")

@@ -46,7 +46,10 @@ _KINDS: Mapping[str, _Kind] = {
     "sayings": _Kind("a file of sayings", "behaviors/sayings/", frozenset()),
     "knowledge": _Kind("a passage of knowledge", "knowledge/", frozenset(("questions", "answer"))),
     "questions": _Kind(
-        "questions to try knowledge with", "knowledge/questions/", frozenset(), only=frozenset(("asked", "unanswered"))
+        "a file of test questions for knowledge",
+        "knowledge/questions/",
+        frozenset(),
+        only=frozenset(("asked", "unanswered")),
     ),
     "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
@@ -87,7 +90,7 @@ def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
         return False
     other, file = _KINDS[meant], PurePosixPath(report.document.file)
     where = next(key for key in data if key in other.keys)
-    message = f"this is {other.name}, where {own.name} should stand"
-    hint = f"its place is {other.folder}"
+    message = f"this is {other.name}, but {own.name} belongs here"
+    hint = f"move it to {other.folder}"
     report(MISPLACED_FILE, (where,), message, hint=hint, key=True, cause=f"{meant} {file.stem}")
     return True

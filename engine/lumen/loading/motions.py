@@ -52,7 +52,7 @@ def build_motion(
     if part.duration <= 0.0:
         if not has_errors(report.diagnostics):
             hint = "give its last keyframe a time above 0"
-            report(ZERO_DURATION, ("keyframes",), "the motion takes no time", hint=hint, key=True)
+            report(ZERO_DURATION, ("keyframes",), "the motion has no length", hint=hint, key=True)
         return None
     return _finished(part, data, poses, name)
 
@@ -68,8 +68,8 @@ def build_motions(
     plays = {name: dict(_played(data)) for name, (data, _) in files.items()}
     order, circles = _order({name: [p for p in played if p in files and p != name] for name, played in plays.items()})
     for name, other in circles:
-        message = f"`{name}` plays `{other}`, which in the end plays `{name}`"
-        files[name][1](MOTION_CYCLE, plays[name][other], message, hint="let one of them play something else")
+        message = f"`{name}` plays `{other}`, which plays `{name}`"
+        files[name][1](MOTION_CYCLE, plays[name][other], message, hint="make one of them play another motion")
     built: dict[str, MotionDefinition] = {}
     for name in order:
         data, report = files[name]
@@ -87,8 +87,14 @@ def countable(data: Any, report: DocumentReport) -> bool:
         return True
     if len(data["keyframes"]) <= MAX_KEYFRAMES:
         return True
-    hint = f"a list can have {MAX_KEYFRAMES:,}; use blocks with `repeat`, or several motions"
-    report(TOO_MANY_KEYS, ("keyframes",), f"{len(data['keyframes']):,} keyframes are too many", hint=hint, key=True)
+    hint = f"a list may have {MAX_KEYFRAMES:,}; use blocks with `repeat`, or several motions"
+    report(
+        TOO_MANY_KEYS,
+        ("keyframes",),
+        f"{len(data['keyframes']):,} keyframes are too many for one list",
+        hint=hint,
+        key=True,
+    )
     return False
 
 

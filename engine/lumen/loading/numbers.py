@@ -8,10 +8,10 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.pruning import prune
 
-EXTREME_NUMBER = Code("extreme-number", "shape", ERROR, "a number is too large or too small to count with")
+EXTREME_NUMBER = Code("extreme-number", "shape", ERROR, "a number is too large or too small to calculate with")
 NOT_A_NUMBER = Code("not-a-number", "shape", ERROR, "a number is infinite, or not a number")
 EMPTY_RANGE = Code("empty-range", "shape", ERROR, "a range is empty")
-NOT_FINITE = Code("not-finite", "controllers", ERROR, "a number is infinite where it can't be")
+NOT_FINITE = Code("not-finite", "controllers", ERROR, "a number is infinite where only finite numbers are allowed")
 
 
 LEAST_NUMBER, GREATEST_NUMBER = 1e-12, 1e12
@@ -25,8 +25,8 @@ def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
     except OverflowError:
         sound = False
     if not sound:
-        shown = f".{value}".replace(".-", "-.") if isinstance(value, float) else "an endless row of digits"
-        report(NOT_A_NUMBER, path, f"`{shown}` can't be used here", hint="write an ordinary number")
+        shown = f".{value}".replace(".-", "-.") if isinstance(value, float) else "a number with endless digits"
+        report(NOT_A_NUMBER, path, f"`{shown}` can't be used here", hint="write a finite number")
     return sound
 
 
@@ -49,11 +49,11 @@ def _usable(number: float, report: DocumentReport, path: NodePath, endless: Call
     elif isinstance(number, float) and isinf(number):
         if endless(path):
             return True
-        report(NOT_FINITE, path, "this number is infinite, and has to have an end", hint="write a number")
+        report(NOT_FINITE, path, "this number is infinite; it must be finite", hint="write a number")
     elif number and not LEAST_NUMBER <= abs(number) <= GREATEST_NUMBER:
         size = "large" if abs(number) > 1 else "small"
         hint = f"write 0, or a number between {LEAST_NUMBER:g} and {GREATEST_NUMBER:g}"
-        report(EXTREME_NUMBER, path, f"this number is too {size} to count with", hint=hint)
+        report(EXTREME_NUMBER, path, f"this number is too {size} to calculate with", hint=hint)
     else:
         return True
     return False

@@ -80,7 +80,7 @@ class BehaviorOutline:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
         if len(self.report.missed) > MAX_COMPARED_NAMES:  # what was meant by each would take long to find out
-            self.report(UNKNOWN_STATE, where, message, hint="it has to be a state of this file")
+            self.report(UNKNOWN_STATE, where, message, hint="write the name of a state in this file")
             return
         known = self._known(source, target)
         hint = self._hint(source, target, known)
@@ -111,14 +111,14 @@ class BehaviorOutline:
     def _hint(self, source: OutlinedState, target: str, known: Iterable[str]) -> str:
         key = target.lstrip("#.")
         if key in source.children:
-            return f"a child is written `.{key}`"
+            return f"write a child state as `.{key}`"
         if loop := self._loop(source, key):
             name = loop.path.rpartition(".")[2]
-            return f"it is within the `for` of `{name}`: go to `#{loop.name}`, which takes an entry"
+            return f"it is inside the `for` of `{name}`: go to `#{loop.name}`, which begins with an entry"
         if self._by_id(key):
-            return f"a state elsewhere in the tree is written `#{key}`"
+            return f"write a state elsewhere in the tree as `#{key}`"
         if deeper := [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]:
-            return f"a state elsewhere in the tree is written `#{deeper[0].name}`"
+            return f"write a state elsewhere in the tree as `#{deeper[0].name}`"
         return did_you_mean(target, known)
 
     def _loop(self, source: OutlinedState, key: str) -> OutlinedState | None:
@@ -158,7 +158,7 @@ class BehaviorOutline:
             self.aliases[alias] = entry  # the behaviour's own name gives way to a state's
         else:
             message = f"the id `{alias}` of `{entry.path}` already belongs to {first.title}"
-            hint = "give each state an id of its own"
+            hint = "give each state its own id"
             if first.alias == alias and entry.path.rpartition(".")[2] == alias != first.path.rpartition(".")[2]:
                 self.aliases[alias] = entry  # it is called so itself: the first one took its id
                 first, entry = entry, first

@@ -57,7 +57,7 @@ def find_project(path: str | Path | None = None) -> Path:
             folder = folder.parent
         if folder.is_dir():
             return folder
-        reason = "is a file: name the folder that holds its lumen.yaml" if folder.exists() else "does not exist"
+        reason = "is a file: pass the folder that contains its lumen.yaml" if folder.exists() else "does not exist"
     except (OSError, ValueError) as error:
         reason = f"can't be read: {getattr(error, 'strerror', None) or error}"
     raise UsageError(f"{folder} {reason}")

@@ -40,7 +40,7 @@ class _Reader:
             case None | bool() | int() | float() | str():
                 return value
         hint = "use texts, numbers, true, false, null, lists and dicts"
-        self.say(WRONG_TYPE, path, f"a {type(value).__name__} can't stand in a file", hint)
+        self.say(WRONG_TYPE, path, f"a {type(value).__name__} can't be written to a file", hint)
         return None
 
     def overflow(self, path: NodePath) -> None:
@@ -52,7 +52,10 @@ class _Reader:
                 else f"more than {MAX_NODES:,} values"
             )
             self.say(
-                TOO_LARGE, path, f"this is too large to be read: {what}", "use fewer levels, and no dict in itself"
+                TOO_LARGE,
+                path,
+                f"this is too large to be read: {what}",
+                "use fewer levels, and no dict that contains itself",
             )
 
     def is_key(self, key: object, path: NodePath) -> bool:

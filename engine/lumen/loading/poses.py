@@ -15,11 +15,11 @@ from lumen.loading.role_names import OUT_OF_REACH, RoleNames
 from lumen.loading.units import ANGLES, seconds
 
 UNKNOWN_JOINT = Code("unknown-joint", "references", ERROR, "the robot has no joint of that name")
-UNKNOWN_POSE = Code("unknown-pose", "references", ERROR, "a pose is named that the motion does not define")
-UNKNOWN_POSTURE = Code("unknown-posture", "references", ERROR, "the robot knows no posture of that name")
-ANGLE_OUT_OF_RANGE = Code("angle-out-of-range", "motions", ERROR, "an angle lies outside the joint's limits")
+UNKNOWN_POSE = Code("unknown-pose", "references", ERROR, "the named pose is not defined in the motion")
+UNKNOWN_POSTURE = Code("unknown-posture", "references", ERROR, "the robot has no posture of that name")
+ANGLE_OUT_OF_RANGE = Code("angle-out-of-range", "motions", ERROR, "an angle is outside the joint's limits")
 HAND_OUT_OF_RANGE = Code("hand-out-of-range", "motions", ERROR, "a hand is opened to less than 0 or more than 1")
-SHARED_DRIVE = Code("shared-drive", "motions", ERROR, "two joints with one motor stand at different angles")
+SHARED_DRIVE = Code("shared-drive", "motions", ERROR, "two joints with one motor have different angles")
 
 
 PlacedAngles = dict[str, tuple[float, NodePath]]
@@ -75,7 +75,7 @@ class PoseReader:
     def number(self, value: float, path: NodePath) -> bool:
         """Whether a number is one to count with."""
         if not isfinite(value):
-            self.report(NOT_A_NUMBER, path, f"`{value}` can't be used here", hint="write an ordinary number")
+            self.report(NOT_A_NUMBER, path, f"`{value}` can't be used here", hint="write a finite number")
         return isfinite(value)
 
     def handles(self, item: Mapping[str, Any], here: NodePath) -> Handles:
@@ -108,8 +108,8 @@ class PoseReader:
             joint, angle = self.body.joints[role.joint], role.sign * value * self.factor
             if not self._fits(role.joint, angle):
                 low, high = sorted(role.sign * end / self.factor for end in (joint.minimum, joint.maximum))
-                message = f"{self.body.name} can't bring `{name}` to {value:g} {self.unit}, and stops at its limit"
-                hint = f"it goes from {round(low, 4):g} to {round(high, 4):g} {self.unit}"
+                message = f"{self.body.name} can't bring `{name}` to {value:g} {self.unit}, it stops at its limit"
+                hint = f"its range is {round(low, 4):g} to {round(high, 4):g} {self.unit}"
                 self.report(OUT_OF_REACH, here, message, hint=hint)
                 angle = min(max(angle, joint.minimum), joint.maximum)
             found[role.joint] = angle, here
@@ -166,9 +166,9 @@ class PoseReader:
         if self._fits(name, value * self.factor):
             return True
         low, high = (round(limit / self.factor, 4) for limit in (joint.minimum, joint.maximum))
-        hint = f"it goes from {low:g} to {high:g} {self.unit}"
+        hint = f"its range is {low:g} to {high:g} {self.unit}"
         if self.unit == "deg" and abs(value) < 3.2 and self._fits(name, value):
-            hint = f"this file counts in degrees: write {degrees(value):.4g}; {hint}"
+            hint = f"this file uses degrees: write {degrees(value):.4g}; {hint}"
         cause, root = "", f"the range of `{name}` in models/"
         if self.unit == "rad" and self._fits(name, value * ANGLES["deg"]):
             root = f"`units` in {self.report.document.file}"
@@ -176,7 +176,7 @@ class PoseReader:
         if cause:
             hint = f"write `units: {{angle: deg}}` at the top if these are degrees; {hint}"
         elif self.mirror.get(name, ("",))[0] not in ("", name) and self._fits(name, -value * self.factor):
-            hint = f"left and right turn opposite ways: write {-value:g} if that is meant; {hint}"
+            hint = f"left and right turn in opposite directions: write {-value:g} if that is meant; {hint}"
         message = f"`{name}` can't go to {value:g} {self.unit}"
         self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, cause=cause, root=root)
         return False
@@ -203,7 +203,7 @@ class PoseReader:
         """Joints on one drive move together: what is said of one holds for both."""
         for follower, leader in self.body.shared.items():
             if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > DRIVE_TOLERANCE:
-                message = f"`{leader}` and `{follower}` share one motor and can't stand at different angles"
+                message = f"`{leader}` and `{follower}` share one motor and can't be at different angles"
                 self.report(SHARED_DRIVE, own[follower][1], message, hint=f"give only `{leader}`")
             chosen = next((source[j] for source in (own, angles) for j in (leader, follower) if j in source), None)
             if chosen:

@@ -50,7 +50,7 @@ from lumen.loading.stories import build_story
 from lumen.loading.used_routes import used_routes
 from lumen.loading.words import WORDS_FOLDER, build_words
 
-MISSING_FILE = Code("missing-file", "text", ERROR, "a file that is needed is not there")
+MISSING_FILE = Code("missing-file", "text", ERROR, "a required file is missing")
 NOT_READ = Code("not-read", "text", WARNING, "a file is not read, because of its ending or its folder")
 UNREADABLE_FILE = Code("unreadable-file", "text", ERROR, "a file can't be opened")
 
@@ -81,7 +81,12 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     found = ProjectDraft(files)
     _folders(found)
     if (content := files.get(MAIN_FILE)) is None:
-        found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
+        found.say(
+            MISSING_FILE,
+            MAIN_FILE,
+            "there is no lumen.yaml",
+            "run `lumen new DIR` to make a project, or run this in a project's folder",
+        )
     elif main := _main(found, content, chosen_robot(files)):
         if main.built and (other := other_vocabulary(main.built, main.report)):
             return ProjectDraft(files, loose=[other])
@@ -258,12 +263,12 @@ def _each(
             continue
         if path.suffix == ".yml":
             hint = f"rename it to {path.stem}.yaml, or delete it"
-            found.say(NOT_READ, file, "files that end in .yml are not read", hint)
+            found.say(NOT_READ, file, "Lumen does not read files that end in .yml", hint)
             continue
         composed = normalize("NFC", path.stem)
         if path.stem in names or (path.stem != composed and f"{folder}/{composed}{path.suffix}" in files):
-            message = f"this is not read: {folder}/ has another file called {composed}"
-            found.say(NOT_READ, file, message, "join them, or give one of them another name")
+            message = f"Lumen does not read this file: {folder}/ has another file called {composed}"
+            found.say(NOT_READ, file, message, "combine them, or rename one of them")
             continue
         names.add(path.stem)
         if (each := _read(found, file, content, FOLDER_KINDS.get(folder, "motion"), build, around)) is not None:
@@ -281,9 +286,9 @@ def _folders(found: ProjectDraft) -> None:
     """Report folders of which nothing may be read; what is missing for that is not told."""
     for name, content in found.files.items():
         if isinstance(content, Unreadable) and (name in FOLDERS or endings_in(name)):
-            hint = "put a folder of the project in its place: what lies elsewhere is not read"
+            hint = "replace it with a folder inside the project: Lumen reads nothing outside"
             if content != LEADS_OUT:
-                hint = "put a folder there that can be read, or delete it"
+                hint = "make it a readable folder, or delete it"
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
             found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
     for folder, meant in MISTAKEN_FOLDERS.items():
@@ -299,7 +304,7 @@ def _read(
 ) -> BuiltFile[T] | None:
     """What one document holds, None where it can't be read at all."""
     if isinstance(content, Unreadable):
-        hint = "put a readable file there, or delete it"
+        hint = "make it a readable file, or delete it"
         found.say(UNREADABLE_FILE, file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
         return None
     read, diagnostics = read_file(file, content, kind, build, around)
@@ -340,7 +345,7 @@ def _strangers(found: ProjectDraft) -> None:
         if folder not in FOLDER_KINDS and name not in known:
             hint = f"{did_you_mean(name, known, 'there are')} as a folder for the motions of one robot"
             first = min(file for file in found.files if file.startswith(f"{folder}/"))
-            found.say(NOT_READ, first, f"files in {folder}/ are not read: there is no model `{name}`", hint)
+            found.say(NOT_READ, first, f"files in {folder}/ are not read: no model is called `{name}`", hint)
 
 
 def _accompany(found: ProjectDraft) -> None:
@@ -363,7 +368,7 @@ def _messages(found: ProjectDraft) -> None:
         names.add(name)
         if isinstance(content, Unreadable):
             reason = content.decode("utf-8", "replace")
-            found.say(UNREADABLE_FILE, file, f"this can't be read: {reason}", "put a readable file there")
+            found.say(UNREADABLE_FILE, file, f"this can't be read: {reason}", "make it a readable file")
             continue
         schema, diagnostics = build_message(file, content)
         found.loose += diagnostics

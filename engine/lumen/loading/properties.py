@@ -24,8 +24,8 @@ def build_properties(data: Mapping[str, Any], report: DocumentReport, read: Read
         if not said and report.broken(where):
             continue
         if len(said) != 1:
-            hint = "write `always:` and a condition, or `eventually:` and `within:`; for both, another property"
-            report(ONE_VERB, where, f"`{name}` says not one thing that has to be so", hint, key=True)
+            hint = "write `always:` and a condition, or `eventually:` and `within:`; to use both, add another property"
+            report(ONE_VERB, where, f"`{name}` needs exactly one condition: `always` or `eventually`", hint, key=True)
             continue
         conditions = {key: read(row[key], (*where, key)) for key in ("always", "eventually", "whenever") if key in row}
         within = duration(row, "within", report, where) if "within" in row else 0.0

@@ -18,7 +18,7 @@ def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
     """
     where = _git(root, "rev-parse", "--show-prefix")
     if where is None:
-        raise UsageError(f"`{revision}` is no folder, and {root} lies in no git repository to have a revision of it")
+        raise UsageError(f"`{revision}` is not a folder, and {root} is not in a git repository, so it has no revisions")
     commit = _git(root, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
     if commit is None:
         return None
@@ -72,5 +72,5 @@ def _git(root: Path, *arguments: str, given: bytes = b"") -> bytes | None:
             env={**os.environ, "GIT_OPTIONAL_LOCKS": "0"},
         )
     except OSError:
-        raise UsageError("git is not installed, and without it there are no revisions to read") from None
+        raise UsageError("git is not installed, so revisions can't be read") from None
     return done.stdout if done.returncode == 0 else None

@@ -9,9 +9,9 @@ from lumen.language.roles import JOINT_PATHS, JointRole
 from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.document_report import DocumentReport
 
-UNKNOWN_ROLE = Code("unknown-role", "references", ERROR, "no body has a role of that name")
-LEFT_OUT = Code("left-out", "robot", INFO, "something is left out that this robot's body can't do")
-OUT_OF_REACH = Code("out-of-reach", "motions", WARNING, "an angle that a role gives lies outside the joint's limits")
+UNKNOWN_ROLE = Code("unknown-role", "references", ERROR, "no robot's body has a role of that name")
+LEFT_OUT = Code("left-out", "robot", INFO, "this robot's body can't do something, so it is left out")
+OUT_OF_REACH = Code("out-of-reach", "motions", WARNING, "the angle of a role is outside the joint's limits")
 
 
 class RoleNames:
@@ -35,16 +35,14 @@ class RoleNames:
         """Whether that names joints at all, by role or by name; reported where it does not."""
         here = "roles" in data or "joints" in data
         if not (here or self._report.broken((*path, "joints")) or self._report.broken((*path, "roles"))):
-            hint = "write `roles: {head.pitch: 5}`, or `joints` of this robot alone"
-            self._report(
-                MISSING_KEY, path, "this moves nothing: it has neither `roles` nor `joints`", hint=hint, key=True
-            )
+            hint = "write `roles: {head.pitch: 5}`, or `joints` for this robot alone"
+            self._report(MISSING_KEY, path, "this moves nothing: it needs `roles` or `joints`", hint=hint, key=True)
         return here
 
     def tell_left_out(self, what: str) -> None:
         """Say which roles the body lacks that were named, once for all of them; `what` leaves them out."""
         if lacking := {name: path for name, path in self._lacking.items() if name not in self._report.lost}:
             names = ", ".join(f"`{name}`" for name in lacking)
-            hint = "say under `roles` of the body which joints these are, if it has them"
-            message = f"{self._body.name} has no {names}: {what} leaves that out"
+            hint = "if the body has these joints, name them under `roles` of the body"
+            message = f"{self._body.name} has no {names}: {what} leaves this movement out"
             self._report(LEFT_OUT, next(iter(lacking.values())), message, hint=hint, key=True)

@@ -7,7 +7,7 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.roles import LEG_ROLES, SIDES, Base, BaseKind, EyeRoles, JointRole, Roles, SensorRoles
 from lumen.loading.document_report import DocumentReport
 
-INCOMPLETE_ROLE = Code("incomplete-role", "robot", ERROR, "a role lacks another one that it needs")
+INCOMPLETE_ROLE = Code("incomplete-role", "robot", ERROR, "a role needs another role that is missing")
 JOINT_IN_TWO_ROLES = Code("joint-in-two-roles", "robot", ERROR, "one joint has two roles")
 
 _HERE: NodePath = ("roles",)
@@ -80,8 +80,8 @@ class RoleReader:
         first = self._owner.setdefault(name, path)
         if first != path:
             message = f"`{name}` is `{_written(first)}` and `{_written(path)}`"
-            related = [(first, "the other role stands here")]
-            self.report(JOINT_IN_TWO_ROLES, where, message, hint="a joint has one role", related=related)
+            related = [(first, "the other role is here")]
+            self.report(JOINT_IN_TWO_ROLES, where, message, hint="give each joint one role only", related=related)
         return JointRole(name, not isinstance(role, str) and role.get("reversed", False))
 
     def _whole(self, roles: Roles) -> None:
@@ -92,12 +92,14 @@ class RoleReader:
         if wheels and (lacking := [f"base.{side}" for side in SIDES if not getattr(roles.base, side)]):
             self._say(("base", "kind"), "a base on wheels", lacking)
         if roles.eyes.camera and "camera" not in self.given:
-            message = f"nothing is said of what `{roles.eyes.camera}` sees"
-            hint = "say it under `camera`: width, height, angles of view and position"
+            message = f"the body does not describe the camera `{roles.eyes.camera}` sees"
+            hint = "add `camera` with width, height, angles of view and position"
             self.report(INCOMPLETE_ROLE, (*_HERE, "eyes", "camera"), message, hint=hint)
         if roles.sensors.sonar and "sonar" not in self.given:
-            hint = "say it under `sonar`: range and cone"
-            self.report(INCOMPLETE_ROLE, (*_HERE, "sensors", "sonar"), "nothing is said of what sonars hear", hint=hint)
+            hint = "add `sonar` with its range and cone"
+            self.report(
+                INCOMPLETE_ROLE, (*_HERE, "sensors", "sonar"), "the body does not describe its sonars", hint=hint
+            )
         for side, hand in roles.hands.items():
             if hand.joint not in self.hands:
                 message = f"`{hand.joint}` turns, and a hand counts 0 closed to 1 open"

@@ -81,23 +81,23 @@ class Rounds:
         name, where = entry.data["for"]["as"], (*entry.where, "for")
         if entry.kind is not StateKind.COMPOUND:
             if entry.kind in (StateKind.ATOMIC, StateKind.PARALLEL):
-                hint = "give it `states`, one of them final: reaching that one takes the next entry"
-                message = f"{entry.title} has no states of which one after the other is active"
+                hint = "give it `states`, one of them final: when it is reached, the next entry begins"
+                message = f"{entry.title} has no states to run for each entry"
                 self.report(BAD_FOR, where, message, hint, key=True)
             return False
         if entry.parent and entry.parent.kind is StateKind.PARALLEL:
-            hint = "put it into a state within the region"
+            hint = "put the `for` into a state inside the region"
             self.report(BAD_FOR, where, f"{entry.title} is a region of a parallel state", hint, key=True)
             return False
         broken = any(self.report.broken((*child.where, "type")) for child in entry.children.values())
         if not broken and not any(child.kind is StateKind.FINAL for child in entry.children.values()):
-            hint = "add a state with `type: final`: reaching it takes the next entry"
+            hint = "add a state with `type: final`: when it is reached, the next entry begins"
             self.report(
-                BAD_FOR, where, f"{entry.title} never comes to a second entry: nothing in it is final", hint, key=True
+                BAD_FOR, where, f"{entry.title} never gets to a second entry: it has no final state", hint, key=True
             )
         outer = [p for p, (other, _) in self.by_place.items() if other == name and entry.where[: len(p)] == p]
         if name in _TAKEN or name in self.known or outer:
-            what = "what a `for` around it calls its entry" if outer else "a name that every expression knows"
+            what = "what a `for` around it calls its entry" if outer else "a name that every expression already has"
             self.report(BAD_FOR, (*where, "as"), f"`{name}` is {what}", "choose another name")
             return False
         return True
@@ -122,7 +122,7 @@ def unrolled(state: State, first: tuple[str, ...]) -> Iterator[State]:
 
     begin = assign(f"{{'entry': {{}}, 'left': {order}}}")
     following = assign(f"{{'entry': {key}.left[0], 'left': drop({key}.left, 1)}}")
-    more = Expression(f"size({key}.left) > 0", where, f"there is a next {loop.variable}")
+    more = Expression(f"size({key}.left) > 0", where, f"run the next {loop.variable}")
     onward = Transition(state.path, f"done.state.{state.name}", first, more, following, exact=True, where=where)
     name = "begin"
     while f"{state.path}.{name}" in state.children:

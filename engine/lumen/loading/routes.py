@@ -70,6 +70,8 @@ def duration(
     if length is None:
         report(BAD_DURATION, (*where, key), f"`{data[key]}` is not a duration", hint=duration_hint(data[key]))
     elif positive and length <= 0.0:
-        report(BAD_DURATION, (*where, key), f"`{key}` has to be longer than nothing", hint="leave it out, or raise it")
+        report(
+            BAD_DURATION, (*where, key), f"`{key}` must be longer than 0", hint="write a longer time, or delete the key"
+        )
         return None
     return length

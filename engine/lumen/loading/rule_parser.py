@@ -90,20 +90,22 @@ class _Parser:
 
     def error(self, wanted: str, hint: str = "") -> RuleSyntaxError:
         word = self.word
-        found = f"not `{word.text}`" if word.text else "but the rule ends"
+        found = f"not `{word.text}`" if word.text else "but the rule ends here"
         return RuleSyntaxError(f"here {wanted} should stand, {found}", word, hint)
 
     def rule(self) -> RuleText:
-        self.expect("if", "a rule reads: if INPUT is TERM then OUTPUT is TERM")
+        self.expect("if", "write a rule as: if INPUT is TERM then OUTPUT is TERM")
         antecedent = self.disjunction()
         near = did_you_mean(self.word.text, ("and", "or", "then")) if self.word.text else ""
-        self.expect("then", near if near.startswith("did") else "join propositions with `and` or `or`, end with `then`")
+        self.expect(
+            "then", near if near.startswith("did") else "join conditions with `and` or `or`, and end them with `then`"
+        )
         consequents = [self.proposition(concluded=True)]
         while self.accept("and", ","):
             consequents.append(self.proposition(concluded=True))
         weight = self.weight() if self.accept("with") else 1.0
         if self.word.text:
-            raise self.error("the end of the rule, `and` or `with`", "a weight reads: with 0.5")
+            raise self.error("the end of the rule, `and` or `with`", "write a weight as: with 0.5")
         return RuleText(antecedent, tuple(consequents), weight, tuple(self.mentions))
 
     def disjunction(self) -> Antecedent:
@@ -138,7 +140,7 @@ class _Parser:
 
     def bracket(self) -> Antecedent:
         inner = self.disjunction()
-        self.expect(")", "every `(` needs its `)`")
+        self.expect(")", "close every `(` with `)`")
         return inner
 
     def proposition(self, concluded: bool = False) -> Proposition:

@@ -10,13 +10,11 @@ from lumen.loading.rule_parser import Mention, RuleSyntaxError, RuleWord, parse_
 from lumen.loading.word_places import report_word
 
 NO_RULES = Code("no-rules", "controllers", ERROR, "a controller has no rules")
-NOT_AN_OUTPUT = Code(
-    "not-an-output", "controllers", ERROR, "a rule concludes something of a variable that is no output"
-)
+NOT_AN_OUTPUT = Code("not-an-output", "controllers", ERROR, "a rule sets a variable that is not an output")
 RULE_SYNTAX = Code("rule-syntax", "controllers", ERROR, "a rule can't be read")
-UNKNOWN_TERM = Code("unknown-term", "controllers", ERROR, "a rule names a term that the variable does not have")
+UNKNOWN_TERM = Code("unknown-term", "controllers", ERROR, "a rule uses a term that the variable does not have")
 UNKNOWN_VARIABLE = Code(
-    "unknown-variable", "controllers", ERROR, "a rule or a binding names a variable that does not exist"
+    "unknown-variable", "controllers", ERROR, "a rule or a binding uses a variable that does not exist"
 )
 
 
@@ -46,7 +44,7 @@ class Rulebook:
             rules = tuple(self.rules(("blocks", name, "rules"), spec.get("rules") or ()))
             blocks.append(RuleBlock(rules, self.combination(spec.get("operators") or {}), name))
         if not any(block.rules for block in blocks) and not self.report.diagnostics:
-            self.report(NO_RULES, (), "the controller has no rules", hint="write `rules:` and a list of them")
+            self.report(NO_RULES, (), "the controller has no rules", hint="add `rules:` with a list of rules")
         return blocks
 
     def combination(self, differing: Mapping[str, Any]) -> Operators:
@@ -90,7 +88,7 @@ class Rulebook:
         word = mention.variable
         if mention.concluded and word.text in self.data["inputs"]:
             hint = did_you_mean(word.text, self.data["outputs"], "the outputs are")
-            message = f"`{word.text}` is an input: a rule concludes an output"
+            message = f"`{word.text}` is an input: after `then` use an output"
             self.at_word(NOT_AN_OUTPUT, path, text, word, message, hint)
             return
         names = [*([] if mention.concluded else self.data["inputs"]), *self.data["outputs"]]

@@ -46,7 +46,7 @@ def read_schedule(text: str) -> Schedule:
     for word in _words(text):
         named, dated = word[0].isalpha(), _OTHER_DATE.fullmatch(word)
         if (named or dated) and times:
-            raise MisreadTimeError(f"`{word}` stands after a time", "days stand before times: write a row for each")
+            raise MisreadTimeError(f"`{word}` is after a time", "write days before times, each in its own row")
         if named:
             weekdays.update(_weekdays(word))
         elif dated:
@@ -78,7 +78,7 @@ def _words(text: str) -> Iterator[str]:
     parts = re.sub(r"(?i)(?<=[0-9])\s+(?=[ap]m\b)", "", re.sub(r"\s*-\s*", "-", text.strip()))
     for word in re.split(r"\s*,\s*|\s+", parts) if parts else ():
         if not word:
-            raise MisreadTimeError(f"a comma of `{text}` has nothing on one of its sides")
+            raise MisreadTimeError(f"a comma in `{text}` has nothing before or after it")
         yield word
 
 
@@ -89,7 +89,7 @@ def _time(word: str) -> int:
     hour, minute = int(match[1]), int(match[2])
     if hour > 23 or minute > 59:
         midnight = "; midnight is `00:00`" if (hour, minute) == (24, 0) else ""
-        raise MisreadTimeError(f"there is no `{word}`", f"a day goes from `00:00` to `23:59`{midnight}")
+        raise MisreadTimeError(f"there is no `{word}`", f"write a time from `00:00` to `23:59`{midnight}")
     return hour * 60 + minute
 
 
@@ -102,7 +102,7 @@ def _other_time(word: str) -> str:
         if hour < 24 and minute < 60:
             return f"write `{hour:02}:{minute:02}`"
     if "-" in word:
-        return "it is one moment that is waited for: write where the span begins, and in another state where it ends"
+        return "an `at` is one moment, not a span: write its beginning here, and its end in another state"
     return TIME_HINT
 
 
@@ -110,7 +110,7 @@ def _iso(text: str) -> str:
     """The hint for `2026-12-24T18:00`, ISO 8601 with a `T`; empty for anything else."""
     if (found := _ISO.fullmatch(text.strip())) is None:
         return ""
-    zone = "; times are in the project's time zone, `timezone` in lumen.yaml: convert it" if found[3] else ""
+    zone = "; convert it to the project's time zone (`timezone` in lumen.yaml)" if found[3] else ""
     written = f"{found[1]} {found[2].zfill(5)}"
     try:
         read_schedule(written)
@@ -129,7 +129,7 @@ def _cron(text: str) -> str:
     if len(fields) != 5 or not all(map(_CRON.fullmatch, fields)) or all(f.isalpha() for f in fields):
         return ""
     minute, hour, day, month, weekday = fields
-    hint = "this is a line of cron: days stand before times, as in `mon-fri 18:00`"
+    hint = "this is a line of cron: write days before times, as in `mon-fri 18:00`"
     if not (minute.isdigit() and re.fullmatch(r"[0-9]+(,[0-9]+)*", hour) and (day, month) in (("*", "*"), ("?", "*"))):
         return hint
     weekday = "*" if weekday in ("0-6", "0-7", "1-7") else weekday

@@ -90,7 +90,7 @@ def load_schema(kind: str) -> Any:
     try:
         return json.loads(file.read_bytes())
     except (OSError, ValueError) as error:
-        raise LumenError(f"Lumen's own {file} can't be read ({error}): install it anew, or restore the file") from None
+        raise LumenError(f"Lumen's own {file} can't be read ({error}): reinstall Lumen, or restore the file") from None
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:

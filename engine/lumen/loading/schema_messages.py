@@ -71,10 +71,10 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
             allowed = [_short(v) for v in choices if v is not None]
             if True in choices and (truth := _truth(value)) in allowed:
                 return f"{name} can't be `{value}`", f"write `{truth}`: in YAML 1.2 `{value}` is a text"
-            hint = _colour(value, allowed) or did_you_mean(_short(value), allowed, "it is one of")
+            hint = _colour(value, allowed) or did_you_mean(_short(value), allowed, "allowed are")
             return f"{name} can't be `{_short(value)}`", hint
         case "pattern":
-            small = f"write it in small letters: `{value.lower()}`" if occurs(bound, value.lower()) else hint
+            small = f"write it in lower case: `{value.lower()}`" if occurs(bound, value.lower()) else hint
             if occurs(bound, plain := typed(value)) and plain != value:
                 return f"{name} can't be `{_short(value)}`", f"write `{plain}`: {other_sign(value)}"
             return f"{name} can't be `{_short(value)}`", small
@@ -93,7 +93,7 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
         case "multipleOf":
             return f"{name} is {value:g}, it should be a multiple of {bound:g}", hint
         case "minLength" | "minProperties" if not value:
-            return f"{name} is empty", hint or "write something, or delete it"
+            return f"{name} is empty", hint or "write a value, or delete the key"
         case "minItems":
             return f"{name} has {_count(len(value))}, it should have at least {bound}", hint
         case "maxProperties":
@@ -101,8 +101,8 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
         case "items" | "maxItems":
             return f"{name} has too many items", hint
         case "uniqueItems":
-            return f"{name} has an item twice", "delete one"
-    return f"{name} is not as it should be", hint
+            return f"{name} has the same item twice", "delete one of them"
+    return f"{name} is not valid here", hint
 
 
 def describe(schema: Any) -> str:
@@ -193,7 +193,7 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
     if "object" in wanted and isinstance(value, str):
         verb, _, rest = value.partition(" ")
         if verb in schema.get("properties", {}):
-            return f"`{verb}` has no colon behind it: write `{verb}: {_short(rest)}`"
+            return f"`{verb}` needs a colon after it: write `{verb}: {_short(rest)}`"
         if any("to" in example for example in schema.get("examples", ()) if isinstance(example, dict)):
             return f"write `{{to: {_short(value)}}}`"
     listed = isinstance(value, str) and re.fullmatch(r"[\w./-]+( *, *[\w./-]+)*", value)
@@ -208,14 +208,14 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
     if wanted == ["string"] and isinstance(value, list) and value and isinstance(value[0], str):
-        return f"only one can stand here, such as `{_short(value[0])}`"
+        return f"only one value is allowed here: write `{_short(value[0])}`"
     if "string" in wanted and isinstance(value, dict) and value and all(v is None for v in value.values()):
         return f'a text that begins with `{{` needs quotes: "{{{_short(", ".join(value))}}}"'
     if "string" in wanted and isinstance(value, dict) and [type(v) for v in value.values()] == [str]:
         text = _short(_flow(value)[1:-1])
         if slot_signs(text) != text:
-            return f"a slot has its type first, and no blank in it: `{slot_signs(text)}`"
-        return f'a text that holds a colon and a blank needs quotes: "{text}"'
+            return f"a slot needs its type first and no spaces: write `{slot_signs(text)}`"
+        return f'a text that contains a colon and a space needs quotes: "{text}"'
     return ""
 
 
@@ -237,7 +237,7 @@ def _colour(value: Any, allowed: Collection[str]) -> str:
     if "turquoise" not in allowed or not isinstance(value, str):
         return ""
     if re.fullmatch(r"[0-9a-fA-F]{6}", value):
-        return f'write `"#{value}"`: a colour by its numbers begins with `#`, in quotes'
+        return f'write `"#{value}"`: a colour in numbers begins with `#` and needs quotes'
     return f"did you mean `{meant}`?" if (meant := _COLOURS.get(value.lower())) else ""
 
 
@@ -245,7 +245,7 @@ def _unit(unit: str) -> str:
     """Where to say the unit of a number that has one."""
     kind = "angle" if unit in ("°", "deg", "rad") else "length" if unit in ("m", "cm", "mm") else ""
     name = "deg" if unit == "°" else unit
-    return f", and once for the file `units: {{{kind}: {name}}}`" if kind else ""
+    return f", and at the top of the file `units: {{{kind}: {name}}}`" if kind else ""
 
 
 def _either(types: list[str]) -> str:

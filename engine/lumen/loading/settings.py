@@ -32,13 +32,15 @@ from lumen.loading.show import build_show
 from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
-BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
-IDLE_CHECK = Code("idle-check", "reload", WARNING, "a check of saved files on recorded visits has nothing to do")
+BAD_STAGE = Code("bad-stage", "robot", ERROR, "the robot does not start on the stage")
+IDLE_CHECK = Code(
+    "idle-check", "reload", WARNING, "a check of saved files on recorded visits has no visits or no setting"
+)
 UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not the name of a time zone")
 
-HOW = "write `replay: warn` or `replay: refuse` beside it, or take it out"
+HOW = "add `replay: warn` or `replay: refuse`, or delete it"
 
-NO_SUCH_ROBOT = Code("no-such-robot", "robot", ERROR, "the files have no robot of that name")
+NO_SUCH_ROBOT = Code("no-such-robot", "robot", ERROR, "lumen.yaml has no robot of that name")
 
 
 @dataclass(frozen=True)
@@ -139,11 +141,15 @@ def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic |
     """What to do about files that this Lumen would misread, None where it reads them; else nothing more can be said."""
     place, said = report.document.place((VOCABULARY_KEY,)), settings.vocabulary
     if said > VOCABULARY:
-        hint = f"install a newer Lumen; where nothing newer is used, write `{VOCABULARY_KEY}: {VOCABULARY}`"
-        return OTHER_VOCABULARY.at(place, f"this is written for vocabulary {said}; this Lumen reads {VOCABULARY}", hint)
+        hint = f"install a newer Lumen; if the files use nothing newer, write `{VOCABULARY_KEY}: {VOCABULARY}`"
+        return OTHER_VOCABULARY.at(
+            place, f"this is written for vocabulary {said}; this Lumen supports {VOCABULARY}", hint
+        )
     if said < VOCABULARY:
-        message = f"this is written for vocabulary {said}; this Lumen reads {VOCABULARY}, in which words have changed"
-        return OTHER_VOCABULARY.at(place, message, "`lumen upgrade` rewrites the files and says what it changed")
+        message = (
+            f"this is written for vocabulary {said}; this Lumen supports {VOCABULARY}, in which words have changed"
+        )
+        return OTHER_VOCABULARY.at(place, message, "run `lumen upgrade`: it rewrites the files and prints the changes")
     return None
 
 
@@ -162,14 +168,14 @@ def _replay_check(data: Mapping[str, Any], journal: JournalRetention, report: Do
     said, mode = data.get("reload", {}), data.get("reload", {}).get("replay", "")
     budget = duration(said, "budget", report, ("reload",), positive=True)
     if budget is not None and budget > MAX_BUDGET:
-        hint = f"write at most {MAX_BUDGET:g}s: as long as it lasts a saved file waits"
-        report(BAD_DURATION, ("reload", "budget"), f"{budget:g} s are too long for a check", hint=hint)
+        hint = f"write at most {MAX_BUDGET:g}s: a saved file waits for the whole check"
+        report(BAD_DURATION, ("reload", "budget"), f"{budget:g} s is too long for a check", hint=hint)
         budget = None
     if "budget" in said and not mode:
-        report(IDLE_CHECK, ("reload", "budget"), "`budget` is of `replay`, which is not there", hint=HOW)
+        report(IDLE_CHECK, ("reload", "budget"), "`budget` has no effect without `replay`", hint=HOW)
     if mode and not journal.wanted:
-        where, what = ("reload", "replay"), "`replay` has no visits to play: `journal` keeps nothing"
-        report(IDLE_CHECK, where, what, hint="let `journal` keep visits, or take `replay` out")
+        where, what = ("reload", "replay"), "`replay` has no visits to play: `journal` does not keep any"
+        report(IDLE_CHECK, where, what, hint="set `journal` to keep visits, or delete `replay`")
     return ReplayCheck(mode, budget or DEFAULT_BUDGET)
 
 
@@ -196,7 +202,9 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
         low, high = data["stage"][axis]
         if not (isfinite(low) and isfinite(high) and low <= 0.0 <= high and low < high):
             message = f"the robot starts at 0, which is not inside [{low:g}, {high:g}]"
-            report(BAD_STAGE, ("stage", axis), message, hint="the first number is at most 0, the second at least 0")
+            report(
+                BAD_STAGE, ("stage", axis), message, hint="write a first number of at most 0 and a second of at least 0"
+            )
             return None
         spans.append((low * unit, high * unit))
     return Stage(*spans)
@@ -213,7 +221,12 @@ def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSetting
     ring = duration(said, "ring", report, ("record",))
     if ring is not None and not SHORTEST_RING <= ring <= LONGEST_RING:
         message = f"the ring can't be {said['ring']} long: from {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
-        report(BAD_DURATION, ("record", "ring"), message, hint="10min is usual; delete `ring` to keep nothing")
+        report(
+            BAD_DURATION,
+            ("record", "ring"),
+            message,
+            hint="write a common value such as `10min`, or delete `ring` to keep nothing",
+        )
         ring = None
     return RecordingSettings(ring=ring or 0.0, camera=said.get("camera", True), **numbers)
 

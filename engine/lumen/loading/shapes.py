@@ -7,7 +7,7 @@ from lumen.loading.outline import BehaviorOutline, OutlinedState
 
 MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "a kind of state does not have this key")
 NO_STATES = Code("no-states", "statecharts", ERROR, "a compound or parallel state has no states")
-NEVER_DONE = Code("never-done", "statecharts", ERROR, "a state has `onDone` and no `do`")
+NEVER_DONE = Code("never-done", "statecharts", ERROR, "a state has `onDone` but no `do`")
 
 
 _COMMON = {"id", "description", "type"}
@@ -61,13 +61,15 @@ def _check_children(entry: OutlinedState, report: DocumentReport) -> None:
     if entry.kind not in (StateKind.COMPOUND, StateKind.PARALLEL):
         return
     if all(child.kind is StateKind.HISTORY for child in entry.children.values()):
-        hint = "give it `states`, or leave out its `type`"
-        report(NO_STATES, entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
+        hint = "add `states`, or delete its `type`"
+        report(NO_STATES, entry.where, f"{entry.title} has no child states", hint=hint, key=True)
 
 
 def _check_done(entry: OutlinedState, report: DocumentReport) -> None:
     if report.broken((*entry.where, "do")):
         return
     if entry.kind is StateKind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
-        hint = "give it a `do`, or use `always`"
-        report(NEVER_DONE, (*entry.where, "onDone"), f"{entry.title} has no `do` to be done with", hint=hint, key=True)
+        hint = "add a `do`, or use `always` in place of it"
+        report(
+            NEVER_DONE, (*entry.where, "onDone"), f"{entry.title} has no `do` that could finish", hint=hint, key=True
+        )

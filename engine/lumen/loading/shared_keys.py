@@ -10,7 +10,7 @@ from lumen.loading.complaints import WRONG_VALUE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
 
-UNKNOWN_OWNER = Code("unknown-owner", "robot", ERROR, "a key of `shared` belongs to a robot that is not in the house")
+UNKNOWN_OWNER = Code("unknown-owner", "robot", ERROR, "a key of `shared` names a robot that is not in the house")
 
 FIRST: Mapping[str, Any] = {"string": "", "number": 0, "integer": 0, "boolean": False}
 """What a key holds first where lumen.yaml does not say, by its type."""
@@ -27,7 +27,7 @@ def build_shared(data: Mapping[str, Any], robots: Collection[str], report: Docum
             report(UNKNOWN_OWNER, ("shared", name, "owner"), f"there is no robot `{owner}`", hint)
         elif not JsonSchema({"type": kind}).fits(initial):
             message, hint = (
-                f"`{name}` can't begin as {initial!r}: it is a {kind}",
+                f"`{name}` can't have the first value {initial!r}: it is a {kind}",
                 f"write one, such as {FIRST[kind]!r}",
             )
             report(WRONG_VALUE, ("shared", name, "initial"), message, hint)

@@ -15,7 +15,9 @@ from lumen.language.controllers import (
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.loading.complaints import WRONG_VALUE
 
-UNBOUND_OUTPUT = Code("unbound-output", "controllers", WARNING, "an output of a bound controller does nothing")
+UNBOUND_OUTPUT = Code(
+    "unbound-output", "controllers", WARNING, "an output of a bound controller is bound to nothing, or to two things"
+)
 
 STEP_SHARE = 0.02
 """By which part of its range an output has to change to be told anew, where the file does not say."""
@@ -43,15 +45,15 @@ def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
     deeds = [deed for deed in DEEDS if deed in spec]
     ends = [end for end in ("above", "below") if end in spec]
     if not deeds:
-        return BindingFault(UNBOUND_OUTPUT, "is bound to nothing: it does nothing", f"write one of {', '.join(DEEDS)}")
+        return BindingFault(
+            UNBOUND_OUTPUT, "is bound to nothing, so it has no effect", f"write one of {', '.join(DEEDS)}"
+        )
     if len(deeds) > 1:
         said = " and ".join(f"`{deed}`" for deed in deeds)
-        return BindingFault(
-            WRONG_VALUE, f"is bound to {said}: an output does one thing", "give each an output of its own"
-        )
+        return BindingFault(WRONG_VALUE, f"is bound to {said}, only one is allowed", "use a separate output for each")
     if deeds == ["event"] and len(ends) != 1:
         hint = "write `above: 0.7`, or `below: 0.2`"
-        return BindingFault(WRONG_VALUE, "needs one threshold at which its event is raised", hint)
+        return BindingFault(WRONG_VALUE, "needs one threshold for its event", hint)
     return None
 
 

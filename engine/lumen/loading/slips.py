@@ -26,74 +26,74 @@ class Slip(NamedTuple):
 
 
 NOT_CLOSED = (
-    "a quoted text begins here and is not closed where it should be",
-    "close it with the same sign; a quote inside the text needs the other kind of quotes around it",
+    "a quoted text begins here and is not closed",
+    "close it with the same quote; if the text contains that quote, use the other kind around the text",
 )
-NO_COMMA = "between two entries in brackets stands a comma", "write `,` here"
-COLON_IN_TEXT = "a text that holds a colon and a blank needs quotes"
-BARE_BRACES = "`{{` begins a map here, not a value to fill in"
+NO_COMMA = "a comma is missing between two entries in brackets", "write `,` here"
+COLON_IN_TEXT = "a text that contains a colon and a space needs quotes"
+BARE_BRACES = "without quotes, `{{` begins a map here"
 QUOTE_BRACES = 'put quotes around the text: "{{ … }}"'
 
 _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
     (
         re.compile("^ *(?P<slip>[\u00ad\u200b-\u200f\u2060\ufeff]+)"),
         "",
-        "an invisible character stands here",
-        "delete it: it may come from a copied text, or from another file that was pasted whole",
+        "there is an invisible character here",
+        "delete it: it may come from text that was copied",
     ),
     (
         re.compile("^[ ]*(?P<slip>[\u00a0\u2007\u202f\u3000]+)"),
         " ",
-        "this looks like a blank in the indentation, and is another character",
-        "delete it, and type spaces",
+        "this character in the indentation looks like a space, but it is not",
+        "replace it with spaces",
     ),
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip>： ?)"),
         ": ",
-        "this colon is a wide one, of Chinese or Japanese text",
-        "write `:` and a blank",
+        "this is a wide colon from Chinese or Japanese text",
+        "write `:` and a space",
     ),
     (
         re.compile(f"^ *(?:- )?{KEY}:(?P<slip>[\u00a0\u2007\u202f\u3000\u200b]+)"),
         " ",
-        "this looks like a blank, and is another character",
-        "delete it, and type a space",
+        "this character looks like a space, but it is not",
+        "replace it with a space",
     ),
     (
         re.compile("^ *(?P<slip>[–—•*]) +\\w"),
         "-",
-        "an item of a list begins with a hyphen",
+        "a list item begins with a hyphen",
         "write `- `",
     ),
     (
         re.compile(f"^ *(?P<slip>-)(?={KEY}:(?: |$))"),
         "- ",
-        "between the hyphen of an item and its text stands a blank",
+        "a space is missing after the hyphen",
         "write `- `",
     ),
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip>:)(?=[A-Za-z\"'\\[{{][^ ]*$)(?!//)"),
         ": ",
-        "between a colon and its value stands a blank",
+        "a space is missing after the colon",
         "write `: `",
     ),
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip> ?=) ?(?=[^=>])"),
         ": ",
-        "between a key and its value stands a colon",
+        "a colon is missing between the key and its value",
         "write `: `",
     ),
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip> *;)(?: |$)"),
         ":",
-        "a semicolon stands where a colon should",
+        "this is a semicolon, a key needs a colon",
         "write `: `",
     ),
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip>::)(?: |$)"),
         ":",
-        "two colons stand behind a key",
-        "write one: `: `",
+        "there are two colons after the key",
+        "write only one: `: `",
     ),
 )
 
@@ -128,7 +128,7 @@ def signs(text: str, index: int) -> Iterator[Slip]:
             yield line.slip(start, end - start, (message, hint), start, end, right)
     if found := re.search("[“”„«»‘’]", text):
         straight = re.sub("[“”„«»]", '"', re.sub("[‘’]", "'", text))
-        words = f"{found[0]} is no quote for YAML, which knows only straight ones", "write straight quotes: \" or '"
+        words = f"{found[0]} is not a quote in YAML, only straight quotes are allowed", "write straight quotes: \" or '"
         yield line.slip(found.start(), 1, words, 0, len(text), straight)
 
 
@@ -144,7 +144,7 @@ def quotes(text: str, index: int) -> Iterator[Slip]:
     ):
         start, sign = found.start("text"), found["sign"]
         words = (
-            f"the quote in column {found.start('sign') + 1} closes a text that none opens",
+            f"the quote in column {found.start('sign') + 1} closes a text that has no opening quote",
             f"write `{sign}` before it",
         )
         yield line.slip(start, 1, words, start, start, sign)
@@ -164,13 +164,13 @@ def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[S
     end = again + 1 if again > 0 else marks.stop
     inner = text[start + 1 : again] if again > 0 else text[start + 1 : end].replace(sign, "")
     if sign == "'" and rest[:1].isalpha():
-        message = "the apostrophe here ends the text that begins with the same sign"
-        words = message, "put double quotes around a text with an apostrophe in it"
+        message = "this apostrophe ends the quoted text"
+        words = message, "put double quotes around a text that contains an apostrophe"
     elif again > 0:
-        message = "the quote here ends the text that begins with the same sign"
-        words = message, "put single quotes around a text with double quotes in it"
+        message = "this quote ends the quoted text"
+        words = message, "put single quotes around a text that contains double quotes"
     else:
-        words = "something stands behind a quoted text", "put the quotes around all of it"
+        words = "there is more text after a quoted text", "put the quotes around the whole text"
     yield line.slip(last.column, 1, words, start, end, json.dumps(inner, ensure_ascii=False))
 
 
@@ -206,7 +206,7 @@ def brackets(text: str, index: int) -> Iterator[Slip]:
             close = closers(marks.open[-1:])
             words = f"the bracket `{sign}` is not closed by `{mark.sign}`", f"write `{close}`"
             yield from (line.slip(column, 1, words, at, end, close) for end in (at, at + 1))
-        words = f"`{mark.sign}` closes a bracket that is not open", "delete it, or open one before"
+        words = f"`{mark.sign}` has no opening bracket", "delete it, or add the opening bracket before it"
         yield line.slip(at, 1, words, at, at + 1, "")
 
 
@@ -224,7 +224,7 @@ def _cut(line: _Line, marks: LineMarks) -> Iterator[Slip]:
 
 def not_closed(sign: str, close: str) -> tuple[str, str]:
     """What is said of a bracket that is not closed."""
-    return f"the bracket `{sign}` is not closed", f"write `{close}` at the end of what is in it"
+    return f"the bracket `{sign}` is not closed", f"write `{close}` after its last entry"
 
 
 def _braces(line: _Line, marks: LineMarks) -> Iterator[Slip]:
@@ -243,21 +243,21 @@ def colons(text: str, index: int) -> Iterator[Slip]:
     if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{KEY})(?P<rest> +[^ :#].*| *)$", text):
         start, end, rest = *found.span("key"), found["rest"].strip()
         shown = f"write `{found['key']}: {rest}"[:40].rstrip() + "`"
-        alone = f"write `{found['key']}:` if it is a key; else indent it below its key"
+        alone = f"write `{found['key']}:` if it is a key; otherwise indent it under its key"
         yield line.slip(start, end - start, (_no_colon(found["key"]), shown if rest else alone), end, end, ":")
     if found := re.search(rf"{item}{KEY}:(?P<slip> +- +)\S", text):
-        words = "the first item of a list stands behind its key", "begin a new line with `- `, below the key"
+        words = "the first item of a list is on the same line as its key", "begin a new line under the key with `- `"
         yield line.slip(found.start("slip") + 1, 1, words, *found.span("slip"), " ")
     if found := re.search(rf"{item}(?P<all>{KEY}: [^,]+(?:, *{KEY}: [^,]+)+) *$", text):
         (start, end), meant = found.span("all"), f"{{{found['all']}}}"
-        words = "several keys in one line need braces around them", f"write `{short(meant)}`"
+        words = "several keys in one line need braces", f"write `{short(meant)}`"
         yield line.slip(start, end - start, words, start, end, meant)
     found = re.search(rf"{item}(?P<key>{KEY}): +(?P<value>(?P<inner>#?[a-z][\w.]*): .*?) *$", text)
     if found and (
         len(found["key"]) > 2 or found["key"] in ("on", "do", "at", "if")
     ):  # a language has two letters, and a text behind it
-        message = f"two keys stand in one line: `{found['key']}` and `{found['inner']}`"
-        hint = f"write `{found['inner']}:` in the next line, further in, or quotes around it if it is a text"
+        message = f"two keys are in one line: `{found['key']}` and `{found['inner']}`"
+        hint = f"write `{found['inner']}:` in the next line, indented further, or put quotes around it if it is a text"
         yield line.quoted(*found.span("value"), message, hint)
     if found := re.search(rf"{item}{KEY}: +(?P<value>(?!- )[^\"'\[{{|>#].*?: ?.*?) *$", text):
         yield line.quoted(*found.span("value"), COLON_IN_TEXT)
@@ -280,7 +280,7 @@ def flows(text: str, index: int) -> Iterator[Slip]:
 
 
 def _no_colon(key: str) -> str:
-    return f"`{key}` has no colon behind it"
+    return f"`{key}` needs a colon after it"
 
 
 def _odd_beginning(value: str) -> str:

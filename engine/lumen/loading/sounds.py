@@ -24,9 +24,11 @@ def sound_duration(root: Path, file: str) -> float:
             channels, bits, rate = sound.getnchannels(), 8 * sound.getsampwidth(), sound.getframerate()
             frames = min(sound.getnframes(), path.stat().st_size // (channels * bits // 8))
     except (wave.Error, EOFError):
-        raise ValueError("it is no WAV, or none of whole numbers (PCM)") from None
+        raise ValueError("it is not a WAV file with whole-number samples (PCM)") from None
     if bits != 16 or channels not in (1, 2) or not RATES[0] <= rate <= RATES[1]:
-        raise ValueError(f"it has {channels} channels, {bits} bits, {rate} Hz; one or two of 16 bits are played")
+        raise ValueError(
+            f"it has {channels} channels, {bits} bits, {rate} Hz; save it with one or two channels of 16 bits"
+        )
     if not frames:
         raise ValueError("it is empty")
     if frames / rate > MAX_SOUND_DURATION:

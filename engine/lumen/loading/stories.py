@@ -61,7 +61,9 @@ def _performance(how: str, report: DocumentReport, where: NodePath) -> str | flo
         return how
     length = seconds(how)
     if length is None:
-        report(BAD_DURATION, where, f"`{how}` is not a duration", hint="write `fails`, `hangs` or one such as `2s`")
+        report(
+            BAD_DURATION, where, f"`{how}` is not a duration", hint="write `fails`, `hangs` or a duration such as `2s`"
+        )
         return "fails"
     return length
 
@@ -108,7 +110,7 @@ def _moment(text: str, report: DocumentReport, where: NodePath) -> Schedule | No
     """A time of day, which may name the day; a story begins once."""
     found = schedule(text, report, where)
     if found and len(found.times) > 1:
-        hint = "write one of them, and a story for each of the others"
+        hint = "write one of them here, and a separate story for each other one"
         report(BAD_TIME, where, f"`{text}` names {len(found.times)} times of day", hint=hint)
         return None
     return found
@@ -119,7 +121,7 @@ def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorActio
         return Arrive(Visitor()) if body == "arrives" else Leave()
     for key, value in body.items():
         if not isfinite(value):
-            report(NOT_A_NUMBER, (*where, key), f"`{value}` can't be used here", hint="write an ordinary number")
+            report(NOT_A_NUMBER, (*where, key), f"`{value}` can't be used here", hint="write a finite number")
             return None
     return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
 

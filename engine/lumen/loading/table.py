@@ -52,7 +52,7 @@ class _Table:
             self.report.lost.add(term)  # its own variable has none of that name now
             return
         if term in self.sides[side][name]["terms"]:
-            message = f"`{name}` has a term `{term}` already: a term has one shape"
+            message = f"`{name}` has a term `{term}` already: a term may have only one shape"
             self.report(TWO_SHAPES, path, message, hint="delete one of them", key=True)
             return
         self.sides[side][name]["terms"][term] = {kind: parameters}
@@ -76,5 +76,5 @@ def termless(data: Mapping[str, Any], report: DocumentReport) -> None:
         path: NodePath = ("outputs", name)
         if not (spec.get("terms") or report.broken(path) or report.broken(("terms",))):
             message = f"the output `{name}` has no terms"
-            hint = "write `terms:` in it, or a table `terms:` for all variables"
+            hint = "add `terms:` to it, or a table `terms:` for all variables"
             report(MISSING_KEY, path, message, hint=hint, key=True)

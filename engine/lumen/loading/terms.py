@@ -14,8 +14,10 @@ from lumen.loading.rule_parser import KEYWORDS
 EMPTY_TERM = Code("empty-term", "controllers", ERROR, "a term covers nothing")
 NO_SHAPE = Code("no-shape", "controllers", ERROR, "a term has no shape")
 NOT_ASCENDING = Code("not-ascending", "controllers", ERROR, "the corners of a term are not in rising order")
-NOT_POSITIVE = Code("not-positive", "controllers", ERROR, "a width is not more than 0")
-RESERVED_NAME = Code("reserved-name", "controllers", ERROR, "a variable or term has the name of a word of the rules")
+NOT_POSITIVE = Code("not-positive", "controllers", ERROR, "a width is not above 0")
+RESERVED_NAME = Code(
+    "reserved-name", "controllers", ERROR, "a variable or term has a name that rules use for something else"
+)
 TWO_SHAPES = Code("two-shapes", "controllers", ERROR, "a term has two shapes")
 WRONG_PARAMETERS = Code("wrong-parameters", "controllers", ERROR, "a term has too few or too many numbers")
 
@@ -43,7 +45,7 @@ def build_terms(
 def plain_name(name: str, report: DocumentReport, path: NodePath) -> None:
     """Report a name that a rule could not tell from its own words."""
     if name.lower() in KEYWORDS:
-        report(RESERVED_NAME, path, f"`{name}` is a word of the rules", hint="choose another name", key=True)
+        report(RESERVED_NAME, path, f"`{name}` has a meaning in rules", hint="choose another name", key=True)
 
 
 class _Term:
@@ -82,8 +84,8 @@ class _Term:
 
     def shapeless(self) -> None:
         if len(self.kinds) > 1:
-            message = f"`{self.name}` is a `{self.kinds[0]}` and a `{self.kinds[1]}`: a term has one shape"
-            self.report(TWO_SHAPES, (*self.path, self.kinds[1]), message, hint="make them two terms", key=True)
+            message = f"`{self.name}` is a `{self.kinds[0]}` and a `{self.kinds[1]}`: a term may have only one shape"
+            self.report(TWO_SHAPES, (*self.path, self.kinds[1]), message, hint="split it into two terms", key=True)
         elif not any(pruned[: len(self.path)] == self.path for pruned in self.report.pruned):
             hint = "write, for example, `gaussian: [0, 80]`"
             self.report(NO_SHAPE, self.path, f"`{self.name}` has no shape", hint=hint, key=True)
@@ -98,7 +100,7 @@ class _Term:
         else:
             right, wanted = count == len(names), f"{len(names)} ({', '.join(names)})"
         if not right and not self.report.broken((*self.path, kind)):
-            message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, it takes {wanted}"
+            message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, it needs {wanted}"
             hint = f"write `{kind}: [{', '.join(names)}]`" if kind not in ("discrete", "linear") else ""
             self.report(WRONG_PARAMETERS, (*self.path, kind), message, hint=hint)
         return right
@@ -119,8 +121,10 @@ class _Term:
     def positive(self, kind: str, parameters: tuple[float, ...]) -> bool:
         for i in _POSITIVE.get(kind, ()):
             if not parameters[i] > 0:
-                message = f"{self.what(kind, i)} of `{self.name}` is {parameters[i]:g}: it has to be above 0"
-                self.report(NOT_POSITIVE, self.at(kind, i), message, hint="it says how wide the term is")
+                message = f"{self.what(kind, i)} of `{self.name}` is {parameters[i]:g}: it must be above 0"
+                self.report(
+                    NOT_POSITIVE, self.at(kind, i), message, hint="write a number above 0: it is the width of the term"
+                )
                 return False
         return True
 
@@ -135,7 +139,7 @@ class _Term:
                     return False
         if kind in _DIFFERENT and values[0] == values[1]:
             message = f"`{kind}` of `{self.name}` begins and ends at {values[0]:g}"
-            self.report(EMPTY_TERM, (*self.path, kind), message, hint="give it two different numbers")
+            self.report(EMPTY_TERM, (*self.path, kind), message, hint="write two different numbers")
             return False
         return True
 

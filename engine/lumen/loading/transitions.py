@@ -21,9 +21,9 @@ CONFLICTING_TARGETS = Code(
     "conflicting-targets", "statecharts", ERROR, "the states of a target can't be active together"
 )
 MISPLACED_APPROVAL = Code(
-    "misplaced-approval", "statecharts", ERROR, "a transition that no event from outside selects waits for approval"
+    "misplaced-approval", "statecharts", ERROR, "a transition with `approval` is not started by an event from outside"
 )
-ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would run for ever")
+ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would repeat for ever")
 
 _OUTSIDE = frozenset(("on", "hears"))
 _OWN = ("done", "error", "after", "at")
@@ -146,8 +146,10 @@ class TransitionReader:
             self.report.missed.update(text for _, text in _rows(row.get("target", []), place))
             return None
         if not (leaves or targets or guard):
-            hint = "give it a `target` or a `guard`, or let one before it lead elsewhere"
-            self.report(ENDLESS_ALWAYS, where, "an `always` without target and guard would run for ever", hint=hint)
+            hint = "add a `target` or a `guard`"
+            self.report(
+                ENDLESS_ALWAYS, where, "an `always` without `target` and `guard` would repeat for ever", hint=hint
+            )
             return None
         paths = tuple(target.path for target in targets)
         approve = self._approval(row["approve"], (*where, "approve"), event) if "approve" in row else None
@@ -165,8 +167,8 @@ class TransitionReader:
     def _approval(self, data: Any, where: NodePath, event: str) -> Approval | None:
         """What has to be approved, None (and reported) where nothing can wait."""
         if event == "*" or event.split(".")[0] in _OWN or len(set(where) & _OUTSIDE) == 0:
-            message = "only what an event from outside selects can wait for approval"
-            hint = "lead to a state that waits for a button, and mark the transition under its `on`"
+            message = "only a transition that an event from outside starts can wait for approval"
+            hint = "go to a state that waits for a button, and add `approval` to the transition in its `on`"
             self.report(MISPLACED_APPROVAL, where, message, hint=hint, key=True)
             return None
         if isinstance(data, str):
@@ -178,7 +180,7 @@ class TransitionReader:
         if (pair := rivals(states, lambda state: str(state.kind))) is None:
             return True
         message = f"`{pair[0].path}` and `{pair[1].path}` can't be active together"
-        hint = "the targets of a list have to lie in different regions of a parallel state"
+        hint = "list only states in different regions of one parallel state"
         self.report(CONFLICTING_TARGETS, where, message, hint=hint)
         return False
 

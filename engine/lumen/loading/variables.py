@@ -13,9 +13,9 @@ from lumen.loading.numbers import EMPTY_RANGE, NOT_FINITE
 from lumen.loading.terms import build_terms, plain_name
 
 DUPLICATE_VARIABLE = Code("duplicate-variable", "controllers", ERROR, "an input and an output have the same name")
-TERM_WITHOUT_SET = Code("term-without-set", "controllers", ERROR, "a term has no set, and the defuzzifier needs one")
+TERM_WITHOUT_SET = Code("term-without-set", "controllers", ERROR, "a term has no set, but the defuzzifier needs one")
 TERM_WITHOUT_VALUE = Code(
-    "term-without-value", "controllers", ERROR, "a term has no value, and the defuzzifier needs one"
+    "term-without-value", "controllers", ERROR, "a term has no value, but the defuzzifier needs one"
 )
 
 
@@ -65,7 +65,7 @@ class _Variables:
         plain_name(name, self.report, (self.side, name))
         if self.side == "outputs" and name in self.data["inputs"]:
             message = f"`{name}` is an input already"
-            self.report(DUPLICATE_VARIABLE, ("outputs", name), message, hint="give one another name", key=True)
+            self.report(DUPLICATE_VARIABLE, ("outputs", name), message, hint="rename one of them", key=True)
 
     def named_in(self, name: str) -> tuple[str, ...]:
         """The variables that a formula of this one's terms may ask for: with weights, what is known before it."""
@@ -82,11 +82,13 @@ class _Variables:
         """Whether the range holds something; an input's may be without end."""
         path: NodePath = (self.side, name, "range")
         if not low < high:
-            hint = f"write [{high:g}, {low:g}]" if high < low else "the second number has to be greater"
+            hint = (
+                f"write [{high:g}, {low:g}]" if high < low else "write a second number that is greater than the first"
+            )
             self.report(EMPTY_RANGE, path, f"the range [{low:g}, {high:g}] of `{name}` is empty", hint=hint)
         elif self.side == "outputs" and not (isfinite(low) and isfinite(high)):
             message = f"the range of the output `{name}` has no end"
-            self.report(NOT_FINITE, path, message, hint="its set is sampled between two numbers")
+            self.report(NOT_FINITE, path, message, hint="write a range of two numbers")
         else:
             return True
         return False

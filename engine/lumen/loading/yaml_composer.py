@@ -139,6 +139,6 @@ class _Composer:
         if event.anchor not in self._anchors:
             raise UnknownAliasError(event.anchor, tuple(self._anchors), event.start_mark)
         if event.anchor not in self._sizes:
-            raise TooLargeError("an alias stands within what it stands for", event.start_mark)
+            raise TooLargeError("an alias refers to the node that contains it", event.start_mark)
         self._add(self._sizes[event.anchor] - 1, event)
         return self._anchors[event.anchor]

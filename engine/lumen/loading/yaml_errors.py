@@ -18,14 +18,14 @@ TAB = Code("tab", "text", ERROR, "a line is indented with a tab")
 YAML_SYNTAX = Code("yaml-syntax", "text", ERROR, "a file is not YAML")
 
 
-_LOOK = "look at the indentation, a missing colon, quote or bracket here or in the line above"
+_LOOK = "check the indentation, and look for a missing colon, quote or bracket here or in the line above"
 _HINTS = {
-    "mapping values are not allowed": "put quotes around a text that holds a colon and a blank",
+    "mapping values are not allowed": "put quotes around a text that contains a colon and a space",
     "cannot start any token": "put quotes around a text that begins with `@`, `%`, a backquote or a quote",
-    "another document": "a file holds one document: delete the line `---`",
-    "could not find expected ':'": "write `:` and a blank behind it if it is a key; else indent it below its key",
+    "another document": "a file may contain only one document: delete the line `---`",
+    "could not find expected ':'": "write `:` and a space after it if it is a key; otherwise indent it under its key",
 }
-_SMALLER = "split it, or use fewer levels and aliases"
+_SMALLER = "split the file, or use fewer levels and aliases"
 _CONFLICT = re.compile(r"(<{7}|={7}|>{7})(?= |$)")
 _NOT_ALLOWED = yaml.reader.Reader.NON_PRINTABLE
 TABBED = re.compile(r"[ \t]*\t[ \t]*")
@@ -61,7 +61,7 @@ def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
 
 
 def _utf16(file: str) -> Diagnostic:
-    return NOT_UTF8.at(Place(file, 1, 1, 1, 2), "the file is UTF-16 text, and should be UTF-8", "save it as UTF-8")
+    return NOT_UTF8.at(Place(file, 1, 1, 1, 2), "the file is UTF-16 text, but it must be UTF-8", "save it as UTF-8")
 
 
 def _is_utf16(content: bytes) -> bool:
@@ -81,7 +81,7 @@ def not_allowed(file: str, text: str) -> Diagnostic | None:
     place = Place(file, line, column, line, column + 1)
     meant = bytes([ord(sign)]).decode("cp1252", "ignore") if "\x80" <= sign <= "\x9f" else ""
     which = f"U+{ord(sign):04X}, {f'`{meant}` of Windows-1252' if meant else 'a control character'}"
-    hint = f"delete it, and type `{meant}` if it was meant" if meant else "delete it: an editor may not show it"
+    hint = f"replace it with `{meant}`, or delete it" if meant else "delete it: an editor may not show it"
     return YAML_SYNTAX.at(place, f"YAML does not allow the character {which}", hint)
 
 

@@ -25,12 +25,12 @@ from lumen.loading.yaml_scalars import resolve
 COMPLEX_KEY = Code("complex-key", "text", ERROR, "a key is a list or a map")
 DUPLICATE_KEY = Code("duplicate-key", "text", ERROR, "a key is written twice in the same place")
 DECIMAL_COMMA = Code("decimal-comma", "text", ERROR, "a number is written with a comma")
-EMPTY_FILE = Code("empty-file", "text", ERROR, "a file holds nothing")
+EMPTY_FILE = Code("empty-file", "text", ERROR, "a file is empty")
 YAML_TAG = Code("yaml-tag", "text", ERROR, "a value has a YAML tag")
 
 
 _WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
-_TAGS = {"!include": "write here what stands in that file: one file can't include another"}
+_TAGS = {"!include": "copy the content of that file here: a file can't include another"}
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
@@ -57,7 +57,7 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
     except TooLargeError as error:
         return None, [too_large(file, error)]
     if node is None:
-        return None, [EMPTY_FILE.at(Place(file), "the file is empty", "write its content, or delete it")]
+        return None, [EMPTY_FILE.at(Place(file), "the file is empty", "add its content, or delete the file")]
     reader = _Reader(file, text)
     data = reader.read(node, (), None, 0)
     if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
@@ -108,7 +108,7 @@ class _Reader:
             self.say(
                 YAML_TAG,
                 node,
-                "a tag (a word that begins with `!`) means nothing here",
+                "a tag (a word that begins with `!`) has no meaning here",
                 _TAGS.get(node.tag, "delete the tag"),
             )
         if isinstance(node, yaml.ScalarNode):
@@ -136,7 +136,7 @@ class _Reader:
 
     def commas(self, node: yaml.SequenceNode, numbers: list[str]) -> list[Any]:
         """Report a list of numbers that are written with commas."""
-        message = "a comma ends a number, and these would be twice as many"
+        message = "a comma ends a number, so these would be twice as many numbers"
         self.say(DECIMAL_COMMA, node, message, f"write points: [{', '.join(numbers)}]")
         return [resolve(number) for number in numbers]
 
@@ -155,7 +155,7 @@ class _Reader:
                 break
             elif not isinstance(key, yaml.ScalarNode):
                 hint = "put quotes around a text that begins with `{`"
-                self.say(COMPLEX_KEY, key, "a key has to be a single word or text", hint)
+                self.say(COMPLEX_KEY, key, "a key must be a single word or text", hint)
             elif key.value in data:
                 self.duplicate(key, path)
                 if data[key.value] is None:  # the line was doubled, and the second one goes on
@@ -170,24 +170,22 @@ class _Reader:
         """Report a number that was written with a comma."""
         start, end = before.start_mark, key.end_mark
         place = Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
-        message = f"a comma ends the number {before.value}, and `{key.value}` would be a key"
+        message = f"a comma ends the number {before.value}, so `{key.value}` would be a key"
         self.diagnostics.append(DECIMAL_COMMA.at(place, message, f"write a point: {number}"))
 
     def duplicate(self, key: yaml.Node, path: NodePath) -> None:
         """Report a key that stands a second time; those of one map are one finding."""
         first = self.spans[(*path, key.value)].key
-        hint = f"the first one stands in line {first.line}" if first else ""
-        related = (Related(first, "the first one stands here"),) if first else ()
-        message, cause = f"`{key.value}` stands twice in the same place", f"{self.file} twice in {path}"
+        hint = f"the first one is in line {first.line}" if first else ""
+        related = (Related(first, "the first one is here"),) if first else ()
+        message, cause = f"`{key.value}` is in the same place twice", f"{self.file} twice in {path}"
         self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
 
     def too_deep(self, key: yaml.Node, first: yaml.Node, depth: int) -> None:
         """Report a key that stands as far in as those that were meant to be below it."""
-        message = (
-            f"`{key.value}` stands as far in as `{first.value}` below it, so that keys stand twice in the same place"
-        )
-        blanks = "two blanks" if key.start_mark.column > 1 else "the blanks"
-        self.say(DUPLICATE_KEY, key, message, f"take {blanks} away before `{key.value}`")
+        message = f"`{key.value}` is in the same column as `{first.value}` below it, so keys are in one place twice"
+        blanks = "2 spaces" if key.start_mark.column > 1 else "the spaces"
+        self.say(DUPLICATE_KEY, key, message, f"delete {blanks} before `{key.value}`")
 
     def overflow(self, node: yaml.Node, depth: int) -> None:
         if not self.full:

@@ -29,10 +29,10 @@ _SLOT = re.compile(r"\{([\w?]*)$")
 _PART = re.compile(r"[^\s|]*$")
 
 
-_WAYS = {"not": "refused, as in “don't dance”", "asked": "within a who, why or when question"}
+_WAYS = {"not": "refused, as in “don't dance”", "asked": "part of a who, why or when question"}
 _SLOTS = {
-    "name": "one to four words, as they were said",
-    "name?": "a name, unless it may be something else",
+    "name": "one to four words, exactly as spoken",
+    "name?": "a name, unless it can be something else",
     "number": "a number, in digits or words",
     "text": "everything that follows",
 }
@@ -132,7 +132,7 @@ class _Completion:
         if not before[: len(before) - wide].strip():
             yield from (Item(f"{way} ", detail, wide) for way, detail in _WAYS.items())
             if ELSE not in there:
-                yield Item(f"{ELSE}: ", "what no other row hears", wide)
+                yield Item(f"{ELSE}: ", "every sentence that no other row matches", wide)
 
     def entry_fields(self, path: NodePath) -> Iterator[str]:
         """`question.right` for the fields of entries of each `for` around a node."""

@@ -40,14 +40,18 @@ def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
             what = f"the `do` of `{state.name}` takes about {length:.1f} s"
             if not state.do or not length:
                 yield Hint(
-                    place, "after entering", f"counts from when `{state.name}` is entered, and ends if it is left"
+                    place,
+                    "after entering",
+                    f"the time begins when `{state.name}` is entered, and is cancelled when the state is left",
                 )
             elif delay >= length:
                 yield Hint(
-                    place, f"{delay - length:.0f} s after its do", f"{what}; this counts from when it is entered"
+                    place,
+                    f"{delay - length:.0f} s after its `do`",
+                    f"{what}; this time begins when the state is entered",
                 )
             else:
-                yield Hint(place, f"{length - delay:.0f} s before its do ends", f"{what}, and would be cut short")
+                yield Hint(place, f"{length - delay:.0f} s before its `do` ends", f"{what}, so it would be cut short")
 
 
 def _key(where: tuple[str | int, ...]) -> tuple[str | int, ...]:

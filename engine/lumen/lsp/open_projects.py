@@ -53,7 +53,7 @@ class OpenProjects:
         """The project that a file belongs to, and its name in it. Raises UsageError where it belongs to none."""
         root = root_of(path)
         if root is None:
-            raise UsageError(f"{path} belongs to no project: none of its folders has a {MAIN_FILE}")
+            raise UsageError(f"{path} is in no project: no folder above it has a {MAIN_FILE}")
         return self.analysis(root), _file(path, root)
 
 

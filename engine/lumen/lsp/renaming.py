@@ -54,18 +54,18 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
     """
     if analysis.broken:
         said = next(d for each in analysis.broken.values() for d in each.diagnostics)
-        raise UsageError(f"not while a file can't be read, for the name may stand there: {said}")
+        raise UsageError(f"can't rename while a file can't be read, because the name may be in it; first fix: {said}")
     pattern, look = _NAMES[use.kind]
     if not re.fullmatch(pattern, name) or _RESERVED.fullmatch(name):
-        raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has to be {look}")
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: the name must be {look}")
     if use.kind in WORD_KINDS and name in (*WAYS, ELSE):
-        raise UsageError(f"`{name}` can't be the name of a {use.kind}: it means something in the keys of `hears`")
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has a meaning in the keys of `hears`")
     if use.kind in WORD_KINDS and name in (*WORD_LISTS, *TABLES):
         raise UsageError(
-            f"`{name}` can't be the name of a {use.kind}: it is a word list by which `hears` reads sentences"
+            f"`{name}` can't be the name of a {use.kind}: it is a word list that `hears` uses to read sentences"
         )
     if use.kind is NameKind.ROUTE and use.name in MEANINGS:
-        raise UsageError(f"the route `{use.name}` means something to Lumen itself: {MEANINGS[use.name]}")
+        raise UsageError(f"the route `{use.name}` has a fixed meaning in Lumen: {MEANINGS[use.name]}")
     if _taken(analysis, use, name):
         raise UsageError(f"there is a {use.kind} `{name}` already")
     uses = [other for other in analysis.index.of(use) if other.text == use.text]
@@ -90,7 +90,7 @@ def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> No
     if len(after) > len(before) or _errors(after) > _errors(before):
         known = {(d.code, d.message) for d in before}
         new = next((d for d in after if (d.code, d.message) not in known), after[0])
-        raise UsageError(f"that would break the project: {new}")
+        raise UsageError(f"this new name would break the project: {new}")
 
 
 def _errors(found: Sequence[Diagnostic]) -> int:

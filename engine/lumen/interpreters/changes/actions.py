@@ -104,7 +104,7 @@ def _action(old: Action, new: Action, title: str, when: str, file: str) -> Itera
 def _text(language: str, texts: Sequence[object] | None, title: str, when: str, file: str) -> Change:
     spoken = f" ({language})" if language else ""
     if not texts:
-        return Change("text", title, f"{title} says nothing{when} in `{language}` any more", Risk.COSMETIC, file)
+        return Change("text", title, f"{title} no longer speaks{when} in `{language}`", Risk.COSMETIC, file)
     said = quoted(str(getattr(texts[0], "text", ""))) + (" and others" if len(texts) > 1 else "")
     return Change("text", title, f"{title} says {said}{when} now{spoken}", Risk.COSMETIC, file)
 

@@ -82,14 +82,14 @@ class _Comparison:
         yield from transition_changes(old, new, title, self.file, self.mapped, self.named_now)
         yield from self.invokes(old, new, title)
         if old.for_each != new.for_each:
-            how = f"goes through {code(new.for_each.each.shown)}" if new.for_each else "goes through no list"
+            how = f"goes through {code(new.for_each.each.shown)}" if new.for_each else "no longer goes through a list"
             yield self.change("state", title, f"{title} {how} now, as its `for` says")
         if old.resume != new.resume:
             yield self.change(
                 "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"
             )
         if old.life != new.life:
-            how = f"is alive as `{new.life}` says" if new.life else "says no more how the robot is alive"
+            how = f"has the style of life `{new.life}`" if new.life else "no longer sets a style of life"
             yield self.change("state", title, f"{title} {how} now" if new.life else f"{title} {how}")
         if old.gestures != new.gestures:
             how = "without" if new.gestures else "with"
@@ -99,7 +99,7 @@ class _Comparison:
             target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
             yield self.change("state", title, f"`onReload` of {title} {target}")
         if old.output != new.output:
-            yield self.change("state", title, f"{title} hands on other data")
+            yield self.change("state", title, f"{title} returns different data")
 
     def buttons(self, old: State, new: State, title: str) -> Iterator[Change]:
         """Buttons by their labels: people press them, the behaviour does nothing else for them."""
@@ -141,7 +141,7 @@ class _Comparison:
                 yield self.change("context", key, f"context key `{before}` is `{key}` now")
             if old.context[before] != new.context[key]:
                 first = f"{code(new.context[key])}, not {code(old.context[before])}"
-                yield self.change("context", key, f"`{key}` begins as {first} from the next start on")
+                yield self.change("context", key, f"`{key}` has the first value {first} from the next start on")
             if old.types.get(before) != new.types.get(key):
                 yield self.change("context", key, f"the type of `{key}` changed")
 

@@ -63,12 +63,12 @@ def _controller(old: ControllerDefinition, new: ControllerDefinition) -> Iterato
         yield f"{title} has {len(new.rules)} fuzzy rules, not {len(old.rules)}"
     yield from _variables(old, new, title)
     if [block.operators for block in old.blocks] != [block.operators for block in new.blocks]:
-        yield f"{title} combines its rules otherwise"
+        yield f"{title} combines its rules differently"
     if _bound(old) != _bound(new):
-        yield f"{title} is bound otherwise"
+        yield f"{title} is bound differently"
     if old.tracking != new.tracking:
         fields = [f for f in type(new.tracking).__slots__ if getattr(old.tracking, f) != getattr(new.tracking, f)]
-        yield f"{title} tracks otherwise: {names(fields)}"
+        yield f"{title} tracks differently: {names(fields)}"
 
 
 def _bound(controller: ControllerDefinition) -> tuple[object, ...]:
@@ -98,8 +98,8 @@ def _motion(old: MotionDefinition, new: MotionDefinition) -> Iterator[str]:
         yield f"no longer moves {names(fewer)}"
     if other := [joint for joint in new.tracks if joint in old.tracks and old.tracks[joint] != new.tracks[joint]]:
         shown = names(other) if len(other) <= 3 else f"{len(other)} joints"
-        yield f"moves {shown} otherwise"
+        yield f"moves {shown} differently"
     if old.cues != new.cues:
         yield "has other cues"
     if (old.start, old.end) != (new.start, new.end):
-        yield "begins or ends in another posture"
+        yield "begins or ends in a different posture"

@@ -86,16 +86,16 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     """What else lumen.yaml says."""
     for name, title in RESTART_FIELDS.items():
         if getattr(old, name) != getattr(new, name):
-            sentence = f"{title} changed: active from the next start on"
+            sentence = f"{title} changed: it takes effect at the next start"
             yield Change("fixed", name, sentence, Risk.RESTART, "lumen.yaml")
     for language in dict.fromkeys((*old.languages, *new.languages)):
         if (language in old.languages) != (language in new.languages):
             how = "added" if language in new.languages else "removed"
             yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
     if old.languages[:1] != new.languages[:1]:
-        yield Change("language", "", f"`{new.languages[0]}` is spoken first now", Risk.BEHAVIOR, "lumen.yaml")
+        yield Change("language", "", f"`{new.languages[0]}` is the first language now", Risk.BEHAVIOR, "lumen.yaml")
     if old.alerts != new.alerts:
-        yield Change("alerts", "", "who is told of troubles (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
+        yield Change("alerts", "", "the recipients of alerts (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
     if old.show != new.show:
         sentence = "what goes to lamps, screens and sound desks (`modules.show`) changed"
         yield Change("show", "", sentence, Risk.WIRING, "lumen.yaml")

@@ -13,7 +13,7 @@ RESTART_FIELDS: Mapping[str, str] = {
     "imperfections": "the robot's imperfections",
     "bus": "the broker's address",
     "console": "the console",
-    "modules": "what is said of the modules",
+    "modules": "the settings of the modules",
 }
 """Fields of `Project` that are active only from the next start on, and what they are called."""
 

@@ -36,7 +36,7 @@ def transition_changes(
         [key for key in one if key.startswith(_ROW) and key in both] for one, both in ((before, after), (after, before))
     )
     if old_rows != new_rows:
-        yield comparison.change(f"{title} asks its rows of `hears` in another order")
+        yield comparison.change(f"{title} tries its rows of `hears` in another order")
     for trigger in (*before, *more):
         if trigger in fewer:
             yield from (comparison.gone(t, trigger) for t in before[trigger])
@@ -65,14 +65,14 @@ class _TransitionComparison:
         if old.targets != new.targets:
             yield self.change(f"{self.title} {self.leads(new)} {trigger}{_if(new)} now, not {self.to(old)}")
         elif old.guard != new.guard:
-            condition = f"if {code(new.guard.shown)}" if new.guard else "whatever is so"
+            condition = f"if {code(new.guard.shown)}" if new.guard else "without a condition"
             yield self.change(f"{self.title} {self.leads(new)} {trigger} {condition} now")
         if old.approve != new.approve:
             how = "waits for approval now" if old.approve is None else "waits for approval in another way now"
-            how = how if new.approve else "waits for no approval now"
+            how = how if new.approve else "no longer waits for approval"
             yield self.change(f"{self.title} {how} {trigger}")
         if old.offer != new.offer:
-            how = "may be taken by a language model" if new.offer else "may be taken by no language model"
+            how = "may be chosen by a language model" if new.offer else "may no longer be chosen by a language model"
             yield self.change(f"{self.title} {how} {trigger} now")
         if old.reenter != new.reenter:
             how = "is left and entered" if new.reenter else "stays active"
@@ -84,7 +84,7 @@ class _TransitionComparison:
         return self.change(f"{self.title} no longer {how} {trigger}{_if(transition)}")
 
     def leads(self, transition: Transition) -> str:
-        return f"goes to {self.to(transition)}" if transition.targets else "stays where it is and acts"
+        return f"goes to {self.to(transition)}" if transition.targets else "stays in its state and acts"
 
     def to(self, transition: Transition) -> str:
         return names(self.name(path) for path in transition.targets) or "anywhere"

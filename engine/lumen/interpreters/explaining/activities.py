@@ -29,19 +29,19 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
     nth = next(i for i, placed in enumerate(state.do) if deed.where[: len(placed.where)] == placed.where)
     if position is not None and position.place < nth:
         ids = list(awaited(position))
-        stands = f"stands before it, at its {ordinal(position.place + 1)} of {len(state.do)}"
+        stands = f"has not reached it, it is at step {ordinal(position.place + 1)} of {len(state.do)}"
         text = f"the `do` of {name} {stands}: it waits for {', '.join(ids)}"
         place = last.place(deed.machine, state.do[position.place].where)
         if nth == position.place + 1 and len(ids) == 1 and ids[0].startswith("d"):
             return Reason("no-event", text, at, place, change={"event": f"done.command.{ids[0]}"})
-        return Reason("no-event", text, at, place, note="more has to be done before it")
+        return Reason("no-event", text, at, place, note="other actions come before it")
     scope = _scope(deed, inner)
     for condition, wanted in _conditions(state.do, deed.where):
         false = first_false(condition.guard, scope)
         if (false is None) != wanted:
             text = f"the `do` of {name} took the other branch of `if {condition.guard.shown}`"
             place = last.place(deed.machine, condition.guard.where)
-            return Reason("guard", text, at, place, false, note="what a `do` has passed by is not tried again")
+            return Reason("guard", text, at, place, false, note="a `do` does not go back to a branch that it passed")
     return None
 
 

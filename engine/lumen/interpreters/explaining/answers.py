@@ -71,7 +71,7 @@ def _needs(history: StepHistory, number: int, links: tuple[Link, ...]) -> Iterat
     named = {link.number for link in links}
     for earlier in sorted(set(directly_needed(history, number)) - named - {0}, reverse=True):
         step = history.steps[earlier].step
-        entered = f"entered {', '.join(step.entered)}" if step.entered else "changed what is remembered"
+        entered = f"entered {', '.join(step.entered)}" if step.entered else "changed the context"
         by = f": {of_event(step.event)}" if step.event else ""
         yield Link("event", f"{entered}{by}", step.snapshot.epoch + step.snapshot.at, number=earlier)
 
@@ -86,7 +86,7 @@ def why_not(
     """
     history = _history(steps, until)
     if not history.steps:
-        raise UsageError("nothing is kept of that time: ask about another one with --at")
+        raise UsageError("the journal keeps nothing from that time: choose another time with --at")
     last = history.steps[-1]
     end = last.at if until is None else until
     first = next((n for n, one in enumerate(history.steps) if one.at >= end - back), len(history.steps) - 1)

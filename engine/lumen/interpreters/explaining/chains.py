@@ -155,7 +155,7 @@ class Chain:
         event = one.step.event
         if event is None:
             reload = one.is_reload
-            text = "the files were saved, and taken over while it ran" if reload else f"{one.machine.id} begins"
+            text = "the files were saved and reloaded while it ran" if reload else f"{one.machine.id} begins"
             yield self._link(number, "file" if reload else "start", text)
         elif event.name == OPERATOR_GOTO:
             by = event.data.get("by", "somebody") if isinstance(event.data, dict) else "somebody"
@@ -290,5 +290,10 @@ def _answered(answer: CommandAnswer) -> str:
     if kind == "answer":
         by = data.get("passage") or data.get("source") if isinstance(data, Mapping) else ""
         return f"{id} is answered" + (f" by {by}" if by else "")
-    said = {"done": "is done", "error": "failed", "cancelled": "was cancelled", "lost": "was forgotten by the robot"}
+    said = {
+        "done": "is done",
+        "error": "failed",
+        "cancelled": "was cancelled",
+        "lost": "was deleted from the robot's memory",
+    }
     return f"{id} {said[kind]}" + (f": {reason}" if reason != kind else "")

@@ -26,7 +26,7 @@ def effect(history: StepHistory, what: str) -> Effect:
     Raises UsageError, saying what to do, where it did not happen as far as is kept.
     """
     if not history.steps:
-        raise UsageError("nothing is kept of that time: ask about another one with --at")
+        raise UsageError("the journal keeps nothing from that time: choose another time with --at")
     found = next(_effects(history, what), None)
     if found is None:
         raise UsageError(_unknown(history, what))
@@ -74,6 +74,6 @@ def _unknown(history: StepHistory, what: str) -> str:
         return f"`{what}` did not happen {kept}: ask `lumen why-not {what}`, or about another time with --at"
     said = [of_command(c) for one in history.steps for c in one.step.commands if isinstance(c, Start)]
     hint = known.near(what)
-    return f"nothing that is called `{what}`, and no text with these words, happened {kept}" + (
+    return f"nothing with the name `{what}`, and no text with these words, happened {kept}" + (
         f": {hint}" if hint else f"; the last was: it {said[-1]}" if said else ""
     )

@@ -49,11 +49,11 @@ class HeardRow(NamedTuple):
             case "not negated":
                 return f"{words} is not negated in {clause}"
             case "part":
-                return f"{words} counts alone only, and is part of {clause}"
+                return f"{words} counts only as a whole clause, but is part of {clause}"
             case "question":
                 return f"{words} is part of the question {clause}"
             case "no question":
-                return f"{words} is part of no question in {clause}"
+                return f"{words} is not part of a question in {clause}"
             case "refusal":
                 return f"{words} refuses something that another row names"
             case "guard":

@@ -144,7 +144,7 @@ class _Asked:
         if rival and not why:
             why = f"{of_transition(one.machine, rival.definition, one.owner)} goes first"
         elif stopped and not why:
-            why = "its time does not come any more"
+            why = "its time never comes now"
         closed = bool(why) or (not wanted.event and not wanted.timed)
         due = timer.due if timer else None
         return WayOut(
@@ -191,7 +191,7 @@ def _waits(wanted: Transition, timer: Timer | None, guard: GuardTruth | None, at
     if wanted.exact:
         return "when that is done" if wanted.event.startswith("done.") else "when that fails"
     if not wanted.event:
-        return "taken as soon as something happens"
+        return "taken at the next event"
     when = f"when it {wanted.hears.title}" if wanted.hears else f"when {wanted.event} comes"
     if guard and guard.holds is None:
         return f"{when} and {guard.text}"

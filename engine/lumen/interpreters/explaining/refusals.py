@@ -119,10 +119,8 @@ class TransitionRefusals:
             f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"
         )
         if row and not rival:
-            who = "what runs within it listens, too"
-        note = (
-            "" if change else "no other value of the event or the context was found with which this one would be taken"
-        )
+            who = "a behaviour that it invokes also listens"
+        note = "" if change else "no other value of the event or the context was found that would select this one"
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
@@ -156,7 +154,7 @@ class TransitionRefusals:
         elif isinstance(entered, Snapshot):
             more = _coming(machine, transition, StepSituation(entered, None, owner), happens, owner)
             change = {"state": source.name, **more} if more else None
-        note = "" if change else f"it has to be in {name} first"
+        note = "" if change else f"the behaviour must be in {name} first"
         return Reason("inactive", f"{text}: {name} was not active", at, place, change=change, note=note)
 
 
@@ -227,12 +225,12 @@ def _standing_in(
 def _awaited(inner: Snapshot, transition: Transition) -> str:
     if transition.timed:
         timer = next((t for t in inner.timers if t.event == transition.event and t.state == transition.source), None)
-        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its time does not come any more"
+        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its time never comes now"
     if transition.event.startswith("done."):
         return "that is not done yet"
     if transition.event.startswith("error."):
         return "nothing failed"
-    return f"no `{transition.event}` came" if transition.event else "nothing happened since it could"
+    return f"no `{transition.event}` came" if transition.event else "nothing has happened since it became possible"
 
 
 def _no_event(transition: Transition) -> str:
@@ -240,11 +238,11 @@ def _no_event(transition: Transition) -> str:
         return "other timers come first, or its guard is false then"
     if transition.event.startswith(("done.", "error.")):
         return f"it follows from what the behaviour does: {awaited(transition)}"
-    return "no data of that event was found with which it is taken"
+    return "no data of that event was found that would select it"
 
 
 def _no_change(false: GuardPart) -> str:
     changing = [text for text in false.values if text.startswith(("context.", "event.data", "heard."))]
     if not changing:
         return "it does not depend on the event's data or on the context"
-    return f"no other value of {', '.join(changing)} was found with which it would have been taken"
+    return f"no other value of {', '.join(changing)} was found that would have selected it"

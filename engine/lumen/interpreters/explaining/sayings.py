@@ -40,10 +40,10 @@ def path_of(machine: MachineDefinition, name: str) -> str:
 def _wrong(saying: Saying, found: ExplainedSentence) -> str:
     taken = found.taken
     if taken is None or taken.key != saying.row:
-        what = f"`{taken.key}` takes it" if taken else "no row takes it"
-        return f"{what}, and `{saying.row}` should{_by_guard(saying, found)}"
+        what = f"`{taken.key}` matches it" if taken else "no row matches it"
+        return f"{what}, but `{saying.row}` should{_by_guard(saying, found)}"
     missed = [
-        f"`{slot}` is {_shown(taken.caught.get(slot))}, and should be `{value}`"
+        f"`{slot}` is {_shown(taken.caught.get(slot))}, but should be `{value}`"
         for slot, value in saying.slots.items()
         if not _same(taken.caught.get(slot), value)
     ]

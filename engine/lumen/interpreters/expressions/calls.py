@@ -70,7 +70,7 @@ def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFi
 
 def _pattern(node: ExpressionNode, pattern: str | None, findings: ExpressionFindings) -> None:
     if pattern is None:
-        hint = "a pattern can't be computed; use `contains` for that"
+        hint = "a pattern must be written out; to compare with a value, use `contains`"
         findings.report(UNSAFE_PATTERN, node, "`matches` needs its pattern written as a text", hint)
         return
     try:

@@ -160,8 +160,8 @@ class _Checker:
         elif node.name in FUNCTIONS:
             hint = f"write `{node.name}(…)`"
         else:
-            hint += f"; a text stands in quotes: '{node.name}'"
-        self.report(UNKNOWN_NAME, node, f"there is nothing named `{node.name}`", hint)
+            hint += f"; put a text in quotes: '{node.name}'"
+        self.report(UNKNOWN_NAME, node, f"nothing is called `{node.name}`", hint)
         return ANY
 
     def event(self, known: KnownFacts) -> ValueType:
@@ -213,7 +213,7 @@ class _Checker:
             message = f"not every event here has `{owner}.{key}`" if several else f"`{owner}` has no `{key}`"
             hint = f"guard it with has({owner}.{key})" if several else hint
             if path == ("event", key) and key not in ("data", "name"):
-                hint = f"what came with it stands in its data: `event.data.{key}`"
+                hint = f"the event's fields are in its data: `event.data.{key}`"
             self.report(UNKNOWN_FIELD, node, message, hint, start)
         else:
             hint = f"guard it with has({owner}.{key})"
@@ -245,7 +245,7 @@ class _Checker:
         return of(NUMBER)
 
     def mismatch(self, node: Binary, left: ValueType, right: ValueType, hint: str) -> None:
-        message = f"{in_words(left.kinds)} and {in_words(right.kinds)} don't go together in `{node.sign}`"
+        message = f"{in_words(left.kinds)} and {in_words(right.kinds)} can't be combined in `{node.sign}`"
         self.report(TYPE_MISMATCH, node, message, hint)
 
     def call(self, node: FunctionCall, known: KnownFacts) -> ValueType:
@@ -266,5 +266,5 @@ class _Checker:
         if isinstance(target, FieldAccess | IndexAccess):
             self.member(target, known & KnownFacts(prefixes(target)), must_exist=False)
         else:
-            self.report(WRONG_ARGUMENT, target, "`has` asks whether a field is there", "write `has(event.data.x)`")
+            self.report(WRONG_ARGUMENT, target, "`has` checks if a field exists", "write `has(event.data.x)`")
         return of(BOOLEAN)

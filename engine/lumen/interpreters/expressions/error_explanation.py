@@ -37,7 +37,7 @@ def explain(error: Exception, source: str, tree: ExpressionNode, scope: Scope) -
             culprit = children(node)[operand] if operand >= 0 else node
             return wrong_kind(source, node, culprit, kind, wanted)
         case MismatchError(left=left, right=right):
-            message = f"{KIND_DESCRIPTIONS[left]} and {KIND_DESCRIPTIONS[right]} don't go together in `{_sign(node)}`"
+            message = f"{KIND_DESCRIPTIONS[left]} and {KIND_DESCRIPTIONS[right]} can't be combined in `{_sign(node)}`"
             return ExpressionError(message, node.offset)
         case KeyError() | TypeError() if isinstance(node, FieldAccess | IndexAccess):
             return _missing(error, source, node, scope)

@@ -8,23 +8,27 @@ from lumen.interpreters.expressions.kinds import KIND_DESCRIPTIONS
 from lumen.interpreters.expressions.tree import ExpressionNode
 from lumen.language.diagnostics import ERROR, Code
 
-UNKNOWN_CONTEXT_KEY = Code("unknown-context-key", "references", ERROR, "a key is used that `context` does not declare")
-UNKNOWN_FIELD = Code(
-    "unknown-field", "references", ERROR, "a field is named that the messages of the route do not have"
+UNKNOWN_CONTEXT_KEY = Code(
+    "unknown-context-key", "references", ERROR, "an expression uses a key that `context` does not declare"
 )
-UNKNOWN_STATE = Code("unknown-state", "references", ERROR, "a state is named that does not exist")
+UNKNOWN_FIELD = Code(
+    "unknown-field", "references", ERROR, "an expression uses a field that the messages of the route do not have"
+)
+UNKNOWN_STATE = Code("unknown-state", "references", ERROR, "the named state does not exist")
 EXPRESSION_SYNTAX = Code("expression-syntax", "expressions", ERROR, "an expression can't be read")
-TYPE_MISMATCH = Code("type-mismatch", "expressions", ERROR, "an expression combines values whose types do not fit")
-MISPLACED_DRAW = Code("misplaced-draw", "expressions", ERROR, "`shuffle` or `pick` stands outside `assign`")
-UNGUARDED_FIELD = Code("unguarded-field", "expressions", ERROR, "a field is read that not every event has")
-UNKNOWN_ANSWERS = Code("unknown-answers", "expressions", ERROR, "an answers table is named that the file does not have")
+TYPE_MISMATCH = Code("type-mismatch", "expressions", ERROR, "an expression combines values of types that do not fit")
+MISPLACED_DRAW = Code("misplaced-draw", "expressions", ERROR, "`shuffle` or `pick` is used outside `assign`")
+UNGUARDED_FIELD = Code(
+    "unguarded-field", "expressions", ERROR, "an expression reads a field that some of its events do not have"
+)
+UNKNOWN_ANSWERS = Code("unknown-answers", "expressions", ERROR, "the named answers table is not in the file")
 UNKNOWN_FUNCTION = Code("unknown-function", "expressions", ERROR, "an expression calls a function that does not exist")
 UNKNOWN_NAME = Code("unknown-name", "expressions", ERROR, "an expression uses a name that does not exist")
-UNKNOWN_PHRASE = Code("unknown-phrase", "expressions", ERROR, "phrases are named that the file does not have")
-UNSAFE_PATTERN = Code("unsafe-pattern", "expressions", ERROR, "a pattern of `matches` could take for ever")
-WRONG_ARGUMENT = Code("wrong-argument", "expressions", ERROR, "a function is given something it can't use")
+UNKNOWN_PHRASE = Code("unknown-phrase", "expressions", ERROR, "the named phrases are not in the file")
+UNSAFE_PATTERN = Code("unsafe-pattern", "expressions", ERROR, "a pattern of `matches` could run for ever")
+WRONG_ARGUMENT = Code("wrong-argument", "expressions", ERROR, "a function gets a value that it can't use")
 WRONG_ARGUMENT_COUNT = Code(
-    "wrong-argument-count", "expressions", ERROR, "a function is given too few or too many arguments"
+    "wrong-argument-count", "expressions", ERROR, "a function gets too few or too many arguments"
 )
 
 

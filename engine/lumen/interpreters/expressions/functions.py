@@ -151,7 +151,7 @@ def _unnamed(what: str, name: str, names: Iterable[str]) -> FaultError:
 def caught(scope: Scope, row: int) -> dict[str, Any]:
     """Return the value of `heard` in the guard and actions of the row of `hears` with that number."""
     if scope.machine is None:
-        raise FaultError("nothing is heard here", "`heard` is known in the guard and actions of a row of `hears`")
+        raise FaultError("`heard` has no value here", "`heard` is defined in the guard and actions of a row of `hears`")
     return hearing_of(scope.machine).caught(row, scope.event, scope.context, scope.language)
 
 

@@ -34,7 +34,7 @@ def pick(scope: Scope, values: Any) -> Any:
     if isinstance(values, str):
         return values
     if not _list(values):
-        raise FaultError("nothing can be picked of an empty list", "guard it with size(…) > 0")
+        raise FaultError("an empty list has no entry to pick", "guard it with size(…) > 0")
     return values[scope.draw(len(values))]
 
 

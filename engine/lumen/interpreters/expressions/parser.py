@@ -44,7 +44,7 @@ class _ExpressionParser(PrattParser):
             what = "the expression ends too early" if self.position else "there is no expression"
             return ExpressionError(what, token.offset, hint)
         hint = _PAIRS.get(self._pair(), _HINTS.get(token.text, hint))
-        return ExpressionError(f"`{token.text[:40]}` can't stand here", token.offset, hint)
+        return ExpressionError(f"`{token.text[:40]}` is not allowed here", token.offset, hint)
 
     def _pair(self) -> str:
         """This sign and the one right before it, as other languages write them together."""
@@ -52,7 +52,7 @@ class _ExpressionParser(PrattParser):
         return before.text + token.text if before.end == token.offset else ""
 
     def too_deep(self, offset: int) -> ExpressionError:
-        hint = "split it, and keep a part in the context with `assign`"
+        hint = "split it: assign a part to a key of the context, and use that key"
         return ExpressionError(f"the expression has more than {MAX_TREE_DEPTH} levels", offset, hint)
 
     def minus(self, power: int) -> ExpressionNode:

@@ -51,7 +51,7 @@ def compile_pattern(source: str) -> CompiledPattern:
     if (occurs_in := _read(source)) is None:
         _check_characters(pieces)
         _check_groups(pieces)
-        raise ExpressionError("the pattern is too large", 0, "count fewer repetitions, and name no two groups alike")
+        raise ExpressionError("the pattern is too large", 0, "use fewer repetitions, and give each group its own name")
     return CompiledPattern(occurs_in)
 
 
@@ -82,7 +82,7 @@ def _check_repetitions(pieces: Sequence[PatternPiece]) -> None:
         sign = piece[0]
         if sign in "*+?{":
             if before[0] in "(|" or piece == "{":
-                hint = rf"write `\{sign}` for the sign itself"
+                hint = rf"write `\{sign}` for the character itself"
                 raise ExpressionError(f"`{sign}` has nothing before it to repeat", at, hint)
             if before[0] in "*+?{":
                 raise ExpressionError("a repetition is repeated", at, "one `*`, `+` or `?` is enough")
@@ -95,12 +95,12 @@ def _check_characters(pieces: Sequence[PatternPiece]) -> None:
     """Raise ExpressionError for the first escape or set that the engine can't read."""
     for piece, at in pieces:
         if piece[0] == "\\" and piece[1:2] in tuple("123456789k"):
-            hint = "a pattern can't look at what it matched before"
+            hint = "a pattern can't refer to an earlier match"
             raise ExpressionError(f"`{piece}` refers back to a group", at, hint)
         if piece == "[":
             raise ExpressionError("this `[` is not closed", at, r"look for a missing bracket, or write `\[`")
         if piece[0] == "[" and _read(piece) is None:
-            hint = "write a backslash before signs that stand for themselves"
+            hint = "write a backslash before a character that is meant literally"
             raise ExpressionError(f"`{piece[:40]}` is not a set of characters", at, hint)
         if piece[0] == "\\" and _read(piece) is None:
             raise ExpressionError(f"`{piece}` has no meaning in a pattern", at, r"write `\\` for a backslash")

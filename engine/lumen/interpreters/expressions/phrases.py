@@ -95,7 +95,7 @@ def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
         table = value if isinstance(value, Mapping) else {"": value}
         found = {key: (rows,) if isinstance(rows, str) else tuple(rows or ()) for key, rows in table.items()}
         if not all(isinstance(text, str) for rows in found.values() for text in rows):
-            raise FaultError("these are no phrases", "write a list of texts, or one for each language")
+            raise FaultError("these are not phrases", "write a list of texts, or one for each language")
         _entries.put(value, found)
     return cast(Mapping[str, tuple[str, ...]], found)
 

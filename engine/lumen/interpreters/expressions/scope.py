@@ -32,7 +32,7 @@ def _nowhere(state: str) -> bool:
 
 def no_draw(count: int) -> int:
     """Stands where nothing may be drawn: only an action changes what is drawn next."""
-    raise FaultError("nothing can be drawn here", "`shuffle` and `pick` stand in `assign`")
+    raise FaultError("random values are not allowed here", "use `shuffle` and `pick` only in `assign`")
 
 
 class Scope(NamedTuple):

@@ -126,5 +126,5 @@ def _meant(hole: Placeholder, findings: list[ExpressionFinding]) -> list[Express
     inner = hole.source.removeprefix("{").removesuffix("}").strip()
     if not hole.source.startswith("{") or not any(f.code == EXPRESSION_SYNTAX for f in findings):
         return findings
-    message, hint = "the third brace begins a map", f"write two on each side: `{{{{ {inner} }}}}`"
+    message, hint = "the third brace would begin a map", f"write two braces on each side: `{{{{ {inner} }}}}`"
     return [ExpressionFinding(EXPRESSION_SYNTAX, 0, 1, message, hint)]

@@ -106,7 +106,7 @@ def _other(source: str, offset: int) -> str:
 
 def _number(source: str, kind: str, text: str, end: int) -> int | float:
     if source[end : end + 1].isidentifier():
-        hint = "numbers have no `u`" if source[end] in "uU" else "a blank or a sign is missing"
+        hint = "numbers have no `u`" if source[end] in "uU" else "add a space or an operator"
         raise ExpressionError(f"`{source[end]}` can't follow a number", end, hint)
     if kind == "int":
         return int(text, 16) if text[:2] in ("0x", "0X") else int(text)

@@ -95,7 +95,7 @@ def _named(
     known = around & measures.keys()
     if len(known) != 1:
         hint = "write it in a comparison with one measure, as in `errors > 1.5 * before`, or as `before.errors`"
-        return ConditionFault(node.offset, length, "`before` stands for no measure here", hint)
+        return ConditionFault(node.offset, length, "`before` has no measure to refer to here", hint)
     return _Replacement(node, f"context.{BEFORE}.{next(iter(known))}")
 
 

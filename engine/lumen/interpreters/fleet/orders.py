@@ -73,11 +73,11 @@ def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[Fo
     if not followed.centre or desired.term > followed.term:
         return newer, ""
     if desired.term < followed.term:
-        return followed, f"centre {desired.centre[:8]} was replaced: term {desired.term} is over"
+        return followed, f"centre {desired.centre[:8]} was replaced: its term {desired.term} is over"
     if desired.centre != followed.centre:
-        return followed, f"two centres: {desired.centre[:8]} orders, and {followed.centre[:8]} is followed"
+        return followed, f"two centres: {desired.centre[:8]} sent an order, but {followed.centre[:8]} is followed"
     if desired.version > followed.version:
         return newer, ""
     if desired.version == followed.version and wanted != followed.wanted:
-        return followed, f"order {desired.version} was another one when it came first"
+        return followed, f"order {desired.version} was different when it first arrived"
     return followed, ""

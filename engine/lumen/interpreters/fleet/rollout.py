@@ -45,7 +45,9 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
     if state.overruled:
         raise ValueError(state.overruled)
     if state.rollout and state.rollout.under_way:
-        raise ValueError(f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or let it end")
+        raise ValueError(
+            f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or wait until it ends"
+        )
     for target in plan.steps:
         if not fleet.members(target):
             raise ValueError(f"no robot belongs to the step `{target}`")
@@ -72,7 +74,7 @@ def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
     """What a person says of the rollout under way: `paused`, or `going` (on). Raises ValueError where there is none."""
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
-        raise ValueError("no rollout is under way")
+        raise ValueError("no rollout is running")
     if rollout.plan.try_first and not rollout.tried and rollout.state == PERSON and decision == GOING:
         return begin_steps(state, replace(rollout, reason=why))
     settled = rollout.state == PERSON and decision == GOING
@@ -92,7 +94,7 @@ def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         return state
-    return _ask(state, rollout, "another centre has taken over while it was under way")
+    return _ask(state, rollout, "another centre took over during the rollout")
 
 
 def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
@@ -113,7 +115,7 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
             why = f"{robot} follows centre {said.centre[:8]} of term {said.term}: this one was replaced"
             return replace(state, overruled=why)
         if said.term == state.term and said.centre == state.centre and said.version > state.version:
-            why = f"{robot} has heard order {said.version}, and here is {state.version}: this folder is an old copy"
+            why = f"{robot} received order {said.version}, the last one here is {state.version}: this folder is an old copy"
             return replace(state, overruled=why)
     return state
 
@@ -207,12 +209,12 @@ def _judged(
     pause = rollout.plan.pause
     if mostly and len(proved) == len(there) and watched >= pause:
         if rollout.plan.abort_if and _holds(rollout, fleet, heard) is None:
-            return _ask(state, rollout, f"nothing is known yet that `{rollout.plan.abort_if}` asks for")
+            return _ask(state, rollout, f"no measure is known yet for `{rollout.plan.abort_if}`")
         return _onward(state, rollout)
     if rollout.waited > 2.0 * pause + PATIENCE:
         late = [robot for robot, each in zip(rollout.assigned, said, strict=True) if not (each and each in proved)]
         return _ask(
-            state, rollout, f"not proved after {rollout.waited / 60.0:.0f} min: {', '.join(late[:5]) or 'nobody'}"
+            state, rollout, f"not proved after {rollout.waited / 60.0:.0f} min: {', '.join(late[:5]) or 'no robot'}"
         )
     return state
 

@@ -101,13 +101,13 @@ class Evaluator:
             raise self._no_numbers(inputs) from None
         if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
             shapes = {name: c.shape for name, c in zip(self._names, columns, strict=True)}
-            raise UsageError(f"the inputs of a batch have to be of one Shape (n,), not {shapes}")
+            raise UsageError(f"the inputs of a batch must have the same shape (n,), not {shapes}")
         if any(np.isnan(column).any() for column in columns):
             raise UsageError(f"an input of `{self.controller.name}` holds values that are not numbers")
         return columns
 
     def _no_numbers(self, inputs: Mapping[str, Any]) -> UsageError:
-        return UsageError(f"the inputs of `{self.controller.name}` have to be numbers, not {str(inputs)[:200]}")
+        return UsageError(f"the inputs of `{self.controller.name}` must be numbers, not {str(inputs)[:200]}")
 
     def _refuse_unknown(self, inputs: Mapping[str, Any]) -> None:
         for name in inputs:
@@ -157,4 +157,4 @@ def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping
     if variable.default is not None:
         return variable.default
     given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items())
-    raise LumenError(f"no rule for `{variable.name}` fires at {given}: give it a default")
+    raise LumenError(f"no rule for `{variable.name}` fires at {given}: add a `default` to the output")

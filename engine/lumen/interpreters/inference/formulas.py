@@ -95,7 +95,7 @@ class _Compiler:
                 return self._choice(self.part(condition), self.part(then), self.part(otherwise))
             case FunctionCall(name, arguments):
                 return self._apply(self._function(name), *arguments)
-        raise AssertionError(f"not a part of a formula: {node}")
+        raise AssertionError(f"not allowed in a formula: {node}")
 
     def _name(self, name: str) -> FormulaPart:
         if name in self._names:

@@ -102,7 +102,7 @@ class _Migration:
         spoken, language = situation.options.languages, before.language
         if spoken and language not in spoken:
             language = spoken[0]
-            notes += (f"language `{before.language}` is gone: on in `{language}`",)
+            notes += (f"language `{before.language}` is gone: the behaviour continues in `{language}`",)
         doing = before.activities.positions
         snapshot = Snapshot(
             configuration=frozenset(image.name for image in kept.values() if image.path),
@@ -162,5 +162,5 @@ class _Migration:
         names = step.snapshot.configuration
         states = self.new.chart.definition.states.values()
         after = [s.name for s in states if s.name in set(step.entered) & names]
-        on = f": on to `{after[-1]}`" if after else ""
+        on = f": the behaviour goes to `{after[-1]}`" if after else ""
         yield from (f"`{node.name}` is gone{on}" for node in sorted(inner, key=lambda node: node.index))

@@ -47,11 +47,11 @@ class Situation:
         if len(rivals) > 1:
             *more, last = (f"`{node.name}`" for node in rivals)
             names = f"{', '.join(more)} and {last}"
-            reason = f"{names} are active, and can't be together in {title} any more"
-            hint = f"give {title} an `onReload` that says where to go"
+            reason = f"{names} are active, but can't be active together in {title} now"
+            hint = f"give {title} an `onReload` with the state to go to"
         else:
-            reason = f"`{gone.name}` is active and gone, and no `onReload` says where to go instead"
-            hint = f"give {title} an `onReload`, or say under `renamed` what `{gone.path}` is called now"
+            reason = f"`{gone.name}` is active but gone, and no `onReload` names another state"
+            hint = f"give {title} an `onReload`, or write the new name of `{gone.path}` under `renamed`"
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
 
     def still_finished(self) -> bool:
@@ -64,8 +64,13 @@ class Situation:
     def ended_elsewhere(self, behavior: str) -> Refusal:
         """Why a behaviour that is over does not go on: a reload brings nothing to life."""
         ends = ", ".join(f"`{node.name}`" for node in self.start.ordered if node.kind is StateKind.FINAL)
-        reason = f"the behaviour has ended in {ends}, where it would not be at its end any more"
-        return Refusal(reason, "restart the exhibition: what has ended begins anew only so", ends.strip("`"), behavior)
+        reason = f"the behaviour has ended in {ends}, which is not its end in the new files"
+        return Refusal(
+            reason,
+            "restart the exhibition: only a restart begins a behaviour that has ended",
+            ends.strip("`"),
+            behavior,
+        )
 
     def busy(self) -> MigrationDelay | None:
         """The first state that is gone and still does something: it may lead elsewhere by itself."""
@@ -80,11 +85,11 @@ class Situation:
             if node.path in doing and node in placement.left:
                 yield _gone(node)
             elif node in changed:
-                yield MigrationDelay(f"what `{node.name}` is doing has changed", node.name)
+                yield MigrationDelay(f"the `do` of `{node.name}` changed while it runs", node.name)
         for id in self.ending(placement):
             child = self.snapshot.invoked[id]
             if _is_busy(child.snapshot):
-                yield MigrationDelay(f"`{id}` is not invoked any more, and is still doing something", id)
+                yield MigrationDelay(f"`{id}` is no longer invoked, but is still busy", id)
 
     def changed(self, placement: Placement) -> list[StateNode]:
         """The states that stay, and whose `do` is under way and can't go on."""
@@ -109,7 +114,7 @@ class Situation:
 
 
 def _gone(node: StateNode) -> MigrationDelay:
-    return MigrationDelay(f"`{node.name}` is gone, and is still doing something", node.name)
+    return MigrationDelay(f"`{node.name}` is gone, but is still busy", node.name)
 
 
 def _is_busy(snapshot: Snapshot) -> bool:

@@ -158,7 +158,7 @@ class OtherPlay:
         try:
             planned = plan(old, self._project, deserialize(old.machine, home.snapshot or {}), at=home.at, now=True)
             if not isinstance(planned, MigrationPlan):
-                self.trouble = f"these files can't go on from there: {planned.reason}"
+                self.trouble = f"these files can't continue from there: {planned.reason}"
                 return
             self._stands = planned.snapshot
             for entry in visit.inputs:

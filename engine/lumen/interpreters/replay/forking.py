@@ -49,7 +49,7 @@ def fork(
     number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))
     then = _inputs(entries[number:])
     if not then:
-        raise LumenError(f"at {position} nothing happened that could have been otherwise")
+        raise LumenError(f"nothing happened at {position} that could be changed")
     old, stands = _before(entries[: entries.index(then[0])], bundles)
     new = saved or old
     play = _Forked(new, takes, hurry)
@@ -80,7 +80,7 @@ def _before(entries: Sequence[RecordedEntry], bundles: ProjectSource) -> tuple[P
     """The files that ran, and where the behaviour stood after these entries. Raises LumenError."""
     jumps = [n for n, entry in enumerate(entries) if isinstance(entry, JournalJump) and entry.snapshot is not None]
     if not jumps:
-        raise LumenError("where the behaviour stood then is not in the journal any more")
+        raise LumenError("the behaviour's state at that time is no longer in the journal")
     jump = entries[jumps[-1]]
     assert isinstance(jump, JournalJump)
     old = bundles(jump.bundle, jump.behavior)
@@ -91,7 +91,7 @@ def _before(entries: Sequence[RecordedEntry], bundles: ProjectSource) -> tuple[P
         row = replayer.take(entry)
         stands, why = row.after, row.unknown
     if stands is None:
-        raise LumenError(why or "where the behaviour stood then is not known")
+        raise LumenError(why or "the behaviour's state at that time is not known")
     return old, stands
 
 
@@ -110,7 +110,7 @@ class _Forked(OtherPlay):
             return ""
         planned = plan(old, self._project, stands, at=at, now=True)
         if not isinstance(planned, MigrationPlan):
-            return f"these files can't go on from there: {planned.reason}"
+            return f"these files can't continue from there: {planned.reason}"
         self._stands = planned.snapshot
         return ""
 

@@ -77,7 +77,7 @@ class Replayer:
         self._machines, self._digest = machines, StepDigest()
         self._machine: MachineDefinition | None = None
         self._snapshot: Snapshot | None = None
-        self._unknown = "what came before is not in the journal"
+        self._unknown = "the time before is not in the journal"
 
     def take(self, entry: RecordedEntry) -> ReplayedStep:
         """The entry, and what came of it now. Nothing is raised for what stands in a journal."""
@@ -86,7 +86,7 @@ class Replayer:
     def _step(self, entry: JournalInput) -> ReplayedStep:
         machine, before = self._machine, self._snapshot
         if entry.redacted:
-            self._lose("somebody who is forgotten was named")
+            self._lose("an entry names a visitor whose data was deleted")
         if machine is None or before is None or entry.redacted:
             return ReplayedStep(entry, machine, unknown=self._unknown)
         was = StepOutcome(entry.exited, entry.entered, entry.commands, entry.digest)
@@ -108,7 +108,7 @@ class Replayer:
             self._lose(f"the files of the bundle {entry.bundle[:16]} were not kept")
             return ReplayedStep(entry, unknown=self._unknown)
         if entry.snapshot is None:
-            self._lose("where the behaviour stood could not be written")
+            self._lose("the behaviour's state could not be written to the journal")
             return ReplayedStep(entry, machine, unknown=self._unknown)
         try:
             stands = deserialize(machine, entry.snapshot)

@@ -25,7 +25,7 @@ class RecordedVisit(NamedTuple):
     `whole` is whether the behaviour came back home, with nothing missing between; `redacted` whether somebody was named
     in it who is forgotten. `home` says where the behaviour stood before: at home, or where a run began that does not
     begin there, as that of a museum which is open already. It is None where that is not in the journal, and `inputs`
-    are what happened from then on.
+    are what happened from that moment on.
     """
 
     number: int

@@ -63,7 +63,7 @@ def compile_action(action: Action) -> ActionFunction:
         case If(guard, then, otherwise):
             return _if(guard, compile_block(then), compile_block(otherwise))
         case Wait() | Parallel() | AskQuestion():
-            raise TypeError(f"{action} stands outside `do`")
+            raise TypeError(f"{action} is outside `do`")
     make = compile_command(action)
 
     def begin(context: ActionContext) -> None:
@@ -129,7 +129,7 @@ def compile_delay(delay: float | Template) -> Callable[[ActionContext], float]:
     def length(context: ActionContext) -> float:
         said = text(context.scope())
         if (found := seconds(said)) is None:
-            raise ActionError(f"the delay `{said}` is no duration: it needs a number and its unit, such as `20s`")
+            raise ActionError(f"the delay `{said}` is not a duration: write a number and its unit, such as `20s`")
         return found
 
     return length

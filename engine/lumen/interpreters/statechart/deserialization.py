@@ -47,7 +47,7 @@ def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
             f"the snapshot is of version {data['version'].data}, and this Lumen reads {SNAPSHOT_VERSION}"
         )
     if difference := _difference(machine, data["machine"]):
-        raise SnapshotError(f"the snapshot is not of `{machine.id}` as it is now: {difference}")
+        raise SnapshotError(f"the snapshot is not from `{machine.id}` as it is now: {difference}")
     found = _SnapshotReader(machine, data["configuration"]).read(data)
     if compiled(machine).planner.configuration(found.configuration).finished:  # what is over waits for nothing
         return found._replace(timers=(), doing={}, halted={}, invoked={})
@@ -108,7 +108,7 @@ class _SnapshotReader:
         if not self.active(state.path):
             return f"`{active[0].name}` is active without {here} around it" if active else ""
         if state.kind is StateKind.COMPOUND and len(active) != 1:
-            return f"{len(active)} states of {here} are active, where one has to be"
+            return f"{len(active)} states of {here} are active, but only one may be"
         regions = [child for child in children if child.kind is not StateKind.HISTORY]
         if state.kind is StateKind.PARALLEL and len(active) < len(regions):
             return f"only {len(active)} of the {len(regions)} regions of {here} are active"
@@ -119,7 +119,7 @@ class _SnapshotReader:
         found: dict[str, Any] = {key: data[key].plain() for key in self.machine.context}
         for key, part in data.items():
             if key not in found:
-                raise part.refused("is no key of the context")
+                raise part.refused("is not a key of the context")
             if not fits(found[key], checks[key]):
                 raise part.refused(refusal(found[key], checks[key]))
         return found
@@ -133,26 +133,26 @@ class _SnapshotReader:
         due, delay = nanoseconds(data["due"].number()), nanoseconds(data["delay"].number())
         event, content = data["event"].text(), data["data"].plain()
         if kind == "at" and event not in compiled(self.machine).chart.nodes[state].schedules:
-            raise data["event"].refused(f"is no `at` of `{state}`")
+            raise data["event"].refused(f"is not an `at` of `{state}`")
         to = data["to"].text() if any(key == "to" for key, _ in data.items()) else ""
         return Timer(data["id"].text(), due, delay, event, content, state, kind, to)  # type: ignore[arg-type]  # one of three
 
     def position(self, path: str, data: JsonCursor) -> Within:
         node = compiled(self.machine).chart.nodes.get(path)
         if node is None or not node.do or not self.active(path):
-            raise data.refused("stands for no active state with a `do`")
+            raise data.refused("is not an active state with a `do`")
         return _within(data, node.do, ("do",))
 
     def halted(self, path: str, data: JsonCursor) -> Halted:
         node = compiled(self.machine).chart.nodes.get(path)
         if node is None or not node.do:
-            raise data.refused("stands for no state with a `do`")
+            raise data.refused("is not a state with a `do`")
         return Halted(_within(data["position"], node.do, ("do",)), data["at"].number())
 
     def remembered(self, path: str, data: JsonCursor) -> tuple[str, ...]:
         state, paths = self.machine.states.get(path), tuple(data.texts())
         if state is None or state.kind is not StateKind.HISTORY:
-            raise data.refused("stands for no history state")
+            raise data.refused("is not a history state")
         if not (paths and all(self.may_remember(state, each) for each in paths)) or self.exclude(paths):
             raise data.refused(f"remembers {', '.join(paths) or 'nothing'}, which was never active there")
         return paths
@@ -177,7 +177,7 @@ class _SnapshotReader:
         state = data["state"].text()
         machine = self.machine.invoked.get(self.machine.invoked_behavior(state, id))
         if machine is None or not self.active(state):
-            raise data.refused(f"was invoked by `{state}`, which is not active or invokes nothing of that id")
+            raise data.refused(f"was invoked by `{state}`, which is not active or does not invoke that id")
         return Invoked(state, _snapshot(machine, data["snapshot"]), data["commands"].count())
 
 
@@ -192,7 +192,7 @@ def _within(data: JsonCursor, actions: tuple[CompiledAction, ...], blocks: tuple
     if block not in blocks:
         raise data["block"].refused(f"should be {' or '.join(f'`{name}`' for name in blocks)}")
     if place >= len(actions):
-        raise data["place"].refused(f"is {place}, where there are {len(actions)} actions")
+        raise data["place"].refused(f"is {place}, but there are {len(actions)} actions")
     return Within(block, place, _position(data["inner"], actions[place]))  # type: ignore[arg-type]  # one of the blocks
 
 
@@ -205,7 +205,7 @@ def _position(data: JsonCursor, action: CompiledAction) -> Position:
         case ParallelActions(branches):
             rows = data["branches"].rows()
             if len(rows) != len(branches) or all(row.data is None for row in rows):
-                raise data["branches"].refused(f"should say of {len(branches)} branches where they stand")
+                raise data["branches"].refused(f"should have a position for each of {len(branches)} branches")
             pairs = zip(rows, branches, strict=True)
             return Fork(tuple(None if row.data is None else _position(row, branch) for row, branch in pairs))
         case AskedQuestion(otherwise=otherwise):
@@ -213,9 +213,9 @@ def _position(data: JsonCursor, action: CompiledAction) -> Position:
                 return _within(data, otherwise, ("else",))
             rows = data["branches"].rows()
             if len(rows) < 3 or all(row.data is None for row in rows):
-                raise data["branches"].refused("should say where the answer, its time and what is said stand")
+                raise data["branches"].refused("should have the positions of the answer, its time and the spoken text")
             return Fork(tuple(None if row.data is None else _awaiting(row) for row in rows))
-    raise data.refused("stands in an action that takes no time")
+    raise data.refused("is a position in an action without a length")
 
 
 def _awaiting(data: JsonCursor) -> Awaiting:
@@ -235,7 +235,7 @@ def _difference(machine: MachineDefinition, other: JsonCursor) -> str:
         f"{_list('context key', their_keys - keys)} is gone" if their_keys - keys else "",
         f"{_list('context key', keys - their_keys)} is new" if keys - their_keys else "",
     ]
-    same = f"the states are the same, but what stands in them is not ({hash[:8]} then, {machine.hash[:8]} now)"
+    same = f"the states are the same, but their content is not ({hash[:8]} then, {machine.hash[:8]} now)"
     return "; ".join(filter(None, found)) or same
 
 

@@ -27,7 +27,7 @@ def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, 
     target = _named(machine, program.chart, name)
     context = open_context(program, snapshot, event, max(snapshot.at, event.at))
     if context.configuration.finished:
-        raise UsageError(f"`{machine.id}` is at its end: nothing can be entered any more")
+        raise UsageError(f"`{machine.id}` has ended: no state can be entered now")
     source, targets = _way(target, context.configuration)
     where = tuple(node.path for node in targets)
     transition = CompiledTransition(Transition(source.path, event.name, where), source, targets)
@@ -64,7 +64,7 @@ def _invoked(machine: MachineDefinition, name: str) -> Iterator[str]:
             paths = [(s.name, s.path, s.path.rpartition(".")[2]) for s in inner.states.values()] if inner else []
             if any(end in names for names in paths):
                 where = f"a state of `{invoke.behavior}`, which `{state.name}` invokes"
-                yield f"`{end}` is {where}: only its own events lead there. Enter `{state.name}`, where it begins"
+                yield f"`{end}` is {where}: only its own events go there. Enter `{state.name}`, where it begins"
 
 
 def _names(nodes: list[StateNode]) -> Iterator[str]:

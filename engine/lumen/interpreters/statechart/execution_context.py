@@ -227,7 +227,7 @@ class ExecutionContext:
             self.hand_over(to, Event(event, data, self.at))
             return
         if len(self.timers) >= MAX_TIMERS:
-            raise ActionError(f"`{event}` is not sent: {MAX_TIMERS:,} timers wait already")
+            raise ActionError(f"`{event}` is not sent: {MAX_TIMERS:,} timers are already waiting")
         due = nanoseconds(self.at) + length
         timer = Timer(id or self._timer_id("s"), due, length, event, data, to=to)
         self.timers = (*self.timers, timer)
@@ -241,8 +241,8 @@ class ExecutionContext:
 
     def returned(self, to: str, event: Event) -> None:
         """Raise error.communication: there is nobody to whom that could be sent (SCXML 6.2.5)."""
-        whom = "nobody has invoked this behaviour" if to == PARENT else f"no behaviour `{to}` is invoked here now"
-        reason = f"{whom}: `{event.name}` goes to nobody"
+        whom = "no behaviour invoked this one" if to == PARENT else f"no behaviour `{to}` is invoked here now"
+        reason = f"{whom}: `{event.name}` has no recipient"
         self.raise_event(Event("error.communication", {"to": to, "reason": reason}, self.at))
 
     def cancel_send(self, id: str) -> None:

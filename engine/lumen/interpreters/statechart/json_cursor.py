@@ -93,7 +93,7 @@ def _plain(value: Any, place: str) -> Any:
         case Mapping():
             for key in value:
                 if not isinstance(key, str):
-                    raise UsageError(f"`{place}` has the key {key!r}, which is no text")
+                    raise UsageError(f"`{place}` has the key {key!r}, which is not a text")
             return {key: _plain(item, f"{place}.{key}") for key, item in value.items()}
         case list() | tuple():
             return [_plain(item, f"{place}.{index}") for index, item in enumerate(value)]

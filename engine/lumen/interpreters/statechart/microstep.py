@@ -105,7 +105,7 @@ def count_microstep(context: ExecutionContext) -> None:
         states = ", ".join(f"`{name}`" for name in sorted({*context.entered[-20:], *context.configuration.names}))
         raise LumenError(
             f"`{context.machine.chart.definition.id}` never comes to rest: after {MAX_MICROSTEPS:,} microsteps it still"
-            f" goes through {states}; what goes round: {_round(context.transitions)}"
+            f" goes through {states}; the loop is: {_round(context.transitions)}"
         )
 
 

@@ -14,11 +14,11 @@ def with_value(found: Any, name: str, within: Sequence[str], value: Any) -> dict
     key, *rest = within
     if not isinstance(found, Mapping):
         raise ExpressionError(
-            f"`{name}` is no map, in which `{key}` could be set", hint=f"assign it a map first, `{name}: {{}}`"
+            f"`{name}` is not a map, so it can't have `{key}`", hint=f"assign it a map first, `{name}: {{}}`"
         )
     inner = f"{name}.{key}"
     if rest and key not in found:
         raise ExpressionError(
-            f"there is no `{inner}`, in which `{rest[0]}` could be set", hint=f"assign it a map first, `{inner}: {{}}`"
+            f"`{inner}` does not exist, so it can't have `{rest[0]}`", hint=f"assign it a map first, `{inner}: {{}}`"
         )
     return {**found, key: with_value(found[key], inner, rest, value) if rest else value}

@@ -90,7 +90,7 @@ def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot)
 def late(property: Property, since: float) -> str:
     """How a deadline was missed."""
     condition = property.eventually.shown if property.eventually else ""
-    return f"`{condition}` did not come to hold within {property.within:g} s of {since:g} s"
+    return f"`{condition}` did not become true within {property.within:g} s of {since:g} s"
 
 
 def _broken(property: Property, at: float) -> Violation:

@@ -81,8 +81,8 @@ def in_full(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Ste
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
     except (AttributeError, TypeError, ValueError):
-        need(machine, MachineDefinition, "what takes a step", "a Machine")
-        need(snapshot, Snapshot, "where a step begins", "a Snapshot")
+        need(machine, MachineDefinition, "the machine of a step", "a Machine")
+        need(snapshot, Snapshot, "the snapshot of a step", "a Snapshot")
         need(event, Event, "what happens", "an Event")
         need_text(event.name, "the name of an event")
         need_number(event.at, "the time of an event", finite=False)
@@ -132,6 +132,6 @@ def elapse(machine: MachineDefinition, current: Callable[[], Snapshot], until: f
         if left < 0:
             raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent over and over without delay")
         if steps > most:
-            many = f"timers set timers, `{event.name}` among them, more than {MAX_RATE:,} a second"
+            many = f"timers set more than {MAX_RATE:,} other timers a second, `{event.name}` among them"
             raise LumenError(f"`{machine.id}` never comes to rest: {many}")
         yield step(machine, current(), event)

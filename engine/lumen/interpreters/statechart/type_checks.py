@@ -84,7 +84,7 @@ class TypeCheck:
 def type_checks(machine: MachineDefinition) -> dict[str, TypeCheck | None]:
     """For each context key its check, None where anything goes.
 
-    A first value of null without an entry in `types:` says nothing of what comes later. An integer may become any
+    A first value of null without an entry in `types:` has no angle for what comes later. An integer may become any
     number, as in CEL.
     """
     return {key: _check(value, machine.types.get(key)) for key, value in machine.context.items()}
@@ -106,7 +106,7 @@ def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[st
     for key, value in given.items():
         if key not in checks:
             hint = did_you_mean(key, checks)
-            raise UsageError(f"`{name}` has no `{key}` in its context to be given" + f": {hint}" * bool(hint))
+            raise UsageError(f"`{name}` has no `{key}` in its context to receive it" + f": {hint}" * bool(hint))
         if not fits(value, checks[key]):
             raise UsageError(f"`{key}` {refusal(value, checks[key])}")
     return given

@@ -115,9 +115,9 @@ class _Reader:
             sign = self.phrase[self.position]
             if sign == "|":
                 hint = f"write ({self.phrase.strip()}), or a line for each"
-                raise PatternError("`|` separates alternatives inside ( ) or [ ] only", hint, self.position)
+                raise PatternError("`|` is allowed only inside ( ) or [ ], between alternatives", hint, self.position)
             raise PatternError(
-                f"`{sign}` closes nothing", f"remove it, or add what opens it: {_OPENS[sign]}", self.position
+                f"`{sign}` closes nothing", f"remove it, or add its opening bracket: {_OPENS[sign]}", self.position
             )
         return found
 
@@ -155,7 +155,7 @@ class _Reader:
                 return found
             if ended != "|":
                 message = f"`{sign}` is not closed"
-                raise PatternError(message, f"add `{closing}` where the alternatives end", start)
+                raise PatternError(message, f"add `{closing}` after the last alternative", start)
 
     def slot(self) -> str:
         start = self.position
@@ -163,8 +163,8 @@ class _Reader:
         if found is None:
             end = self.phrase.find("}", start)
             length = (end + 1 if end >= 0 else len(self.phrase)) - start
-            message = f"`{self.phrase[start : start + length]}` is no slot"
-            hint = "write {TYPE} or {TYPE:SLOT} without a blank, such as {name} or {number:n}"
+            message = f"`{self.phrase[start : start + length]}` is not a slot"
+            hint = "write {TYPE} or {TYPE:SLOT} without a space, such as {name} or {number:n}"
             raise PatternError(message, hint, start, length)
         self.position = found.end()
         kind, name = found[1], found[2] or found[1].rstrip("?")
@@ -174,7 +174,7 @@ class _Reader:
 
 _CLOSES = {"(": ")", "[": "]"}
 _OPENS = {")": "(", "]": "[", "}": "{"}
-_EMPTY = "remove the empty alternative; what may be missing stands in [ ]"
+_EMPTY = "remove the empty alternative; put an optional part in [ ]"
 
 
 def slots_of(phrase: str) -> Iterator[Slot]:

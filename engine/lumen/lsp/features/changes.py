@@ -30,7 +30,7 @@ async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.Worksp
         return None
     analysis, file, line, column = found
     if (word := renaming.renamable(analysis, file, line, column)) is None:
-        raise JsonRpcInvalidParams("there is nothing here that can be renamed")
+        raise JsonRpcInvalidParams("nothing here can be renamed")
     try:
         renamed = renaming.rename(analysis, word, params.new_name)
         after = await server.judge(analysis.root).judge(renaming.applied(analysis, renamed))
