@@ -45,7 +45,7 @@ def stranger(broker: RabbitMQ) -> Iterator[Any]:
         ("amqp://guest:secret@127.0.0.1:port/", "no address of a broker"),
         ("amqp://", "there is no host"),
         ("amqp://h/?heartbeat=often", "no address of a broker"),
-        ("redis://user:secret@h", "`redis://` is no bus: write memory://"),
+        ("redis://user:secret@h", "`redis://` is not a bus: write memory://"),
         ("lumen", "the address of a bus begins with"),
     ],
 )

@@ -140,7 +140,7 @@ def test_any_name_can_be_drawn(head: Controller) -> None:
         ([HEAD, "--at", "FaceXLoc=left", "FaceYLoc=1"], "write it like FaceXLoc=80"),
         ([HEAD, "--at", "FaceXLoc=1"], "`FaceYLoc` of `head` is missing"),
         ([HEAD, "--at", "FaceXLoc=1", "FaceYLoc=1", "Face=1"], "no input `Face`"),
-        ([HEAD, "--at", "FaceXLoc=nan", "FaceYLoc=1"], "has to be a number, not nan"),
+        ([HEAD, "--at", "FaceXLoc=nan", "FaceYLoc=1"], "must be a number, not nan"),
         (["motions/dance.yaml", "--at", "x=1"], "--at is for controllers"),
     ],
 )

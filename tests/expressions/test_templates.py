@@ -43,7 +43,7 @@ def test_filled(text: str, filled: str) -> None:
         ("Hi {{ 'a }}", 6, "this text is not closed"),
         ("é {{ nam }}", 5, "nothing is called `nam`"),
         ("{{ “a” }}", 3, "has no meaning"),
-        ("{{ 1 }} {{ 1 2 }}", 13, "`2` can't stand here"),
+        ("{{ 1 }} {{ 1 2 }}", 13, "`2` is not allowed here"),
     ],
 )
 def test_unreadable(text: str, offset: int, message: str) -> None:

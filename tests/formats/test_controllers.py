@@ -211,7 +211,7 @@ def test_what_an_engine_can_not_bring_is_listed_at_its_words() -> None:
         "5:9 the term `very` of `a` is left out: a parameter is no number",
         "12:23 this formula is left out: there is no function `bessel` of 1",
         "18:17 this rule is left out: there is no `hihg`",
-        "19:25 this rule is left out: here the name of an input should stand, not `then`",
+        "19:25 this rule is left out: expected the name of an input here, not `then`",
         "21:12 a rule block that is switched off is left out",
     ]
     assert data["outputs"]["b"]["terms"] == {"few": {"function": "(x < 0.5) * (1 - x) + pow(sin(pi), 2)"}}

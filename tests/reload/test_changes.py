@@ -53,7 +53,7 @@ def edited(*edits: tuple[str, str, str]) -> Project:
 
 PLAIN = edited()
 
-SHOW_CHANGED = "what goes to lamps, screens and sound desks (`modules.show`) changed"
+SHOW_CHANGED = "the output to lamps, screens and sound desks (`modules.show`) changed"
 CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     ("comments", [(TOUR, "# What the robot remembers.", "# Things.")], [], Risk.COSMETIC),
     (

@@ -52,15 +52,15 @@ def refusal(url: str) -> str:
 @for_each(
     ("password", "said"),
     [
-        ("QQ/QQ", "`amqp://h/` is no address of a broker (in a name or a password write %2F for `/`"),
-        ("QQ#QQ", "`amqp://h/` is no address of a broker (in a name or a password write %23 for `#`"),
-        ("QQ?QQ", "`amqp://h/` is no address of a broker (in a name or a password write %3F for `?`"),
-        ("17/QQ", "`amqp://h/` is no address of a broker (in a name or a password write %2F for `/`"),
-        ("17#QQ", "`amqp://h/` is no address of a broker (in a name or a password write %23 for `#`"),
-        ("QQ?a=QQ", "`amqp://h/` is no address of a broker (in a name or a password write %3F for `?`"),
-        ("Q[Q]", "`amqp://h/` is no address of a broker (in a name or a password write %5B for `[`, %5D for `]`"),
-        ("QQ/Q#Q?", "(in a name or a password write %2F for `/`, %3F for `?`, %23 for `#`"),
-        ("QQ@Q/Q", "`amqp://h/` is no address of a broker (in a name or a password write %2F for `/`"),
+        ("QQ/QQ", "`amqp://h/` is no address of a broker (in the name and the password write %2F for `/`"),
+        ("QQ#QQ", "`amqp://h/` is no address of a broker (in the name and the password write %23 for `#`"),
+        ("QQ?QQ", "`amqp://h/` is no address of a broker (in the name and the password write %3F for `?`"),
+        ("17/QQ", "`amqp://h/` is no address of a broker (in the name and the password write %2F for `/`"),
+        ("17#QQ", "`amqp://h/` is no address of a broker (in the name and the password write %23 for `#`"),
+        ("QQ?a=QQ", "`amqp://h/` is no address of a broker (in the name and the password write %3F for `?`"),
+        ("Q[Q]", "`amqp://h/` is no address of a broker (in the name and the password write %5B for `[`, %5D for `]`"),
+        ("QQ/Q#Q?", "(in the name and the password write %2F for `/`, %3F for `?`, %23 for `#`"),
+        ("QQ@Q/Q", "`amqp://h/` is no address of a broker (in the name and the password write %2F for `/`"),
     ],
 )
 def test_a_password_with_signs_of_an_address_is_not_shown(password: str, said: str) -> None:

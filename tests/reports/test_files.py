@@ -79,7 +79,7 @@ def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
         ("cr-only-crash.yaml", []),
         ("line-separator-crash.yaml", ["6:13 unknown-state | did you mean `idle`?"]),
         ("line-separator-place.yaml", ["7:14 unknown-state | did you mean `idle`?"]),
-        ("control-character.yaml", ["11:18 yaml-syntax | delete it, and type `’` if it was meant"]),
+        ("control-character.yaml", ["11:18 yaml-syntax | replace it with `’`, or delete it"]),
         ("bom-inside.yaml", ["8:1 yaml-syntax | delete it"]),
         ("anchor-twice.yaml", []),
         ("alias-slip.yaml", ["11:9 yaml-syntax | did you mean `*steps`?"]),

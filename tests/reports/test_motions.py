@@ -647,7 +647,7 @@ def test_a_slowed_motion_stays_in_step_with_its_words() -> None:
     assert yaw[1].time == pitch[0].time == cue.time > 1.1
     assert yaw[2].time - yaw[1].time == pytest.approx(0.99)
     assert command.motion.duration - yaw[2].time == pytest.approx(0.5)
-    assert changes == ("`nod` takes longer: `HeadYaw` needs more time to its key at 1.01 s",)
+    assert changes == ("`nod` takes longer: `HeadYaw` needs more time to reach its key at 1.01 s",)
 
 
 def test_a_command_within_the_limits_is_unchanged() -> None:

@@ -172,7 +172,7 @@ def test_timers_that_set_ever_more_timers_end_in_an_error() -> None:
     later = {"send": {"delay": "0.01ms", "event": "go"}}
     machine = Machine.from_dict({"entry": later, "on": {"go": {"actions": [later, later]}}, "states": {"a": {}}})
     reached = [initial(machine).snapshot]
-    with pytest.raises(LumenError, match="timers set timers, `go` among them, more than 10,000 a second"):
+    with pytest.raises(LumenError, match="timers set more than 10,000 other timers a second, `go` among them"):
         reached.extend(taken.snapshot for taken in elapse(machine, lambda: reached[-1], 0.02))
     assert 1000 < len(reached[-1].timers) < MAX_TIMERS
 
@@ -185,7 +185,7 @@ def test_a_send_is_refused_where_too_many_wait() -> None:
     assert last.commands
     assert not refused.commands
     (error,) = refused.raised
-    assert (error.name, error.data["reason"]) == ("error.execution", "`late` is not sent: 10,000 timers wait already")
+    assert (error.name, error.data["reason"]) == ("error.execution", "`late` is not sent: 10,000 timers are already waiting")
     assert len(it.snapshot()["timers"]) == MAX_TIMERS
 
 

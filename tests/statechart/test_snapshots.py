@@ -168,7 +168,7 @@ def change(data: Any, path: tuple[Any, ...], value: Any) -> dict[str, Any]:
         (("configuration", 0), "off", "`on.l` is active without `on`"),
         (("context", "n"), ..., "`context` lacks `n`"),
         (("context", "n"), "text", "`context.n` is a number and can't be a string"),
-        (("context", "m"), 1, "`context.m` is no key of the context"),
+        (("context", "m"), 1, "`context.m` is not a key of the context"),
         (("context", "any"), float("nan"), "`context.any` is nan"),
         (("at",), "soon", "`at` should be a number"),
         (("timers", 0, "due"), float("inf"), "`timers.0.due` should be a number"),

@@ -126,7 +126,7 @@ def test_a_file_without_the_number_is_of_the_first(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(settings, "VOCABULARY", 2)
     (found,) = check_files(BASE, files)[1]
     assert (str(found.code), found.place.file) == ("other-vocabulary", "lumen.yaml")
-    assert "written for vocabulary 1; this Lumen reads 2" in found.message
+    assert "written for vocabulary 1; this Lumen supports 2" in found.message
     assert found.hint == "run `lumen upgrade`: it rewrites the files and prints the changes"
     stated = files | {"lumen.yaml": b"lumen: 2\n" + files["lumen.yaml"]}
     assert check_files(BASE, stated)[1] == ()

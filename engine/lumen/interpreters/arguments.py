@@ -11,7 +11,7 @@ from lumen.errors import UsageError
 def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> None:
     """Raises UsageError where the value is of another kind."""
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-        raise UsageError(f"{what} has to be {meant}, not {_shown(value)}")
+        raise UsageError(f"{what} must be {meant}, not {_shown(value)}")
 
 
 def need_map(value: Any, what: str) -> None:

@@ -133,7 +133,7 @@ def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, t
             break
         for excess in fast:
             at = excess.key.time
-            change = f"`{motion.name}` takes longer: `{excess.joint}` needs more time to its key at {at:g} s"
+            change = f"`{motion.name}` takes longer: `{excess.joint}` needs more time to reach its key at {at:g} s"
             changes.setdefault(f"fast {excess.joint}", change)
         motion = slowed(motion, fast)
     return motion, tuple(changes.values())

@@ -36,7 +36,7 @@ def unescaped(url: str) -> str:
 def fault_of_broker(url: str) -> str:
     """The fault of an address that can't be a broker's, with the remedy; empty for a possible address."""
     if signs := unescaped(url):
-        return f"write {signs}, and %40 for `@` after the host"
+        return f"in the name and the password write {signs}, and %40 for `@` after the host"
     try:
         parts = urlsplit(url)
         host = parts.hostname

@@ -233,5 +233,5 @@ def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str
     if near:
         return mean(word, near) + (f" {what} {shown}" if what and len(names) > 1 else "")
     if not names:
-        return f"{what} nothing".strip() if what else ""
-    return f"{what or 'known are'} {shown}"
+        return f"{what} {'none' if what.endswith('are') else 'nothing'}" if what else ""
+    return f"{what or 'choose one of'} {shown}"

@@ -16,7 +16,7 @@ MEANINGS: Mapping[str, str] = {
     SONAR: "how far away the nearest echoes are",
     TACTILE: "which of its sensors are pressed",
     BATTERY: "how full its battery is",
-    FACE: "where a visitor's face is in the camera's image; simulated visitors appear on it",
+    FACE: "the position of a visitor's face in the camera's image; simulated visitors appear on it",
     HEARD: "what a visitor said, typed or says in a story",
     COMMAND: "commands of other modules to the robot",
     STOP: "commands to rest or to stop, on a separate route",

@@ -77,7 +77,8 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
     if among and indent(among[0]) < column and here[column] not in "{[":
         among = []  # it goes on with the item above
     if among and not _ITEM.match(here):
-        if _usual(lines, index):
+        before = next((line for line in reversed(lines[:index]) if is_content(line)), "")
+        if _usual(lines, index) or (_KEYED.match(before) and indent(before) == column + 2):
             yield from _moved(lines, index, [column + 2])
         hint = "add `- ` before it, or delete the `- ` above"
         meant = {index: f"{here[: indent(among[0])]}- {here[column:]}"}

@@ -130,7 +130,7 @@ class _Gatherer:
         second = self.place(file.report, key, entry)
         message = f"the {key} `{entry}` are defined twice: in {first.file} and in {second.file}"
         related = Related(second, "they are defined again here")
-        hint = "give one of them another name, or join them"
+        hint = "rename one of them, or combine them"
         self.report.diagnostics.append(DUPLICATE_WORDS.at(first, message, hint, (related,)))
 
     def place(self, report: DocumentReport, key: str, entry: str) -> Place:

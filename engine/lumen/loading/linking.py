@@ -82,7 +82,7 @@ class _Linker:
             ):
                 return machine
             hint = "combine some of the behaviours in one file"
-            report(TOO_LARGE, where, f"more than {MAX_INVOKE_DEPTH} behaviours would run within one another", hint=hint)
+            report(TOO_LARGE, where, f"more than {MAX_INVOKE_DEPTH} behaviours would be nested", hint=hint)
         return None
 
     def check_input(self, name: str, invoke: Invoke, machine: MachineDefinition) -> None:

@@ -90,8 +90,8 @@ class _Parser:
 
     def error(self, wanted: str, hint: str = "") -> RuleSyntaxError:
         word = self.word
-        found = f"not `{word.text}`" if word.text else "but the rule ends here"
-        return RuleSyntaxError(f"here {wanted} should stand, {found}", word, hint)
+        found = f"not `{word.text}`" if word.text else "but the rule ends"
+        return RuleSyntaxError(f"expected {wanted} here, {found}", word, hint)
 
     def rule(self) -> RuleText:
         self.expect("if", "write a rule as: if INPUT is TERM then OUTPUT is TERM")

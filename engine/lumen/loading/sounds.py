@@ -32,5 +32,5 @@ def sound_duration(root: Path, file: str) -> float:
     if not frames:
         raise ValueError("it is empty")
     if frames / rate > MAX_SOUND_DURATION:
-        raise ValueError(f"it takes {frames / rate:.0f} s; {MAX_SOUND_DURATION:g} s is the longest")
+        raise ValueError(f"it lasts {frames / rate:.0f} s; {MAX_SOUND_DURATION:g} s is the maximum")
     return float(frames / rate)

@@ -83,7 +83,7 @@ class _Comparison:
         yield from self.invokes(old, new, title)
         if old.for_each != new.for_each:
             how = f"goes through {code(new.for_each.each.shown)}" if new.for_each else "no longer goes through a list"
-            yield self.change("state", title, f"{title} {how} now, as its `for` says")
+            yield self.change("state", title, f"{title} {how} now (`for`)")
         if old.resume != new.resume:
             yield self.change(
                 "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"

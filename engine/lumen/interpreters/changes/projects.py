@@ -97,7 +97,7 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     if old.alerts != new.alerts:
         yield Change("alerts", "", "the recipients of alerts (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
     if old.show != new.show:
-        sentence = "what goes to lamps, screens and sound desks (`modules.show`) changed"
+        sentence = "the output to lamps, screens and sound desks (`modules.show`) changed"
         yield Change("show", "", sentence, Risk.WIRING, "lumen.yaml")
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)

@@ -225,7 +225,7 @@ def _standing_in(
 def _awaited(inner: Snapshot, transition: Transition) -> str:
     if transition.timed:
         timer = next((t for t in inner.timers if t.event == transition.event and t.state == transition.source), None)
-        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its time never comes now"
+        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its time will not come now"
     if transition.event.startswith("done."):
         return "that is not done yet"
     if transition.event.startswith("error."):

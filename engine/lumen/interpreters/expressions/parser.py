@@ -77,7 +77,7 @@ class _ExpressionParser(PrattParser):
         if key.kind != "text":
             raise self.unexpected(f"put the key in quotes: '{key.text}'" if key.kind == "name" else "")
         if str(key.value) in entries:
-            raise ExpressionError(f"the key {key.text} stands twice", key.offset)
+            raise ExpressionError(f"the key {key.text} is in the map twice", key.offset)
         return str(self.advance().value)
 
     operands: ClassVar = {"int": number, "float": number, "text": PrattParser.literal, "name": PrattParser.name}

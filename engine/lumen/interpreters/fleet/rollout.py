@@ -46,7 +46,7 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
         raise ValueError(state.overruled)
     if state.rollout and state.rollout.under_way:
         raise ValueError(
-            f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or wait until it ends"
+            f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or let it end"
         )
     for target in plan.steps:
         if not fleet.members(target):
@@ -74,7 +74,7 @@ def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
     """What a person says of the rollout under way: `paused`, or `going` (on). Raises ValueError where there is none."""
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
-        raise ValueError("no rollout is running")
+        raise ValueError("no rollout is under way")
     if rollout.plan.try_first and not rollout.tried and rollout.state == PERSON and decision == GOING:
         return begin_steps(state, replace(rollout, reason=why))
     settled = rollout.state == PERSON and decision == GOING
@@ -115,7 +115,8 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
             why = f"{robot} follows centre {said.centre[:8]} of term {said.term}: this one was replaced"
             return replace(state, overruled=why)
         if said.term == state.term and said.centre == state.centre and said.version > state.version:
-            why = f"{robot} received order {said.version}, the last one here is {state.version}: this folder is an old copy"
+            newer = f"{robot} received order {said.version}, the last one here is {state.version}"
+            why = f"{newer}: this folder is an old copy"
             return replace(state, overruled=why)
     return state
 

@@ -21,7 +21,7 @@ class StepDigest:
         self._seen: dict[str, tuple[Any, int]] = {}
 
     def __call__(self, step: Step) -> str:
-        """Eight hexadecimal digits. Raises TypeError or ValueError where something in it is no JSON data."""
+        """Eight hexadecimal digits. Raises TypeError or ValueError where something in it is not JSON data."""
         found = 0
         if step.exited or step.entered or step.commands:
             made = [step.exited, step.entered, [command_data(command) for command in step.commands]]
@@ -47,4 +47,4 @@ def _plain(value: Any) -> Any:
         return sorted(value)
     if isinstance(value, Mapping):
         return dict(value)
-    raise TypeError(f"a {type(value).__name__} is no JSON data")
+    raise TypeError(f"a {type(value).__name__} is not JSON data")

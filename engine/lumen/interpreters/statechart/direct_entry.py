@@ -64,7 +64,7 @@ def _invoked(machine: MachineDefinition, name: str) -> Iterator[str]:
             paths = [(s.name, s.path, s.path.rpartition(".")[2]) for s in inner.states.values()] if inner else []
             if any(end in names for names in paths):
                 where = f"a state of `{invoke.behavior}`, which `{state.name}` invokes"
-                yield f"`{end}` is {where}: only its own events go there. Enter `{state.name}`, where it begins"
+                yield f"`{end}` is {where}: only its own events go there; enter `{state.name}`, where it begins"
 
 
 def _names(nodes: list[StateNode]) -> Iterator[str]:
