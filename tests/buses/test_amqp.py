@@ -43,7 +43,7 @@ def stranger(broker: RabbitMQ) -> Iterator[Any]:
         ("amqps://guest:guest@127.0.0.1:{port}/", "does not speak TLS"),
         ("amqp://guest:secret@127.0.0.1:{epmd}/", "no AMQP 0-9-1 broker"),
         ("amqp://guest:secret@127.0.0.1:port/", "no address of a broker"),
-        ("amqp://", "there is no host"),
+        ("amqp://", "it has no host"),
         ("amqp://h/?heartbeat=often", "no address of a broker"),
         ("redis://user:secret@h", "`redis://` is not a bus: write memory://"),
         ("lumen", "the address of a bus begins with"),

@@ -120,5 +120,5 @@ def test_a_guard_is_true_or_false() -> None:
 
 
 def test_what_is_not_json_is_refused() -> None:
-    with pytest.raises(ExpressionError, match="a value here that an expression can't use"):
+    with pytest.raises(ExpressionError, match="an expression can't use a value here"):
         compile_expression("context.x == context.x")(Scope(context={"x": object()}))

@@ -68,7 +68,7 @@ def test_where_nothing_fires_the_default_stands(head: Controller) -> None:
         ({"FaceXLoc": 1.0}, "`FaceYLoc` of `head` is missing"),
         ({"FaceXLoc": 1.0, "FaceYLoc": 2.0, "FaceZLoc": 3.0}, "no input `FaceZLoc`: did you mean"),
         ({"FaceXLoc": float("nan"), "FaceYLoc": 2.0}, "not a number"),
-        ({"FaceXLoc": "left", "FaceYLoc": 2.0}, "have to be numbers"),
+        ({"FaceXLoc": "left", "FaceYLoc": 2.0}, "must be numbers"),
     ],
 )
 def test_wrong_inputs_are_named(head: Controller, inputs: dict[str, float], message: str) -> None:
@@ -77,7 +77,7 @@ def test_wrong_inputs_are_named(head: Controller, inputs: dict[str, float], mess
 
 
 def test_wrong_batches_are_named(head: Controller) -> None:
-    with pytest.raises(UsageError, match="one Shape"):
+    with pytest.raises(UsageError, match="the same shape"):
         head.evaluate_batch({"FaceXLoc": [1.0, 2.0], "FaceYLoc": [1.0]})
     with pytest.raises(UsageError, match="not numbers"):
         head.evaluate_batch({"FaceXLoc": [float("nan")], "FaceYLoc": [1.0]})

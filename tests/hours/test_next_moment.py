@@ -120,9 +120,9 @@ def test_what_can_be_written(text: str, times: list[int], weekdays: list[int], d
         ("fri", "`fri` has no time of day", "write `fri 18:00`"),
         ("2026-02-30 10:00", "no `2026-02-30` in the calendar", "`2026-12-24`"),
         ("24.12.2026 10:00", "`24.12.2026` is not a date", "`2026-12-24`"),
-        ("mon 10:00, sat 12:00", "`sat` is after a time", "a row for each"),
-        ("10:00-18:00", "is not a time of day", "where the span begins"),
-        ("18:00,", "nothing on one of its sides", "`mon-fri 18:00`"),
+        ("mon 10:00, sat 12:00", "`sat` is after a time", "each in its own row"),
+        ("10:00-18:00", "is not a time of day", "write its beginning here"),
+        ("18:00,", "has nothing before or after it", "`mon-fri 18:00`"),
         ("", "has no time of day", "`mon-fri 18:00`"),
     ],
 )

@@ -87,5 +87,5 @@ def test_nothing_is_renamed_where_uses_cannot_be_seen() -> None:
     analysis = broken("a quote that is not closed")
     word = renamable(analysis, *at(analysis, TOUR, "play: dan|ce"))
     assert word is not None
-    with pytest.raises(UsageError, match="not while a file can't be read"):
+    with pytest.raises(UsageError, match="can't rename while a file can't be read"):
         rename(analysis, word, "horse")

@@ -226,7 +226,7 @@ def test_the_key_in_a_way_that_assign_goes() -> None:
         (TOUR, "lookup(event.data.result, 'f|aq')", "explanations", "already"),
         (TOUR, "context.name_|tries <", "1st", "letters"),
         (TOUR, "context.name_|tries <", "null", "can't be"),
-        ("lumen.yaml", "  fa|ce: {key", "gesicht", "means something to Lumen itself"),
+        ("lumen.yaml", "  fa|ce: {key", "gesicht", "has a fixed meaning in Lumen"),
         (VISITOR, "played: dan|ce", "sing", "already"),
     ],
 )

@@ -258,7 +258,7 @@ def test_what_runs_is_compared_with_what_is_saved(repository: Path, capsys: pyte
     tour = repository / TOUR
     tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
     assert main(["diff", "live"]) == 1
-    assert "now: refused talk.ask: `talk.ask` is active and gone" in capsys.readouterr().out
+    assert "now: refused talk.ask: `talk.ask` is active but gone" in capsys.readouterr().out
     home.release()
     assert main(["diff", "live"]) == 2
 
@@ -310,4 +310,4 @@ def test_outside_of_a_repository(
     monkeypatch.chdir(copy)
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(copy.parent))
     assert main(["diff", "HEAD"]) == 2
-    assert "lies in no git repository" in capsys.readouterr().err
+    assert "is not in a git repository" in capsys.readouterr().err

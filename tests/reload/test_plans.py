@@ -89,7 +89,7 @@ def test_a_renamed_state_takes_those_within_along() -> None:
 def test_a_state_that_is_gone_and_was_not_renamed_is_refused_with_a_hint() -> None:
     verdict = reload(ASKING, talk({"dance": {**DANCE, "onDone": "dance"}}))
     assert isinstance(verdict, Refusal)
-    assert "`talk.ask` is active and gone" in verdict.reason
+    assert "`talk.ask` is active but gone" in verdict.reason
     assert verdict.hint == "give `talk` an `onReload`, or write the new name of `talk.ask` under `renamed`"
     assert (verdict.state, verdict.behavior, verdict.where) == ("talk.ask", "tour", ("states", "talk"))
 

@@ -631,8 +631,8 @@ def test_endless_chains_while_a_guard_stays_false(states: str, way: str) -> None
 def test_the_error_of_an_endless_chain_names_its_transitions() -> None:
     quick = {"initial": "a", "states": {"a": {"type": "final"}}}
     for name, way in (
-        ("endless-invoke.yaml", "what goes round: `done.invoke.quick` of `work`"),
-        ("endless-guarded.yaml", "what goes round: `always` of `two`"),
+        ("endless-invoke.yaml", "the loop is: `done.invoke.quick` of `work`"),
+        ("endless-guarded.yaml", "the loop is: `always` of `two`"),
     ):
         document, _ = parse(name, of(name).encode())
         assert document is not None

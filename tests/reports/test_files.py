@@ -164,14 +164,14 @@ def test_the_excerpt_beside_a_finding_is_the_line_that_it_is_about(
         (STATES.encode("utf-16"), "1:1 not-utf8 | save it as UTF-8"),
         (changed("Hello", "It’s").decode().encode("cp1252"), "6:17 not-utf8 | save it as UTF-8"),
         (changed("Hello", "a\x07b"), "6:16 yaml-syntax | delete it"),
-        (changed("Hello", "Hé \x93Hello\x94"), "6:18 yaml-syntax | delete it, and type `“` if it was meant"),
+        (changed("Hello", "Hé \x93Hello\x94"), "6:18 yaml-syntax | replace it with `“`, or delete it"),
         (
             changed("  greet:", "\u200b  greet:"),
-            "5:1 unknown-key | write `greet`: it holds an invisible",
+            "5:1 unknown-key | write `greet`: it contains an invisible",
         ),
         (
             changed("  greet:", "  \ufeffgreet:"),
-            "5:3 wrong-key | write `greet`: it holds an invisible",
+            "5:3 wrong-key | write `greet`: it contains an invisible",
         ),
         (changed("onDone: idle", "onDone: *idle"), '7:13 yaml-syntax | put quotes around it if it is a text: "*idle"'),
         (changed("{say: Hello}", "{say: *Hello*}"), "6:15 yaml-syntax | put quotes around it"),
@@ -191,8 +191,8 @@ def test_an_alias_refers_to_the_nearest_anchor_above() -> None:
 @for_each(
     ("content", "expected"),
     [
-        (changed("{say: Hello}", "{sаy: Hello}"), "6:10 unknown-key | did you mean `say`? `а` is another letter"),
-        (changed("onDone: idle", "onDone: іdle"), "7:13 unknown-state | did you mean `idle`? `і` is another letter"),
+        (changed("{say: Hello}", "{sаy: Hello}"), "6:10 unknown-key | did you mean `say`? `а` is a different letter"),
+        (changed("onDone: idle", "onDone: іdle"), "7:13 unknown-state | did you mean `idle`? `і` is a different letter"),
         (changed("onDone: idle", "onDone: idle\u200b"), "7:13 unknown-state | did you mean `idle`? it holds an invis"),
         (
             changed("onDone: idle", "ｏｎＤｏｎｅ: idle"),
@@ -200,11 +200,11 @@ def test_an_alias_refers_to_the_nearest_anchor_above() -> None:
         ),
         (
             changed("say: Hello", 'say: "{{ context.n − 1 }}"', "context: {n: 1}\n"),
-            "6:29 expression-syntax | write `-`: `−` is another minus",
+            "6:29 expression-syntax | write `-`: `−` is a different minus",
         ),
         (
             changed("say: Hello", 'say: "{{ context.n + １ }}"', "context: {n: 1}\n"),
-            "6:31 expression-syntax | write `1`: `１` is another digit",
+            "6:31 expression-syntax | write `1`: `１` is a different digit",
         ),
     ],
 )
@@ -216,7 +216,7 @@ def test_the_difference_between_look_alike_words_is_reported(content: bytes, exp
     ("value", "expected"),
     [
         ("０．５", "write `0.5`: `０` is a different digit from `0`: U+FF10"),
-        ("–0.5", "write `-0.5`: `–` is another minus"),
+        ("–0.5", "write `-0.5`: `–` is a different minus"),
         ("−0,5", "write a point: -0.5"),
         ("٣", "write `3`: `٣` is a different digit from `3`"),
     ],
@@ -283,15 +283,15 @@ def test_a_placeholder_of_another_tool_is_corrected(text: str, expected: str) ->
     ("time", "hint"),
     [
         ("2026-12-24T18:00:00", "write `2026-12-24 18:00`"),
-        ("2026-12-24T18:00:00Z", "write `2026-12-24 18:00`; times are in the project's time zone"),
-        ("2026-12-24t8:00+01:00", "write `2026-12-24 08:00`; times are in the project's time zone"),
+        ("2026-12-24T18:00:00Z", "write `2026-12-24 18:00`; convert it to the project's time zone"),
+        ("2026-12-24t8:00+01:00", "write `2026-12-24 08:00`; convert it to the project's time zone"),
         ("0 18 * * 1-5", "this is a line of cron: write `mon-fri 18:00`"),
         ("0 18 * * 0-7", "this is a line of cron: write `18:00`"),
         ("2026-99-99T99:99Z", "write `2026-12-24 18:00`"),
         ("30 9,14 * * *", "this is a line of cron: write `09:30, 14:30`"),
         ("0 0 18 ? * MON-FRI", "this is a line of cron: write `mon-fri 18:00`"),
-        ("*/5 * * * *", "this is a line of cron: days stand before times"),
-        ("18:00-19:00", "it is one moment that is waited for"),
+        ("*/5 * * * *", "this is a line of cron: write days before times"),
+        ("18:00-19:00", "an `at` is one moment, not a span"),
     ],
 )
 def test_a_time_of_another_tool_is_corrected_for_at(time: str, hint: str) -> None:

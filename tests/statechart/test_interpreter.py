@@ -142,7 +142,7 @@ def test_a_restored_interpreter_goes_on_with_its_do() -> None:
         ({"states": {"idle": None}}, "state `greet` is gone"),
         ({"states": {**TOUR["states"], "dance": None}}, "state `dance` is new"),  # type: ignore[dict-item]
         ({"context": {"visits": 0}, "types": {}}, "context key `visitor` is gone"),
-        ({"context": {"visits": 1, "visitor": None}}, "what stands in them is not"),
+        ({"context": {"visits": 1, "visitor": None}}, "their content is not"),
     ],
 )
 def test_another_machines_snapshot_is_refused(change: dict[str, Any], difference: str) -> None:
