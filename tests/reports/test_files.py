@@ -193,10 +193,10 @@ def test_an_alias_refers_to_the_nearest_anchor_above() -> None:
     [
         (changed("{say: Hello}", "{sаy: Hello}"), "6:10 unknown-key | did you mean `say`? `а` is a different letter"),
         (changed("onDone: idle", "onDone: іdle"), "7:13 unknown-state | did you mean `idle`? `і` is a different letter"),
-        (changed("onDone: idle", "onDone: idle\u200b"), "7:13 unknown-state | did you mean `idle`? it holds an invis"),
+        (changed("onDone: idle", "onDone: idle\u200b"), "7:13 unknown-state | did you mean `idle`? it contains an invis"),
         (
             changed("onDone: idle", "ｏｎＤｏｎｅ: idle"),
-            "7:5 unknown-key | did you mean `onDone`? `ｏ` is another",
+            "7:5 unknown-key | did you mean `onDone`? `ｏ` is a different",
         ),
         (
             changed("say: Hello", 'say: "{{ context.n − 1 }}"', "context: {n: 1}\n"),

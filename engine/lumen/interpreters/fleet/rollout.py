@@ -45,9 +45,7 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
     if state.overruled:
         raise ValueError(state.overruled)
     if state.rollout and state.rollout.under_way:
-        raise ValueError(
-            f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or let it end"
-        )
+        raise ValueError(f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or let it end")
     for target in plan.steps:
         if not fleet.members(target):
             raise ValueError(f"no robot belongs to the step `{target}`")
