@@ -34,7 +34,7 @@ def said(text: str) -> str:
 
 def test_an_angle_beyond_the_limit_names_the_limit_in_the_file_s_unit() -> None:
     text = said("units: {angle: deg}\nkeyframes: [{at: 1s, joints: {RShoulderPitch: 400}}]")
-    assert "`RShoulderPitch` can't go to 400 deg (it goes from -119.5 to 119.5 deg)" in text
+    assert "`RShoulderPitch` can't go to 400 deg (its range is -119.5 to 119.5 deg)" in text
 
 
 def test_a_misspelt_name_is_guessed() -> None:
