@@ -226,9 +226,7 @@ def test_why_not_proposes_what_a_guard_wants_to_be_caught(
 def test_a_guard_on_what_was_caught_depends_on_what_is_said() -> None:
     play = Play(chart({"named": {"target": "met", "guard": "size(heard.name) > 900"}}))
     play.happen("heard", {"result": "my name is Budi"})
-    assert refused(play, "met")["note"] == (
-        "no other value of heard.name was found that would have selected it"
-    )
+    assert refused(play, "met")["note"] == ("no other value of heard.name was found that would have selected it")
 
 
 def test_why_not_of_a_sentence_that_was_never_said_proposes_one() -> None:
@@ -272,7 +270,9 @@ def test_an_invoked_behaviour_that_listens_keeps_else_from_going() -> None:
     host = {"states": {"playing": {"invoke": {"behavior": "quiz"}, "hears": {"else": "lost"}}, "lost": {}}}
     play = Play(host, quiz=quiz)
     play.happen("heard", {"result": "hm"})
-    assert refused(play, "lost")["text"] == ("playing → lost, hears else; heard came, a behaviour that it invokes also listens")
+    assert refused(play, "lost")["text"] == (
+        "playing → lost, hears else; heard came, a behaviour that it invokes also listens"
+    )
     line = IgnoredEvents().line(play.machine, play.steps[-1].step)
     else_too = "hears else is false in playing (a behaviour that it invokes also listens)"
     assert line == f"“hm” while quiz/ask hears nothing of it, and {else_too}"

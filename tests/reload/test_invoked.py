@@ -85,9 +85,7 @@ def test_a_state_of_it_that_is_gone_needs_an_on_reload_in_its_file() -> None:
 
 def test_another_behaviour_in_its_place_begins_when_it_has_ended() -> None:
     other = tour(invoke={**INVOKE, "id": "quiz", "behavior": "other"})
-    assert migrate(OLD, other, ASKING) == MigrationDelay(
-        "`quiz` is no longer invoked, but is still busy", "quiz"
-    )
+    assert migrate(OLD, other, ASKING) == MigrationDelay("`quiz` is no longer invoked, but is still busy", "quiz")
     plan = planned(other, now=True)
     assert plan.leaving == (Log("asked"), Cancel("d1@quiz"))
     assert plan.entering == (Start("d2@quiz", Say("Well?")),)

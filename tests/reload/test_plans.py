@@ -204,7 +204,11 @@ def test_a_name_edited_twice_in_the_same_line_is_followed() -> None:
     [
         ({"visitor": "nobody", "tries": 0}, "Ada", ()),
         ({"visitor": None, "tries": 0}, "Ada", ()),
-        ({"visitor": 0, "tries": 0}, 0, ("`visitor` starts again with its first value: it was a string and is a number now",)),
+        (
+            {"visitor": 0, "tries": 0},
+            0,
+            ("`visitor` starts again with its first value: it was a string and is a number now",),
+        ),
         ({"tries": 0}, None, ("`visitor` is forgotten",)),
     ],
 )

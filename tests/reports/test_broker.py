@@ -90,7 +90,10 @@ def test_no_part_of_a_password_is_shown(password: str, path: str) -> None:
 @for_each(
     ("url", "said"),
     [
-        ("amqp://guest:secret", "`amqp://guest:…` is no address of a broker (its port is not a number from 0 to 65535)"),
+        (
+            "amqp://guest:secret",
+            "`amqp://guest:…` is no address of a broker (its port is not a number from 0 to 65535)",
+        ),
         ("amqp://guest:secret/museum", "`amqp://guest:…` is no"),
         ("amqp://u:secret@h:port/", "`amqp://h:…` is no address of a broker (its port is not a number"),
         ("amqp://u:secret@h:70000/", "its port is not a number from 0 to 65535"),
@@ -107,7 +110,10 @@ def test_another_error_in_an_address_does_not_show_the_password(url: str, said: 
 @for_each(
     ("path", "said"),
     [
-        ("/museum/hall", "a virtual host is one segment, with %2F for each slash: write /museum%2Fhall for /museum/hall"),
+        (
+            "/museum/hall",
+            "a virtual host is one segment, with %2F for each slash: write /museum%2Fhall for /museum/hall",
+        ),
         ("//museum", "with %2F for each slash: write /%2Fmuseum (or /museum) for //museum"),
         ("//", "write /%2F for //"),
         ("/a/b/", "write /a%2Fb%2F for /a/b/"),

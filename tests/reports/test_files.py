@@ -192,8 +192,14 @@ def test_an_alias_refers_to_the_nearest_anchor_above() -> None:
     ("content", "expected"),
     [
         (changed("{say: Hello}", "{sаy: Hello}"), "6:10 unknown-key | did you mean `say`? `а` is a different letter"),
-        (changed("onDone: idle", "onDone: іdle"), "7:13 unknown-state | did you mean `idle`? `і` is a different letter"),
-        (changed("onDone: idle", "onDone: idle\u200b"), "7:13 unknown-state | did you mean `idle`? it contains an invis"),
+        (
+            changed("onDone: idle", "onDone: іdle"),
+            "7:13 unknown-state | did you mean `idle`? `і` is a different letter",
+        ),
+        (
+            changed("onDone: idle", "onDone: idle\u200b"),
+            "7:13 unknown-state | did you mean `idle`? it contains an invis",
+        ),
         (
             changed("onDone: idle", "ｏｎＤｏｎｅ: idle"),
             "7:5 unknown-key | did you mean `onDone`? `ｏ` is a different",
@@ -263,7 +269,10 @@ def test_a_text_of_several_phrases_is_reported(phrases: str, hints: list[str]) -
         ("Hello, {name}", "not-filled-in | write `{{ context.NAME }}`; `context` has no `name`"),
         ("{% if context.visitor %}Hi{% endif %}", "not-filled-in | texts have no `{% … %}`"),
         ("{# a note #} Hi", "not-filled-in | texts have no `{# … #}`"),
-        ("Hello, {{{ context.visitor }}}!", "expression-syntax | write two braces on each side: `{{ context.visitor }}`"),
+        (
+            "Hello, {{{ context.visitor }}}!",
+            "expression-syntax | write two braces on each side: `{{ context.visitor }}`",
+        ),
         ("{{ context.visitor | length }}", "expression-syntax | there are no filters: write `size(context.visitor)`"),
         (
             "{{ context.visitor | default('you') }}",

@@ -185,7 +185,10 @@ def test_a_send_is_refused_where_too_many_wait() -> None:
     assert last.commands
     assert not refused.commands
     (error,) = refused.raised
-    assert (error.name, error.data["reason"]) == ("error.execution", "`late` is not sent: 10,000 timers are already waiting")
+    assert (error.name, error.data["reason"]) == (
+        "error.execution",
+        "`late` is not sent: 10,000 timers are already waiting",
+    )
     assert len(it.snapshot()["timers"]) == MAX_TIMERS
 
 
