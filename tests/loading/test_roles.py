@@ -98,7 +98,10 @@ WRONG = {
     "an unknown joint, reversed": (["{joint: Turn,", "{joint: Trun,"], "11:23 unknown-joint did you mean `Turn`?"),
     "an unknown role": (["shoulder-pitch", "sholder-pitch"], "12:17 unknown-key did you mean `shoulder-pitch`?"),
     "an unknown kind": (["kind: wheels", "kind: wheel"], "14:16 wrong-value did you mean `wheels`?"),
-    "two roles of one joint": (["pitch: Bow}", "pitch: Turn}"], "11:53 joint-in-two-roles give each joint one role only"),
+    "two roles of one joint": (
+        ["pitch: Bow}", "pitch: Turn}"],
+        "11:53 joint-in-two-roles give each joint one role only",
+    ),
     "wheels that are nowhere": (["left: LeftWheel, ", ""], "14:16 incomplete-role name them under `roles`"),
     "wheels of no speed": (["speed: 50, ", ""], "14:3 missing-key"),
     "a speed of no wheels": (["wheels, left: LeftWheel, right: RightWheel, speed: 50,", "fixed,"], "14:23 unknown-key"),
