@@ -94,7 +94,13 @@ def test_what_becomes_of_each_row(text: str, fates: dict[str, str]) -> None:
         ("not dance", "dance", "“dance” is not negated in “dance”", 1, {}),
         ("dance", "Why do you dance?", "“dance” is part of the question “Why do you dance”", 1, {}),
         ("asked dance", "dance", "“dance” is not part of a question in “dance”", 1, {}),
-        ("sing|refusal", "there is no lift", "“no” counts only as a whole clause, but is part of “there is no lift”", 1, {}),
+        (
+            "sing|refusal",
+            "there is no lift",
+            "“no” counts only as a whole clause, but is part of “there is no lift”",
+            1,
+            {},
+        ),
         ("sing|refusal", "well", "none of its phrases is in “well”", 0, {}),
         ("named", "my name is Ani", "“my name is Ani” in “my name is Ani”", 3, {
             "heard.phrase": "my name is Ani", "heard.name": "Ani",
