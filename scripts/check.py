@@ -27,6 +27,8 @@ BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "ne
 BLOCK = re.compile(r"(?m)^(?:```|````)[\s\S]*?^(?:```|````)$")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADING = re.compile(r"(?m)^#+ (.+)$")
+RECORD = r"\[\d+\]\([^)]+\)"
+STATUS = re.compile(rf"accepted|(?:accepted, changed by|superseded by) {RECORD}(?: and {RECORD})*")
 
 Looked = tuple[str, str]
 """The name of a thing and the problem with it, empty if there is none."""
@@ -91,19 +93,32 @@ def the_index_lists_every_page() -> Iterator[Looked]:
         yield f"docs/{page}", "" if page in listed else "add it to docs/README.md"
 
 
-def the_list_of_decisions_is_complete_and_calls_each_by_its_title() -> Iterator[Looked]:
+def each_decision_has_a_title_and_a_status() -> Iterator[Looked]:
+    records = {file.name for file in decisions()}
+    for file in decisions():
+        number, title, status = title_and_status(file)
+        later = re.findall(r"\[(\d+)\]\(([^)]+)\)", status)
+        lost = [name for no, name in later if name not in records - {file.name} or not name.startswith(f"{no}-")]
+        problems = [
+            *["begin with `# NUMBER TITLE`, with the number of the file"] * (not title or number != file.name[:3]),
+            *["write `Status: accepted` or `Status: superseded by [NUMBER](FILE)` below the title"]
+            * (not STATUS.fullmatch(status)),
+            *[_listed("the status names no other record", lost)] * bool(lost),
+        ]
+        yield _name(file), "; ".join(problems)
+
+
+def the_index_of_decisions_has_each_title_and_status() -> Iterator[Looked]:
     text = (DOCS / "decisions/README.md").read_text(encoding="utf-8")
-    rows = [
-        (link, f"{number} {title}") for number, link, title in re.findall(r"(?m)^- \[(\d+)\]\(([^)]+)\) (.+)$", text)
-    ]
-    files = sorted((DOCS / "decisions").glob("[0-9]*.md"))
-    titles = [re.sub(r"^# (\d+):? ", r"\1 ", file.read_text(encoding="utf-8").partition("\n")[0]) for file in files]
-    expected = [(file.name, title) for file, title in zip(files, titles, strict=True)]
-    for number, row in enumerate(expected):
-        shown = rows[number] if number < len(rows) else "nothing"
-        yield f"docs/decisions/{row[0]}", "" if shown == row else f"the list has {shown} where {row} belongs"
-    for row in rows[len(expected) :]:
-        yield f"docs/decisions/{row[0]}", "is listed and is not there"
+    rows = re.findall(r"(?m)^- \[(\d+)\]\(([^)]+)\) (.+)$", text)
+    for file in decisions():
+        number, title, status = title_and_status(file)
+        shown = [(no, row) for no, name, row in rows if name == file.name]
+        expected = [(number, f"{title}: {status}")]
+        wanted = f"the index needs one row: - [{number}]({file.name}) {title}: {status}"
+        yield _name(file), "" if shown == expected else wanted
+    for _, name, _ in rows:
+        yield f"docs/decisions/{name}", "" if (DOCS / "decisions" / name).exists() else "is in the index, but not there"
 
 
 def the_page_about_the_environment_names_every_variable() -> Iterator[Looked]:
@@ -141,7 +156,8 @@ CHECKS: dict[Check, int] = {
     set_up_checks_the_hashes: 5,
     links_lead_to_files_and_headings: 150,
     the_index_lists_every_page: 40,
-    the_list_of_decisions_is_complete_and_calls_each_by_its_title: 80,
+    each_decision_has_a_title_and_a_status: 80,
+    the_index_of_decisions_has_each_title_and_status: 160,
     the_page_about_the_environment_names_every_variable: 8,
     blocks_of_pages_say_what_the_runner_knows: 120,
     pyyaml_reads_the_shipped_files: 120,
@@ -164,6 +180,17 @@ def requirements(file: str) -> Iterator[tuple[str, str, int]]:
         found = re.match(r"([A-Za-z0-9._-]+)==([^ ;]+)", row)
         name, version = found.groups() if found else (row[:60], "")
         yield name, version, len(re.findall(r"--hash=sha256:[0-9a-f]{64}\b", row))
+
+
+def decisions() -> list[Path]:
+    return sorted((DOCS / "decisions").glob("[0-9]*.md"))
+
+
+def title_and_status(record: Path) -> tuple[str, str, str]:
+    """The number and title of a decision, and the status below them; what is missing is empty."""
+    found = re.match(r"# (\d+) (.+)\n(?:\nStatus: (.+)\n\n)?", record.read_text(encoding="utf-8"))
+    number, title, status = found.groups(default="") if found else ("", "", "")
+    return number, title, status
 
 
 def anchors(page: Path) -> set[str]:
