@@ -6,6 +6,7 @@ loop that finds too few things to look at has failed: its pattern no longer matc
 
 import re
 import sys
+import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -121,6 +122,19 @@ def the_index_of_decisions_has_each_title_and_status() -> Iterator[Looked]:
         yield f"docs/decisions/{name}", "" if (DOCS / "decisions" / name).exists() else "is in the index, but not there"
 
 
+def the_version_is_the_same_everywhere() -> Iterator[Looked]:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    places = {
+        "engine/lumen/__init__.py": r'^__version__ = "([^"]+)"',
+        "editors/vscode/package.json": r'^  "version": "([^"]+)"',
+        "CHANGELOG.md": r"\A[\s\S]*?^## \[(\d[^\]]*)\]",
+        **{_name(page): r"lumen_robot-([\d.]+)-py3" for page in PAGES if "lumen_robot-" in page.read_text("utf-8")},
+    }
+    for place, pattern in places.items():
+        found = set(re.findall(pattern, (ROOT / place).read_text(encoding="utf-8"), re.MULTILINE))
+        yield place, "" if found == {version} else f"has version {', '.join(sorted(found))}, pyproject.toml {version}"
+
+
 def the_page_about_the_environment_names_every_variable() -> Iterator[Looked]:
     page = (DOCS / "environment.md").read_text(encoding="utf-8")
     code = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "engine/lumen").rglob("*.py"))
@@ -158,6 +172,7 @@ CHECKS: dict[Check, int] = {
     the_index_lists_every_page: 40,
     each_decision_has_a_title_and_a_status: 80,
     the_index_of_decisions_has_each_title_and_status: 160,
+    the_version_is_the_same_everywhere: 5,
     the_page_about_the_environment_names_every_variable: 8,
     blocks_of_pages_say_what_the_runner_knows: 120,
     pyyaml_reads_the_shipped_files: 120,
