@@ -126,7 +126,7 @@ def said(read: Read, text: str) -> tuple[dict[str, Any], list[str]]:
 
 def test_a_system_of_matlab() -> None:
     data, found = said(read_fis, FIS)
-    assert found == ["10:1 `the service` is called `the_service`"]
+    assert found == ["10:1 `the service` is renamed to `the_service`"]
     assert data["operators"] == {"conjunction": "algebraic-product", "disjunction": "algebraic-sum"}
     assert data["inputs"]["the_service"]["terms"] == {"poor": {"gaussian": [0, 1.5]}, "good": {"bell": [9, 2, 4]}}
     assert data["rules"] == [
@@ -154,9 +154,9 @@ def test_a_function_block_as_jfuzzylogic_writes_it() -> None:
     """Its comments, its shapes, and no RANGE: from where the first term begins to where the last one ends."""
     data, found = said(read_fcl, JFUZZY)
     assert found == [
-        "3:1 the range of `service` is that of its terms",
-        "5:1 no ACCU is said: of conclusions about `tip` the greatest counts",
-        "5:1 the range of `tip` is that of its terms",
+        "3:1 `service` has no range: it gets the range of its terms",
+        "5:1 ACCU is missing: the conclusions about `tip` are combined by their maximum",
+        "5:1 `tip` has no range: it gets the range of its terms",
     ]
     assert (data["inputs"]["service"]["range"], data["outputs"]["tip"]["range"]) == ([-2, 9], [0, 30])
     assert Controller.from_dict(data).evaluate({"service": 0})["tip"] == pytest.approx(5, abs=1e-3)
@@ -180,7 +180,7 @@ def test_the_norms_of_octave(norm: str) -> None:
         "AggMethod='max'", f"AggMethod='{norm}_sum'"
     )
     data, found = said(read_fis, text)
-    assert found == ["10:1 `the service` is called `the_service`"]
+    assert found == ["10:1 `the service` is renamed to `the_service`"]
     both = (product.replace("_", "-"), f"{norm}-sum")
     assert tuple(data["operators"].values()) == (*both, *both)
     assert 0 <= Controller.from_dict(data).evaluate({"the_service": 9, "food": 9})["tip"] <= 30
@@ -279,7 +279,7 @@ def test_no_file_breaks_a_reader(read: Read, text: str, data: st.DataObject) -> 
     ("name", "content", "words"),
     [
         ("a.fll", b"", "no variables"),
-        ("a.fll", b"\xff\xfe", "not text"),
+        ("a.fll", b"\xff\xfe", "not UTF-8 text"),
         ("a.fll", b"a: b\n" * 30_000, "more than 20,000 lines"),
         ("a.fcl", b"FUZZIFY", "no output is left"),
         ("a.fcl", b"nothing", "no FUZZIFY"),
@@ -312,7 +312,7 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["import", str(tmp_path / "tipper.fis"), "-o", str(tmp_path / "tipper.yaml")]) == 0
     assert Controller.load(tmp_path / "tipper.yaml").evaluate({"the_service": 9, "food": 9})
     assert main(["export", "fll", "-o", str(tmp_path / "head.fll")]) == 0
-    assert "what the controller is bound to is left out" in capsys.readouterr().err
+    assert "the controller's bindings are left out" in capsys.readouterr().err
     assert main(["import", str(tmp_path / "head.fll"), "-o", str(tmp_path / "head.yaml")]) == 0
     point = {"FaceXLoc": 80.0, "FaceYLoc": 60.0}
     assert Controller.load(tmp_path / "head.yaml").evaluate(point) == Controller.load("fuzzy/head.yaml").evaluate(point)

@@ -169,8 +169,8 @@ def test_a_program_called_dot_draws_where_there_is_one(
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["--state", "ofer", "-o", "x.svg"], "`tour` has no such state `ofer`: did you mean `offer`?"),
-        (["--region", "offer", "-o", "x.svg"], "no such state `offer`"),
+        (["--state", "ofer", "-o", "x.svg"], "`tour` has no state `ofer`: did you mean `offer`?"),
+        (["--region", "offer", "-o", "x.svg"], "no state `offer`"),
         (["--state", "offer"], "Mermaid shows the whole"),
         (["-o", "x.png"], "a PNG takes Graphviz's `dot`"),
         (["-o", "x.svg", "--layout", "dot"], "`dot` is not on this machine"),

@@ -36,10 +36,10 @@ def test_lines_of_soccer_teams_that_are_no_pose_are_listed() -> None:
     text = SOCCER.replace("play%-0.5", "wait%-0.5") + "play%x%0%1\nplay%0%0%0\nplay%0%0\n"
     data, diagnostics = read("fall.motion", text)
     assert [frame["at"] for frame in data["keyframes"]] == ["0.5s", "1.5s"]
-    unread = "this line can't be read: `play%`, 2 angles and a time above 0 s, joined by `%` should stand here"
+    unread = "this line can't be read: write `play%`, 2 angles and a time above 0 s, joined by `%`"
     assert said(diagnostics) == [
         f"4:1 not-carried-over {unread}",
-        "5:6 not-carried-over `x` is no angle",
+        "5:6 not-carried-over `x` is not an angle",
         f"6:1 not-carried-over {unread}",
         f"7:1 not-carried-over {unread}",
     ]
@@ -51,7 +51,7 @@ def test_an_ankle_goes_as_far_as_its_other_angle_lets_it() -> None:
     assert beyond_limits(motion, BODY) == []
     assert motion.tracks["LAnkleRoll"][0].angle < 0.1
     assert said(diagnostics) == [
-        "2:21 carried-over-differently `LAnkleRoll` can't go to 17.19 deg where `LAnklePitch` is then: "
+        "2:21 carried-over-differently `LAnkleRoll` can't reach 17.19 deg at the angle that `LAnklePitch` has then: "
         f"it goes to {round(data['keyframes'][0]['joints']['LAnkleRoll'], 2):g} deg"
     ]
 
@@ -61,7 +61,7 @@ def test_an_ankle_gets_a_key_where_only_its_other_angle_has_one() -> None:
     data, diagnostics = read("ankle.motion", text)
     assert beyond_limits(built(data), BODY) == []
     assert [sorted(frame["joints"]) for frame in data["keyframes"]] == [["LAnklePitch", "LAnkleRoll"]] * 2
-    assert "where `LAnklePitch` is at 2 s" in diagnostics[0].message
+    assert "at the angle that `LAnklePitch` has at 2 s" in diagnostics[0].message
 
 
 def test_handles_that_carry_a_joint_too_far_are_left_out() -> None:
@@ -129,7 +129,7 @@ def test_what_a_program_changes_before_the_call_is_said(statement: str, message:
 
 def test_a_list_whose_length_a_loop_changes_is_refused() -> None:
     before, call, after = EXPORT.partition("try:")
-    with pytest.raises(ForeignFileError, match="names, times and keys do not fit together"):
+    with pytest.raises(ForeignFileError, match="names, times and keys do not match"):
         read("keys.py", f"{before}for i in range(3): names.append('HeadPitch')\n\n{call}{after}")
 
 
@@ -142,9 +142,9 @@ def test_what_changes_other_variables_is_not_said() -> None:
 def test_a_call_in_a_loop_or_a_question_is_said() -> None:
     call = "motion.angleInterpolation('HeadYaw', [0.1], [1.0], True)"
     _, looped = read("a.py", f"while True:\n    {call}\n")
-    assert said(looped) == ["2:5 not-carried-over this is in a loop: here the robot does it once"]
+    assert said(looped) == ["2:5 not-carried-over this call is in a loop: it is imported once"]
     _, asked = read("a.py", f"if x:\n    {call}\n")
-    assert said(asked) == ["2:5 carried-over-differently this is in an `if`: here the robot always does it"]
+    assert said(asked) == ["2:5 carried-over-differently this call is in an `if`: it is imported without the condition"]
     _, main_part = read("a.py", f"if __name__ == '__main__':\n    {call}\n")
     assert main_part == []
 

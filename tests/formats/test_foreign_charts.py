@@ -158,7 +158,7 @@ def test_what_an_actor_did_is_told_and_its_end_waited_for() -> None:
     assert [d.message for d in said] == [
         "`invoke` of `fetchAll`: its code is not in the file", "`invoke` of `watcher`: its code is not in the file",
     ]  # fmt: skip
-    assert all("invoke a behaviour as `" in d.hint for d in said)
+    assert all("invoke a behaviour with the id `" in d.hint for d in said)
     assert all(d.place.line for d in said)
     assert has_errors(said)
 
@@ -175,14 +175,14 @@ def test_a_behaviour_invoked_by_that_id_is_what_is_waited_for() -> None:
 @for_each(
     ("state", "message"),
     [
-        ({"type": "final", "on": {"E": "b"}}, "`on` of a final state: nothing follows it here"),
-        ({"type": "final", "invoke": {"src": "x"}}, "`invoke` of a final state: nothing follows it here"),
-        ({"type": "blue"}, "there is no kind of state `blue`"),
-        ({"on": "E"}, "`on` is no object"),
-        ({"on": [{"target": "b"}]}, "this is no transition: it has no `event`"),
-        ({"after": [{"target": "b"}]}, "this is no transition: it has no `delay`"),
-        ({"on": {"xstate.snapshot.x": "b"}}, "nothing says `xstate.snapshot.x` here"),
-        ({"invoke": {"src": "x", "onSnapshot": "b"}}, "`onSnapshot`: nothing is heard of a behaviour before its end"),
+        ({"type": "final", "on": {"E": "b"}}, "`on` of a final state: nothing follows a final state"),
+        ({"type": "final", "invoke": {"src": "x"}}, "`invoke` of a final state: nothing follows a final state"),
+        ({"type": "blue"}, "unknown type of state `blue`"),
+        ({"on": "E"}, "`on` is not an object"),
+        ({"on": [{"target": "b"}]}, "this is not a transition: it has no `event`"),
+        ({"after": [{"target": "b"}]}, "this is not a transition: it has no `delay`"),
+        ({"on": {"xstate.snapshot.x": "b"}}, "Lumen never raises `xstate.snapshot.x`"),
+        ({"invoke": {"src": "x", "onSnapshot": "b"}}, "`onSnapshot`: a behaviour reports only its end"),
     ],
 )
 def test_nothing_is_left_out_in_silence(state: dict[str, Any], message: str) -> None:

@@ -113,12 +113,12 @@ def test_what_the_robot_cannot_do_is_said_where_it_stands() -> None:
     data, diagnostics = read("bow.motion", text)
     assert data["keyframes"] == [{"at": "1s", "joints": {"HeadYaw": 119.5001}}]
     assert said(diagnostics) == [
-        "2:11 carried-over-differently poses have names here; a motion of ours has none",
+        "2:11 carried-over-differently the names of poses are left out: a motion in Lumen has none",
         "2:15 not-carried-over NAO has no joint `HipRoll`",
-        "2:17 carried-over-differently `HeadYaw` can't go to 515.662 deg: it goes to 119.5 deg",
-        "3:19 not-carried-over `x` is no angle",
-        "4:1 not-carried-over this line can't be read: a time like 00:01:500 should stand here",
-        "5:1 not-carried-over this line can't be read: a name and 2 angles should stand here",
+        "2:17 carried-over-differently `HeadYaw` can't reach 515.662 deg: it goes to 119.5 deg",
+        "3:19 not-carried-over `x` is not an angle",
+        "4:1 not-carried-over this line can't be read: write a time like 00:01:500",
+        "5:1 not-carried-over this line can't be read: write a name and 2 angles",
     ]
 
 
@@ -126,20 +126,20 @@ def test_times_that_go_back_are_left_out() -> None:
     data, diagnostics = read("wave.motion", WEBOTS.replace("00:02:500,Pose3,0.5,*", "00:00:700,Pose3,0.5,0.1"))
     assert [frame["at"] for frame in data["keyframes"]] == ["0.5s", "0.7s", "1s"]
     assert said(diagnostics) == [
-        "4:21 not-carried-over at 0.7 s `HeadYaw` has a key too late: it has one at 1 s already"
+        "4:21 not-carried-over the key of `HeadYaw` at 0.7 s is left out: the key before it is at 1 s"
     ]
 
 
 def test_a_time_before_the_beginning_is_left_out() -> None:
     data, said = read("a.py", "motion.angleInterpolation('HeadYaw', [0.1, 0.2], [-1.0, 1.0], True)\n")
     assert [frame["at"] for frame in data["keyframes"]] == ["1s"]
-    assert [d.message for d in said] == ["`HeadYaw` is somewhere 1 s before the motion begins"]
+    assert [d.message for d in said] == ["`HeadYaw` has a key 1 s before the motion begins"]
 
 
 def test_a_timeline_without_frames_a_second_has_the_usual_ones() -> None:
     data, said = read("a.xar", XAR.format(boxes=WAVE.format(name="W").replace('fps="20"', 'fps="0"')))
     assert [frame["at"] for frame in data["keyframes"]] == ["0.8s", "1.6s"]
-    assert "25 frames are taken for a second" in said[0].message
+    assert "it is read with 25 frames per second" in said[0].message
 
 
 def test_choregraphe_keeps_its_tangents() -> None:
@@ -162,7 +162,7 @@ def test_one_of_several_timelines() -> None:
         read("wave.xar", text, "Bowe")
     data, diagnostics = read("wave.xar", text, "Wave 2")
     assert data["keyframes"][0]["joints"]["HeadYaw"] == 20
-    assert [d.message.split(" is left out")[0] for d in diagnostics] == ["box `Wave`", "box `Bow`"]
+    assert [d.message.split(" is left out")[0] for d in diagnostics] == ["the box `Wave`", "the box `Bow`"]
 
 
 def test_muted_curves_and_other_boxes_are_listed() -> None:
@@ -171,7 +171,7 @@ def test_muted_curves_and_other_boxes_are_listed() -> None:
     assert data["keyframes"] == [{"at": "1s", "joints": {"RHand": 0.75}}]
     assert [d.message for d in diagnostics] == [
         "`HeadYaw` is muted",
-        "box `Say` is left out: only joints of a timeline are read",
+        "the box `Say` is left out: only joints of a timeline are read",
     ]
 
 
@@ -206,7 +206,7 @@ motion.angleInterpolation("HeadYaw", 0.1, 1.0, False)
         {"at": "2.5s", "joints": {"HeadPitch": 5.7296}},
         {"at": "3s", "joints": {"HeadYaw": -30}},
     ]
-    assert said(diagnostics) == ["4:1 not-carried-over angles relative to where the robot stands are not read"]
+    assert said(diagnostics) == ["4:1 not-carried-over relative angles are not read"]
 
 
 def test_what_only_a_run_would_tell_is_listed() -> None:
@@ -219,19 +219,23 @@ def test_what_only_a_run_would_tell_is_listed() -> None:
     ("file", "text", "message"),
     [
         ("a.motion", "", "does not begin with"),
-        ("a.motion", "#WEBOTS_MOTION,V2.0,HeadYaw\n", "only V1.0 and V1.1 are known"),
-        ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw,HeadYaw\n", "named twice"),
-        ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n", "nothing in it moves a joint of NAO"),
-        ("a.motion", "#WEBOTS_MOTION,V1.0\n00:00:100,a,1\n", "names no joint"),
-        ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,a,nan\n", "nothing in it .*: `nan` is no angle"),
-        ("a.xar", "<a/>", "no behaviour of Choregraphe"),
+        ("a.motion", "#WEBOTS_MOTION,V2.0,HeadYaw\n", "only V1.0 and V1.1 can be read"),
+        ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw,HeadYaw\n", "listed twice"),
+        ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n", "the file moves no joint of NAO"),
+        ("a.motion", "#WEBOTS_MOTION,V1.0\n00:00:100,a,1\n", "contains no joint names"),
+        (
+            "a.motion",
+            "#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,a,nan\n",
+            "the file moves no joint .*: `nan` is not an angle",
+        ),
+        ("a.xar", "<a/>", "not a Choregraphe behaviour"),
         ("a.xar", "hello", "not XML"),
-        ("a.xar", XAR.format(boxes=""), "no timeline in it moves a joint"),
+        ("a.xar", XAR.format(boxes=""), "no timeline in the file moves a joint"),
         ("a.py", "def f(:\n", "not Python"),
         ("a.py", "import os\nos.system('true')\n", "no keyframes"),
         ("a.py", "[" * 5000, "not Python"),
         ("a.py", "x = 1\0", "not Python"),
-        ("a.py", "motion.angleInterpolation('HeadYaw', 1e400, 1.0)", "nothing in it moves"),
+        ("a.py", "motion.angleInterpolation('HeadYaw', 1e400, 1.0)", "the file moves no joint"),
     ],
 )
 def test_files_that_are_none(file: str, text: str, message: str) -> None:

@@ -93,7 +93,7 @@ def test_rows_come_back_with_their_guards_and_actions(write: Any, read: Any) -> 
 def test_each_row_is_reported_at_its_place(write: Any, word: str) -> None:
     said = write(Machine.from_dict(CHART), dotted("tour"))[1]
     rows = {str(d.place.file): (d.message, d.hint) for d in said if "`hears " in d.message}
-    hint = "elsewhere it has to be written: which row has more words, what is negated or asked, and what was caught"
+    hint = "another tool must implement this guard: the longest match, negation, questions and the values caught"
     where = "tour (states.offer.hears.{})"
     assert rows == {
         where.format(place): (f"`hears {key}` becomes a {word}", hint)
@@ -124,7 +124,7 @@ def test_xstate_asks_for_a_guard_of_that_name() -> None:
     ("old", "new", "lost"),
     [
         ('lumen:hears="dance" cond="hears(', 'lumen:hears="dance" cond="listens(',
-         "a row of `hears` begins with `hears(_event.data.result, 'dance')`"),
+         "the condition of a row of `hears` must begin with `hears(_event.data.result, 'dance')`"),
         ('event="heard" lumen:hears="dance"', 'event="noted" lumen:hears="dance"', "`hears()` has no counterpart"),
         (' lumen:hears="dance"', "", "`hears()` has no counterpart"),
     ],

@@ -81,7 +81,7 @@ def refused(read: Reader, content: bytes, line: int, words: str) -> None:
 def test_states_nested_too_deeply_are_left_out_and_listed() -> None:
     chart = HEAD + b"".join(b'<state id="s%d">' % n for n in range(60)) + b"</state>" * 60 + b"</scxml>"
     data, diagnostics = read_scxml("chart", chart, "chart")
-    assert [d.message for d in diagnostics] == ["`s40` lies more than 40 levels deep"]
+    assert [d.message for d in diagnostics] == ["`s40` is nested more than 40 levels deep"]
     Machine.from_dict(data)
 
 

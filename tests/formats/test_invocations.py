@@ -45,7 +45,7 @@ def test_scxml_names_the_file(host: Machine) -> None:
     text, said = write_scxml(host, dotted("host"))
     assert '<invoke type="http://www.w3.org/TR/scxml/" id="again" src="quiz.scxml" autoforward="true">' in text
     assert '<param name="round" expr="n + 1"/>' in text
-    assert {d.message for d in said} == {"`invoke` of `quiz` looks for `quiz.scxml`"}
+    assert {d.message for d in said} == {"`invoke` of `quiz` needs the file `quiz.scxml`"}
     assert not has_errors(said)
     once, found = read_scxml("host.scxml", text.encode(), "host")
     assert not has_errors(found)
@@ -105,7 +105,7 @@ def test_what_waits_for_the_end_of_a_lost_invoke_stays() -> None:
     data, said = read_scxml("a.scxml", text.encode(), "a")
     assert data["states"]["a"]["on"] == {"done.invoke.i.1": "b", "error.platform": "a"}
     assert [d.hint for d in said if d.severity == "error"] == [
-        "what waits for `done.invoke.i.1` stays: invoke a behaviour by that id"
+        "invoke a behaviour with the id `i.1`: transitions on `done.invoke.i.1` are kept"
     ]
     it = Interpreter(Machine.from_dict(data))
     it.start()
@@ -129,7 +129,7 @@ def test_diagrams_show_what_is_inside_once(host: Machine) -> None:
 
 def test_a_machine_taken_apart_says_what_to_write_instead() -> None:
     data = {"id": "m", "key": "m", "order": -1, "transitions": [], "states": {"a": {"order": 1}}}
-    with pytest.raises(ForeignFileError, match="a machine taken apart"):
+    with pytest.raises(ForeignFileError, match="not a machine's configuration"):
         read_xstate("m.json", json.dumps(data).encode(), "m")
 
 
@@ -137,7 +137,7 @@ def test_what_json_lost_of_xstate_is_listed() -> None:
     data = {"states": {"a": {"entry": [None, "hi"], "on": {"x": {"meta": {"y": 1}}}}}, "output": {"z": 1}}
     found, said = read_xstate("m.json", json.dumps(data).encode(), "m")
     assert {d.message for d in said} == {
-        "`output` of a machine", "an action is null: JSON has no place for its code",
+        "a machine has no `output`", "an action is null: JSON can't contain its code",
         "the code of the action `hi` is not in the file", "`meta` is not carried over",
     }  # fmt: skip
     assert "hi" in document_yaml(found)

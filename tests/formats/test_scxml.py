@@ -108,17 +108,18 @@ def test_values_that_change_their_kind_are_of_any() -> None:
     [
         ("<state>\n<invoke type='http'/></state>", ["3: `<invoke>`: the service `http` is not carried over"]),
         ("<state>\n<invoke/></state>",
-         ["3: `<invoke>`: a chart that is computed or stands inside is not carried over"]),
+         ["3: `<invoke>`: a computed or inline chart is not carried over"]),
         ("<state><onentry>\n<foreach array='x' item='y'/></onentry></state>",
-         ["3: `<foreach>`: there are no loops here"]),
+         ["3: `<foreach>`: Lumen has no loops in actions"]),
         ("<state id='a'/>\n<state id='a'/>", ["3: a second state has the id `a`"]),
         ("<state>\n<transition event='e' target='z'/></state>", ["3: there is no state `z` to go to"]),
         ("<state>\n<transition event='e' cond='y = 1'/></state>",
-         ["3: the condition `y = 1`: Lumen's expressions have no assignments"]),
+         ["3: the condition `y = 1` can't be converted: Lumen's expressions have no assignments"]),
         ("<state><onentry>\n<send event='e' target='http://x'/></onentry></state>",
-         ["3: `<send>` to `http://x`"]),
-        ("<state>\n<transition/></state>", ["3: a transition without event, condition and target runs for ever"]),
-        ("<state>\n<custom xmlns='urn:x'/></state>", ["3: `<custom>` of the namespace `urn:x` means nothing here"]),
+         ["3: `<send>` to `http://x` is left out"]),
+        ("<state>\n<transition/></state>",
+         ["3: a transition without event, condition and target is left out: it would repeat without end"]),
+        ("<state>\n<custom xmlns='urn:x'/></state>", ["3: `<custom>` of the namespace `urn:x` is ignored"]),
     ],
 )  # fmt: skip
 def test_nothing_is_dropped_in_silence(body: str, said: list[str]) -> None:
@@ -131,8 +132,8 @@ def test_assignments_to_a_part() -> None:
                       '<assign location="v[0]" expr="2"/></onentry></state>')  # fmt: skip
     assert data["states"]["a"]["entry"] == [{"assign": {"v.at.room": 2}}]
     assert said == [
-        "3: `<assign>` to `w.at`, which stands in no datamodel",
-        "4: `<assign>` to `v[0]`, which is no plain name",
+        "3: `<assign>` to `w.at`, which is not declared",
+        "4: `<assign>` to `v[0]`, which is not a plain name",
     ]
 
 

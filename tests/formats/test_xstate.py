@@ -69,7 +69,7 @@ def test_code_that_is_not_in_the_file() -> None:
         "the code of the guard `isOpen` is not in the file",
         "the code of the delay `soon` is not in the file",
         "`invoke` of `fetch`: its code is not in the file",
-        "`tags` mean nothing here",
+        "`tags` are left out",
     ]
     lines = [int(message.partition(": ")[0]) for message in said]
     assert lines == sorted(set(lines))
@@ -90,7 +90,7 @@ def test_what_goes_to_other_actors() -> None:
         {"send": {"event": "E", "to": "quiz"}},
         {"send": {"event": "E", "data": {"answer": 42}, "to": "quiz"}},
     ]
-    assert [message.partition(": ")[2] for message in said] == ["`xstate.sendTo`: whom it goes to is not in the file"]
+    assert [message.partition(": ")[2] for message in said] == ["`xstate.sendTo`: its recipient is not in the file"]
 
 
 def test_order_and_prefixes_survive_xstates_rules() -> None:
@@ -122,7 +122,7 @@ def test_an_initial_state_deep_inside() -> None:
     chart = {"id": "m", "initial": "#a.b", "states": {"a": {"initial": "c", "states": {"c": None, "b": None}}}}
     text, said = write_xstate(Machine.from_dict(chart), dotted("m"))
     assert [d.message for d in said] == [
-        "XState enters only children at first: `begin`, which is passed through, leads deeper"
+        "XState's `initial` must be a child: the additional state `begin` leads to the inner state"
     ]
     again = Machine.from_dict(read_xstate("m", text.encode(), "m")[0])
     assert initial(again).snapshot.configuration == {"a", "a.b"}

@@ -55,7 +55,7 @@ def test_a_guard_that_is_no_attribute_is_listed_and_case_is_accepted() -> None:
 
 def test_data_declared_twice_is_listed() -> None:
     data, found = scxml("data-twice.scxml")
-    hint = "give each an id of its own: all of a chart see all data"
+    hint = "give each its own id: data is visible in the whole chart"
     assert messages(found) == [f"3:34 a second `<data>` has the id `TIMEOUT` ({hint})"]
     assert data["context"] == {"TIMEOUT": 100000}
 
@@ -68,7 +68,7 @@ def test_the_layout_of_an_editor_is_one_line_and_no_error() -> None:
 
 def test_conditions_follow_a_renamed_id() -> None:
     data, found = scxml("renamed-in.scxml")
-    assert [d.message for d in found] == ["the state `Talk#1` is called `Talk_1` here, wherever the chart names it"]
+    assert [d.message for d in found] == ["the state `Talk#1` is renamed to `Talk_1` in the whole behaviour"]
     it = Interpreter(Machine.from_dict(data))
     it.start()
     it.send("f")
@@ -100,9 +100,9 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><transition event="e"><target next="b"/></transition></state><state id="b"/>',
          "`<target>`: write `target=` in the `<transition>`"),
         ('<state id="a"><onentry><var name="x" expr="1"/></onentry></state>',
-         "`<var>`: declare it with `<data>`, and set it with `<assign>`"),
+         "`<var>`: declare it with `<data>` and set it with `<assign>`"),
         ('<state id="a"><onentry><qt:beep/></onentry></state>', "`<beep>` has no counterpart"),
-        ('<datamodel><data expr="1"/></datamodel><state id="a"/>', "a `<data>` without `id`"),
+        ('<datamodel><data expr="1"/></datamodel><state id="a"/>', "a `<data>` has no `id`"),
         ('<datamodel><data name="x"/></datamodel><state id="a"/>', "`name` of `<data>`: write `id`"),
         ('<datamodel><data id="x" expr="1">2</data></datamodel><state id="a"/>',
          "`<data>` has `expr` and `text`: one of them is left out"),
@@ -112,17 +112,17 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><transition event="e" type="inner" target="a"/></state>',
          '`type` of `<transition>` can\'t be `inner` (write "external" or "internal")'),
         ('<state id="a"><onentry><if cond="true"><log expr="1"/><else><log expr="2"/></else></if></onentry></state>',
-         "`<log>` in `<else>` has no counterpart (write it behind `<else/>`)"),
+         "`<log>` in `<else>` has no counterpart (move it after `<else/>`)"),
         ('<state id="a"><onentry><if cond="true"/><send event="e"><param name="a" expr="1"/>'
          '<content>2</content></send></onentry></state>',
          "`<send>` has `<param>` and `<content>`: one of them is left out"),
         ('<state id="a"><onentry><send event="e"><param name="a" expr="1"/><param name="a" expr="2"/></send>'
-         "</onentry></state>", "a second `<param>` is called `a`"),
-        ('<final id="a"><transition event="e" target="a"/></final>', "nothing follows a final state here"),
+         "</onentry></state>", "two `<param>` are named `a`: the last one is used"),
+        ('<final id="a"><transition event="e" target="a"/></final>', "nothing follows a final state"),
         ('<parallel id="p" initial="a"><state id="a"/><state id="b"/></parallel>',
          "`initial` of `<parallel>`: a parallel state enters all of its states"),
         ('<state id="a"><initial><transition target="b" cond="true"/></initial><state id="b"/></state>',
-         "`cond`: the way into a state is taken without event or condition"),
+         "`cond` is left out: a transition into a state has no event or condition"),
         ('<state id="a"><history id="h"><transition target="b"/><transition target="c"/></history>'
          '<state id="b"/><state id="c"/></state>', "a second `<transition>` in a `<history>`"),
         ('<state id="a"><lumen:do>[{"log": "x"}]</lumen:do><lumen:do>[{"log": "y"}]</lumen:do></state>',
@@ -130,11 +130,11 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><lumen:state>{"resume": "soon"}</lumen:state></state>',
          "`resume: soon` of `<lumen:state>` has no counterpart"),
         ('<state id="a"><transition event="e" qt:cond="x" target="a"/></state>',
-         "`cond` of the namespace `urn:qt` means nothing here"),
+         "`cond` of the namespace `urn:qt` is ignored"),
         ('<state id="a"><invoke type="scxml" src="b.scxml" autoforward="yes"/></state>',
          "`autoforward` of `<invoke>` can't be `yes`"),
-        ('<state id="a" initial="b"/><state id="b"/>', "`initial` of `a`, which has no states within"),
-        ('<state id="a"><initial><transition target="a"/></initial></state>', "`initial` of `a`, which has no states"),
+        ('<state id="a" initial="b"/><state id="b"/>', "`initial` of `a` is left out: the state has no inner states"),
+        ('<state id="a"><initial><transition target="a"/></initial></state>', "`initial` of `a` is left out: the state has"),
         ('<state id="a"><state id="b"><transition event="e" target="b c"/></state><state id="c"/></state>',
          "`b` and `c` can't be active together"),
         ('<state id="a"><history id="h"/><transition event="e" target="h"/></state>', "there is no state `h` to go to"),
@@ -142,7 +142,7 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
          "a history can't lead to a history"),
         ('<qt:group><state id="a"/></qt:group><state id="b"/>', "`<state>` in `<group>` is not read"),
         ('<state id="a"><invoke id="q" src="q.scxml"/><invoke id="q" src="r.scxml"/></state>',
-         "`<invoke>`: a second one has the id `q`"),
+         "`<invoke>`: a second `<invoke>` has the id `q`"),
         ('<state id="a"><invoke src="q.scxml"><finalize><log expr="1"/></finalize></invoke></state>',
          "`<finalize>` has no counterpart"),
     ],
@@ -175,9 +175,9 @@ def test_a_chart_that_is_invoked_twice_has_two_ids() -> None:
     ("attributes", "found"),
     [
         ('version="1.0" datamodel="ecmascript"', []),
-        ('version="2.0"', ["1:48 version `2.0` is read as 1.0 (there is one: write \"1.0\")"]),
+        ('version="2.0"', ["1:48 version `2.0` is read as 1.0 (write \"1.0\", the only version)"]),
         ('datamodel="null"',
-         ["1:48 the data model `null` has no `<data>`: it is read as ECMAScript (write \"ecmascript\")"]),
+         ["1:48 the data model `null` does not allow `<data>`: it is read as ECMAScript (write \"ecmascript\")"]),
     ],
 )  # fmt: skip
 def test_attributes_of_the_whole_document(attributes: str, found: list[str]) -> None:
@@ -316,16 +316,16 @@ def test_actions_of_xstate_itself(action: dict[str, Any], ours: dict[str, Any]) 
     [
         ({"type": "xstate.send"}, "`xstate.send`: its event is not in the file"),
         ({"type": "xstate.send", "event": "E", "delay": "soon"},
-         "`xstate.send`: the delay `soon` is not in the file: write milliseconds"),
+         "`xstate.send`: the delay `soon` is not a number of milliseconds"),
         ({"type": "xstate.cancel"}, "`xstate.cancel`: `sendId` is not in the file"),
         ({"type": "xstate.log"}, "`xstate.log`: its code is not in the file"),
         ({"type": "xstate.assign", "assignment": {}}, "`xstate.assign`: its code is not in the file"),
-        ({"type": "xstate.assign", "assignment": {"n": 1, "m": 1}}, "`m` is no key of the context"),
+        ({"type": "xstate.assign", "assignment": {"n": 1, "m": 1}}, "`m` is not in the context"),
         ({"type": "xstate.send", "event": "E", "dely": 3}, "`dely` of an xstate.send has no counterpart"),
         ({"type": "xstate.send", "params": {"event": "E", "dely": 3}}, "`dely` of an xstate.send has no counterpart"),
         ({"type": "xstate.send", "event": "E", "params": {"event": "F"}},
          "`event` in `params` of an xstate.send is left out"),
-        ({"type": "xstate.send", "event": "E", "params": "soon"}, "`params` of an xstate.send is no object"),
+        ({"type": "xstate.send", "event": "E", "params": "soon"}, "`params` of an xstate.send is not an object"),
     ],
 )  # fmt: skip
 def test_missing_parts_of_an_xstate_action_are_listed(action: dict[str, Any], found: str) -> None:
@@ -341,28 +341,28 @@ def test_missing_parts_of_an_xstate_action_are_listed(action: dict[str, Any], fo
         ({"on": {"E": {"target": "a", "reenter": "yes"}}}, "`reenter` can't be `yes`"),
         ({"on": {"E": {"target": "a", "guards": "x"}}}, "`guards` of a transition has no counterpart"),
         ({"on": {"E": {"target": "a", "guard": "x", "cond": "y"}}}, "`cond` beside `guard` is left out"),
-        ({"on": {"E": {"target": "a", "in": "b.c"}}}, "`in`: there is no state `b.c`"),
-        ({"initial": "x"}, "`initial` of a state that has no states within"),
+        ({"on": {"E": {"target": "a", "in": "b.c"}}}, "`in`: the state `b.c` does not exist"),
+        ({"initial": "x"}, "`initial` is left out: the state has no inner states"),
         ({"parallel": "yes"}, "`parallel` can't be `yes`"),
-        ({"type": "Parallel", "states": {"x": {}}}, "there is no kind of state `Parallel`"),
+        ({"type": "Parallel", "states": {"x": {}}}, "unknown type of state `Parallel`"),
         ({"type": "parallel", "initial": "x", "states": {"x": {}, "y": {}}},
-         "`initial` of a parallel state: all of its states are entered"),
+         "`initial` of a parallel state: it enters all of its states"),
         ({"initial": "x", "states": {"x": {}, "h": {"type": "history", "history": "Deep"}}},
          "`history` can't be `Deep`"),
         ({"initial": "x", "states": {"x": {}, "h": {"type": "history", "on": {"E": "x"}}}},
          "`on` of a history state has no counterpart"),
-        ({"invoke": {"src": "x", "input": {"n": 1}}}, "`input` of an invoke"),
+        ({"invoke": {"src": "x", "input": {"n": 1}}}, "`input` of the `invoke` is left out"),
         ({"meta": {"lumen": {"resume": "soon"}}}, "`resume` of `meta.lumen` has no counterpart"),
-        ({"description": ["x"]}, "`description` is no text"),
-        ({"invoke": {"src": "x", "id": 3}}, "`id` is no text"),
-        ({"invoke": [None]}, "this is no invocation"),
+        ({"description": ["x"]}, "`description` is not a text"),
+        ({"invoke": {"src": "x", "id": 3}}, "`id` is not a text"),
+        ({"invoke": [None]}, "this is not an invocation"),
         ({"invoke": {"src": {"type": "x", "pace": 3}}}, '`invoke` of `x {"pace": 3}`: its code is not in the file'),
         ({"type": "final", "output": 1, "data": 2}, "`data` beside `output` is left out"),
-        ({"on": {" *": "b"}}, "the events ` *` are called `*` here"),
+        ({"on": {" *": "b"}}, "the events ` *` are renamed to `*`"),
         ({"on": {"E": {"target": ["a", "b"]}}}, "`a` and `b` can't be active together"),
         ({"states": {"h": {"type": "history"}}, "on": {"E": ".h"}}, "there is no state `.h` to go to"),
         ({"initial": "h", "states": {"h": {"history": True}, "x": {}}},
-         "a history leads to a history, as its parent begins"),
+         "this history leads to a history, the first state of its parent"),
         ({"initial": "x", "states": {"h": {"history": True}, "i": {"type": "history", "target": "h"}, "x": {}}},
          "a history can't lead to a history"),
     ],
@@ -383,8 +383,8 @@ def test_a_key_that_is_assigned_values_of_two_kinds_may_hold_both() -> None:
 def test_an_event_with_a_blank_has_one_name() -> None:
     data, found = xstate("event-with-blank.json")
     assert [d.message for d in found] == [
-        "the event `menu shown` is called `menu_shown` here, wherever the machine names it",
-        "the event `say hello` is called `say_hello` here, wherever the machine names it",
+        "the event `menu shown` is renamed to `menu_shown` in the whole behaviour",
+        "the event `say hello` is renamed to `say_hello` in the whole behaviour",
     ]
     it = Interpreter(Machine.from_dict(data))
     it.start()

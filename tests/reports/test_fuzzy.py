@@ -56,7 +56,7 @@ def test_two_inputs_of_one_name_stay_two() -> None:
     data, found = read("two-inputs-one-name.fis")
     assert list(data["inputs"]) == ["temp", "temp_2"]
     assert value(data, temp=2, temp_2=9) == pytest.approx(15.26, abs=0.01)
-    assert [(d.place.line, d.message) for d in found] == [(22, "`temp` is called `temp_2`")]
+    assert [(d.place.line, d.message) for d in found] == [(22, "`temp` is renamed to `temp_2`")]
 
 
 @for_each(
@@ -98,21 +98,21 @@ def test_sections_and_terms_count_by_their_numbers() -> None:
     ("old", "new", "message"),
     [
         ("AndMethod", "AndMetod", "`AndMetod` is left out"),
-        ("'min'", "'mim'", "there is no conjunction `mim` here: the usual one is used"),
-        ("Type='mamdani'", "Type='mamdany'", "`mamdany` is no type of a system"),
-        ("Type='mamdani'", "Type='sugeno'", "`Type` is 'sugeno', and the values are found by centroid: that counts"),
-        ("NumInputs=2", "NumInputs=3", "`NumInputs` is 3, and there are 2: all of them count"),
-        ("NumRules=2", "NumRules=1", "`NumRules` is 1, and there are 2: all of them count"),
-        ("NumMFs=2", "NumMFs=3", "`NumMFs` is 3, and there are 2: all of them count"),
+        ("'min'", "'mim'", "unknown conjunction `mim`: the default is used"),
+        ("Type='mamdani'", "Type='mamdany'", "unknown system type `mamdany`"),
+        ("Type='mamdani'", "Type='sugeno'", "`Type` is 'sugeno', but the defuzzification is centroid, which is used"),
+        ("NumInputs=2", "NumInputs=3", "`NumInputs` is 3, but the file has 2: all are read"),
+        ("NumRules=2", "NumRules=1", "`NumRules` is 1, but the file has 2: all are read"),
+        ("NumMFs=2", "NumMFs=3", "`NumMFs` is 3, but the file has 2: all are read"),
         ("NumMFs=2", "NumMFs=2\nUnit='K'", "`Unit` is left out"),
-        ("NumMFs=2", "NumMFs=2\nRange=[0 5]", "`Range` comes twice: the first one counts"),
-        ("[Input2]", "[Input3]", "[Input3] is number 2 of its kind: rules count by that"),
-        ("[Rules]", "[Rulse]\n[Rules]", "`[Rulse]` is left out: it is in no section"),
-        ("[System]", "Author='me'\n[System]", "`Author='me'` is left out: it is in no section"),
+        ("NumMFs=2", "NumMFs=2\nRange=[0 5]", "`Range` is set twice: the first value is used"),
+        ("[Input2]", "[Input3]", "[Input3] is read as number 2: rules refer to it by this number"),
+        ("[Rules]", "[Rulse]\n[Rules]", "`[Rulse]` is left out: it is not in a section"),
+        ("[System]", "Author='me'\n[System]", "`Author='me'` is left out: it is not in a section"),
         ("MF2='b'", "MF3='b'", "`temp` has no MF2"),
         ("(1) : 1", "(2) : 1", "this rule is left out: the weight 2 is not between 0 and 1"),
-        ("(1) : 1", "(1) : 3", "this rule can't be read"),
-        ("trimf", "trimef", "a term of `temp` is left out: there is no shape `trimef` here"),
+        ("(1) : 1", "(1) : 3", "this is not a rule for these inputs and outputs"),
+        ("trimf", "trimef", "a term of `temp` is left out: unknown shape `trimef`"),
     ],
 )
 def test_unread_parts_of_a_fis_are_listed(old: str, new: str, message: str) -> None:
@@ -249,7 +249,7 @@ def test_a_hedge_of_a_value_is_listed() -> None:
     ]
 
 
-THEIR_TERMS = "the range of `out` is that of its terms"
+THEIR_TERMS = "`out` has no range: it gets the range of its terms"
 DECLARED = "temperature : REAL; RANGE := ( 100 .. 150 );"
 
 
@@ -265,7 +265,7 @@ DECLARED = "temperature : REAL; RANGE := ( 100 .. 150 );"
 def test_a_range_in_the_declaration_is_read(declaration: str) -> None:
     data, found = read("range-in-declaration.fcl", (DECLARED, declaration))
     assert data["inputs"]["temperature"]["range"] == [100, 150]
-    lost = ["`TEMPERATURE` has no terms, and is left out"] if "TEMPERATURE" in declaration else []
+    lost = ["`TEMPERATURE` is left out: it has no terms"] if "TEMPERATURE" in declaration else []
     assert [d.message for d in found] == [*lost, THEIR_TERMS]
 
 
@@ -280,21 +280,25 @@ def test_two_variables_in_one_declaration_are_read() -> None:
 @for_each(
     ("old", "new", "message"),
     [
-        ("RANGE := ( 100", "RNAGE := ( 100", "this can't be read"),
+        ("RANGE := ( 100", "RNAGE := ( 100", "this is not a declaration"),
         (
             "FUZZIFY temperature",
             "FUZZIFY temperature RANGE := (0 .. 9);",
-            "`temperature` has another range in its decl",
+            "`temperature` has a different range in its decl",
         ),
-        (": REAL;\nEND", ": INT;\nEND", "`INT` is read as REAL: a value is any number"),
-        (": REAL;\nEND", ": REAL := 5;\nEND", "`:= 5` of a declaration is left out"),
-        ("VAR_OUTPUT", "VAR\n a : REAL;\nEND_VAR\nVAR_OUTPUT", "`VAR` and what follows it are left out: that is no"),
-        ("RULEBLOCK No1", "OPTIONS\n x;\nEND_OPTIONS\nRULEBLOCK No1", "`OPTIONS` and what follows it are left out"),
-        ("END_FUZZIFY", "METHOD : COG; END_FUZZIFY", "`METHOD` is not for inputs"),
-        ("METHOD : COG;", "METHOD : COG; METHOD : COA;", "`METHOD` comes twice: the first one counts"),
-        ("METHOD : COG;", "METOD : COG;", "`METOD : COG` is not for outputs"),
-        ("ACT : MIN;", "AKT : MIN;", "this can't be read"),
-        ("ACCU : MAX;", "ACCU : MAXX;", "there is no ACCU `MAXX` here"),
+        (": REAL;\nEND", ": INT;\nEND", "the type `INT` is read as REAL"),
+        (": REAL;\nEND", ": REAL := 5;\nEND", "`:= 5` in a declaration is left out"),
+        ("VAR_OUTPUT", "VAR\n a : REAL;\nEND_VAR\nVAR_OUTPUT", "`VAR` is not a section; it and the text after it"),
+        (
+            "RULEBLOCK No1",
+            "OPTIONS\n x;\nEND_OPTIONS\nRULEBLOCK No1",
+            "`OPTIONS` is not a section; it and the text after",
+        ),
+        ("END_FUZZIFY", "METHOD : COG; END_FUZZIFY", "an input can't have `METHOD`"),
+        ("METHOD : COG;", "METHOD : COG; METHOD : COA;", "`METHOD` is set twice: the first value is used"),
+        ("METHOD : COG;", "METOD : COG;", "an output can't have `METOD : COG`"),
+        ("ACT : MIN;", "AKT : MIN;", "this is neither a rule nor an operator"),
+        ("ACCU : MAX;", "ACCU : MAXX;", "unknown ACCU `MAXX`"),
         ("SIGM -4", "SIGN -4", "the term `low` of `temperature` is left out"),
     ],
 )
@@ -331,7 +335,7 @@ RuleBlock: r
 def test_an_input_and_an_output_of_an_engine_of_one_name_stay_two() -> None:
     data, found = read_fll("e.fll", ENGINE.encode(), "e")
     assert data["rules"] == ["if a is low then a_2 is few"]
-    assert [d.message for d in found] == ["`a` is called `a_2`"]
+    assert [d.message for d in found] == ["`a` is renamed to `a_2`"]
 
 
 @for_each(
@@ -340,12 +344,12 @@ def test_an_input_and_an_output_of_an_engine_of_one_name_stay_two() -> None:
         ("lock-range: false", "lock-rang: false", "a variable has no `lock-rang`"),
         ("lock-range: false", "lock-range: tru", "`tru` is neither `true` nor `false`"),
         ("enabled: true\n  con", "enabled: no\n  con", "`no` is neither `true` nor `false`"),
-        ("range: 0 10", "range: 0 10\n  range: 0 5", "`range` comes twice: the last one counts"),
+        ("range: 0 10", "range: 0 10\n  range: 0 5", "`range` is set twice: the last value is used"),
         ("conjunction: Minimum", "conjunctoin: Minimum", "a rule block has no `conjunctoin`"),
         ("Engine: e", "Engine: e\nversion: 8", "an engine has no `version`"),
-        ("Centroid 100", "Centroid 1e2", "`1e2` is not for defuzzifiers"),
-        ("General", "Generl", "`Generl` is no activation"),
-        ("default: nan", "default: non", "`non` is no number"),
+        ("Centroid 100", "Centroid 1e2", "a defuzzifier can't have `1e2`"),
+        ("General", "Generl", "unknown activation `Generl`"),
+        ("default: nan", "default: non", "`non` is not a number"),
     ],
 )
 def test_unread_parts_of_an_engine_are_listed(old: str, new: str, message: str) -> None:

@@ -110,18 +110,18 @@ def test_a_muted_curve_without_a_key_loses_nothing() -> None:
         ('fps="25"', 'fps="25" loop="1"', "`loop` of `<Timeline>` is left out"),
         ('mute="0"', 'muted="0"', "`muted` of `<ActuatorCurve>` is left out"),
         ('<Key frame="25"', '<Key speed="2" frame="25"', "`speed` of `<Key>` is left out"),
-        ('mute="0"', 'mute="true"', "`RShoulderPitch` is not muted: `mute` is `true`"),
-        ('enable="1"', 'enable="yes"', "`enable` is `yes`: the timeline counts as switched on"),
-        ('xar_version="3"', 'xar_version="4"', "`xar_version` is 4: the file is read as one of version 3"),
+        ('mute="0"', 'mute="true"', "`mute` of `RShoulderPitch` is `true`: it is read as 0"),
+        ('enable="1"', 'enable="yes"', "`enable` is `yes`: the timeline is read as switched on"),
+        ('xar_version="3"', 'xar_version="4"', "`xar_version` is 4: the file is read as version 3"),
         (
             'value="30" />',
             'value="30"><Tangent side="left" interpType="bezir" abscissaParam="-1" /></Key>',
-            "`RShoulderPitch` moves here by `bezir`, which is unknown",
+            "unknown interpolation `bezir` for `RShoulderPitch`",
         ),
         (
             'value="30" />',
             'value="30"><Tangent side="middle" interpType="linear" /></Key>',
-            "a tangent of `RShoulderPitch` is `middle`",
+            "a tangent of `RShoulderPitch` has the side `middle`",
         ),
         (
             '<Box name="root" id="-1">',
@@ -158,7 +158,7 @@ def test_a_function_plays_what_another_returned(end: str, first: str) -> None:
     text = (INPUTS / "library_returns.py.txt").read_text("utf-8") + show + end
     data, found = read_gesture("show.py", text.encode(), BODY)
     assert [frame["at"] for frame in data["keyframes"]] == [first]
-    assert [d.message for d in found] == ["the function `scared` is left out: nothing calls it"]
+    assert [d.message for d in found] == ["the function `scared` is left out: the file does not call it"]
 
 
 def test_functions_play_in_the_order_of_their_calls() -> None:
@@ -178,7 +178,9 @@ def test_a_function_that_is_called_three_times_plays_three_times() -> None:
 def test_a_function_that_nothing_calls_is_listed() -> None:
     keys, found = read("order.py", "nod()\nwave()", "wave()")
     assert list(times(keys, "RShoulderPitch")) == ["1s", "2s"]
-    assert [(d.message, d.place.line) for d in found] == [("the function `nod` is left out: nothing calls it", 7)]
+    assert [(d.message, d.place.line) for d in found] == [
+        ("the function `nod` is left out: the file does not call it", 7)
+    ]
 
 
 def test_methods_and_their_arguments_are_followed() -> None:
@@ -203,7 +205,7 @@ def test_recursion_and_doubling_calls_end() -> None:
     ring = b"def a():\n    motion.angleInterpolation('HeadYaw', 0.1, 1.0)\n    b()\ndef b():\n    a()\na()\n"
     data, found = read_gesture("a.py", ring, BODY)
     assert len(data["keyframes"]) == 1
-    assert [d.message for d in found] == ["`a` calls itself: here it does once"]
+    assert [d.message for d in found] == ["`a` calls itself: it is imported once"]
     doubling = "".join(f"def f{n}():\n    f{n + 1}()\n    f{n + 1}()\n" for n in range(30))
     last = "def f30():\n    motion.angleInterpolation('HeadYaw', 0.1, 1.0)\nf0()\n"
     with pytest.raises(ForeignFileError, match="more than 20,000 steps"):
@@ -216,7 +218,7 @@ def test_a_loop_over_a_long_list_is_followed_only_as_far_as_it_is_short() -> Non
     loop = f"for i in range(900):\n    x = [{'0,' * 2_000}]\n    {call}\n"
     data, found = read_gesture("a.py", loop.encode(), BODY)
     assert len(data["keyframes"]) == 1
-    assert "this is in a loop: here the robot does it once" in [d.message for d in found]
+    assert "this call is in a loop: it is imported once" in [d.message for d in found]
     data, found = read_gesture("a.py", loop.replace("900", "3").encode(), BODY)
     assert len(data["keyframes"]) == 3
     assert found == []
@@ -237,13 +239,13 @@ def test_calls_that_are_left_out_are_listed_at_their_places() -> None:
     ("statement", "message"),
     [
         ("motion.angleInterpolatoin('HeadYaw', 0.1, 1.0, True)", "`motion.angleInterpolatoin("),
-        ("motion.angleInterpolation('HeadYaw', 0.1)", "`angleInterpolation` is handed 2 values"),
+        ("motion.angleInterpolation('HeadYaw', 0.1)", "`angleInterpolation` has 2 arguments"),
         ("qi.async(motion.angleInterpolation, 'HeadYaw')".replace("async", "runAsync"), "`qi.runAsync("),
         ("leds.fadeRGB('FaceLeds', 'red', 1.0)", "`leds.fadeRGB("),
         ("motion.setStiffnesses('Body', 0.0)", "`motion.setStiffnesses("),
         ("if motion.moveTo(1, 0, 0):\n    pass", "`motion.moveTo("),
         ("from moves import bow\nbow()", "`bow()`"),
-        ("time.sleep(some)", "how long `time.sleep(some)` is"),
+        ("time.sleep(some)", "the pause `time.sleep(some)` is left out"),
         ("while waiting:\n    time.sleep(0.1)", "this pause is in a loop"),
     ],
 )
@@ -300,7 +302,7 @@ def test_every_form_of_angles_and_times_is_read(call: str, wanted: list[tuple[st
     ],
 )
 def test_angles_and_times_that_do_not_fit_are_a_one_line_error(call: str) -> None:
-    with pytest.raises(ForeignFileError, match="do not fit together"):
+    with pytest.raises(ForeignFileError, match="do not match"):
         read("spread.py", '["HeadYaw", "HeadPitch"], [0.4, -0.2], [1.0, 1.5]', call)
 
 
@@ -318,9 +320,9 @@ def test_the_list_of_a_project_names_its_behaviours(tmp_path: Path, capsys: pyte
     text = (INPUTS / "show.pml").read_text("utf-8")
     more = '<BehaviorDescription name="bow" src="bow" xar="bow.xar" /></BehaviorDescriptions>'
     rows = [
-        (text, "import `behavior_1/behavior.xar` beside it"),
-        (text.replace("</BehaviorDescriptions>", more), "import `behavior_1/behavior.xar` or `bow/bow.xar` beside it"),
-        ("<Package/>", "it lists no behaviour"),
+        (text, "import `behavior_1/behavior.xar` instead"),
+        (text.replace("</BehaviorDescriptions>", more), "import `behavior_1/behavior.xar` or `bow/bow.xar` instead"),
+        ("<Package/>", "the project lists no behaviour"),
     ]
     for content, words in rows:
         (tmp_path / "show.pml").write_text(content, "utf-8")
@@ -355,7 +357,7 @@ def test_a_name_with_a_dash_is_a_joint() -> None:
 
 @for_each("name", ["head/yaw", "1_yaw", "head yaw", "höhe"])
 def test_a_name_that_can_not_be_written_is_named(name: str) -> None:
-    with pytest.raises(ForeignFileError, match=f"the joint `{name}` has a name that can't be written"):
+    with pytest.raises(ForeignFileError, match=f"the name of the joint `{name}` is not allowed"):
         robot("dash.urdf", ("head-yaw", name))
 
 
@@ -395,7 +397,7 @@ def test_an_equality_of_a_model_with_a_factor_has_no_motor_either() -> None:
         (
             '<joint joint1="b" joint2="a" polycoef="0 -1 0 0 0" active="false"/>',
             ["a", "b"],
-            ["nothing says what torque"],
+            ["`b` has no torque in the model"],
         ),
         ('<joint joint1="b" joint2="a" polycoef="0 x"/>', ["a", "b"], ["`polycoef="]),
     ):
@@ -433,12 +435,12 @@ def test_unread_parts_of_a_urdf_are_listed(old: str, new: str, message: str) -> 
         ("range=", "rang=", "`rang` of `<joint>` is left out"),
         ('angle="radian"', 'angle="radians"', "`angle` is `radians`: it is read as `degree`"),
         ('limited="true"', 'limited="yes"', "`limited` is `yes`: it is read as `auto`"),
-        ('joint class="arm"', 'joint class="amr"', "there is no class `amr`"),
+        ('joint class="arm"', 'joint class="amr"', "the class `amr` does not exist"),
         ("<site", "<sight", "`<sight>` in `<body>` is left out"),
         ("forcerange=", "forcrange=", "`forcrange` of `<position>` is left out"),
         ("<gyro", "<giro", "`<giro>` in `<sensor>` is left out"),
         ("<worldbody>", "<worldbody gravity='0'>", "`gravity` of `<worldbody>` is left out"),
-        ('type="hinge"', 'type="hing"', "the joint `a` is a `hing`, and a body's joints turn"),
+        ('type="hinge"', 'type="hing"', "the joint `a` is a `hing`: only joints that turn are imported"),
     ],
 )
 def test_unread_parts_of_a_model_are_listed(old: str, new: str, message: str) -> None:
@@ -730,7 +732,7 @@ def test_a_loop_over_literal_values_repeats(lines: tuple[str, ...]) -> None:
 def test_a_loop_that_may_end_at_any_time_is_listed(head: str) -> None:
     keys, found = script("count = motion.getCount()", head, NOD)
     assert keys == TWICE[:2]
-    assert "this is in a loop: here the robot does it once" in {d.message for d in found}
+    assert "this call is in a loop: it is imported once" in {d.message for d in found}
 
 
 def test_nested_loops_end_in_time() -> None:
@@ -746,7 +748,7 @@ def test_the_type_of_each_handle_counts() -> None:
     for old, new in (("[3, 0.1, 0]], [0.2", "[1, 0.1, 0]], [0.2"), ("[0.2, [3", "[0.2, [2"), ("[0.2, [3", "[0.2, [1")):
         assert old in keys
         found = script(call.replace("KEYS", keys.replace(old, new)))[1]
-        assert [d.message for d in found] == ["`HeadYaw` comes to 2 s in a way that is not known here"], new
+        assert [d.message for d in found] == ["`HeadYaw` reaches its key at 2 s by an unknown interpolation"], new
 
 
 @for_each(
@@ -763,7 +765,7 @@ def test_a_servo_with_less_than_its_joints_range_is_reported(motor: str, told: l
     body = '<body><joint name="HeadYaw" range="-90 90"/><geom size="1"/></body>'
     text = f"<mujoco><worldbody>{body}</worldbody><actuator>{motor}</actuator></mujoco>"
     found = read_robot("head.xml", text.encode(), "head", "head.xml")[1]
-    assert [d.message.split("from ")[1].removesuffix(" only") for d in found if "turns it from" in d.message] == told
+    assert [d.message.split("from ")[1] for d in found if "turns it only from" in d.message] == told
 
 
 @for_each(

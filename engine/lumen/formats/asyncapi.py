@@ -17,10 +17,10 @@ BINDING_VERSION = "0.3.0"
 
 EXCHANGE = "amq.topic"
 CARRIED_DESCRIPTIONS = {
-    Carried.TELEMETRY: "Telemetry: the newest wins.",
-    Carried.COMMAND: "A command: done within its time to live, or not at all.",
-    Carried.STOP: "A stop: a command that waits behind nothing.",
-    Carried.JOURNAL: "A journal: nothing of it is lost.",
+    Carried.TELEMETRY: "Telemetry: a newer message replaces older ones.",
+    Carried.COMMAND: "A command: performed within its time to live, or not at all.",
+    Carried.STOP: "A stop: a command that overtakes all other messages.",
+    Carried.JOURNAL: "A journal: no message is lost.",
 }
 
 
@@ -38,7 +38,7 @@ def document(project: Project) -> dict[str, Any]:
         "info": {
             "title": project.name,
             "version": "1.0.0",
-            "description": "Messages of an exhibition: what Lumen sends and receives, from its lumen.yaml.",
+            "description": "The messages that an exhibition sends and receives, generated from its lumen.yaml.",
         },
         "defaultContentType": "application/json",
         "servers": {"broker": _server(project.bus)},
@@ -88,7 +88,7 @@ def _old(route: Route) -> str:
 
 def _alias_channel(route: Route) -> dict[str, Any]:
     channel = _channel(replace(route, key=route.alias), "")
-    return {**channel, "description": f"What `{route.name}` is called besides, while one robot is on the broker."}
+    return {**channel, "description": f"A second key of `{route.name}`, used while only one robot is on the broker."}
 
 
 def _operation(route: Route, channel: str) -> dict[str, Any]:
@@ -110,9 +110,9 @@ def _carrying(route: Route) -> Iterator[str]:
     if route.size is not None:
         yield f"Images of {route.size} pixels."
     if route.keep is not None:
-        yield f"At most {route.keep} wait."
+        yield f"At most {route.keep} messages wait."
     if route.most is not None:
-        yield f"At most {route.most:g} a second are taken."
+        yield f"At most {route.most:g} messages a second are accepted."
     if route.event:
         yield f"Becomes the event `{route.event}`."
 

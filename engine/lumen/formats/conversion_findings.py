@@ -12,8 +12,8 @@ PlaceOfPath = Callable[[NodePath], Place]
 
 LOST, CHANGED = "not-carried-over", "carried-over-differently"
 CODE_MEANINGS = {
-    LOST: "what `lumen import` or `lumen export` left out: the result does something else without it",
-    CHANGED: "what `lumen import` or `lumen export` wrote in another form, or what only Lumen understands in it",
+    LOST: "a part that `lumen import` or `lumen export` left out, so the result behaves differently",
+    CHANGED: "a part that `lumen import` or `lumen export` wrote in another form, or that only Lumen understands",
 }
 
 
@@ -56,7 +56,7 @@ class ConversionFindings:
 def check_size(file: str, content: bytes) -> None:
     """Raise ForeignFileError for a file that is too large to be read."""
     if len(content) > MAX_FILE_BYTES:
-        hint = f"at most {MAX_FILE_BYTES // 1_000_000} MB are read"
+        hint = f"the maximum is {MAX_FILE_BYTES // 1_000_000} MB"
         raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
 
 
@@ -65,7 +65,7 @@ def decoded(file: str, content: bytes) -> str:
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise broken(Place(file), "not-utf8", "the file is not text", "save it as UTF-8") from None
+        raise broken(Place(file), "not-utf8", "the file is not UTF-8 text", "save it as UTF-8") from None
 
 
 def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFileError:
@@ -76,7 +76,7 @@ def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFile
 class ExportReport:
     """What an export leaves out, and what in it only Lumen understands: that once for each word, at its first place."""
 
-    def __init__(self, place: PlaceOfPath, hint: str = "other tools pass over it") -> None:
+    def __init__(self, place: PlaceOfPath, hint: str = "other tools ignore it") -> None:
         self.place, self.hint = place, hint
         self.findings = ConversionFindings()
         self._foreign: dict[str, list[Place]] = {}

@@ -20,7 +20,7 @@ def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
         line = content.count(b"\n", 0, error.start) + 1
     name, codec = ("Windows-1251", "cp1251") if _is_cyrillic(content) else ("Latin-1", "latin-1")
     message = f"the file is not UTF-8: it is read as {name}"
-    findings.changed(Place(file, line, 1), message, "look at the names, or save it as UTF-8")
+    findings.changed(Place(file, line, 1), message, "check the names, or save the file as UTF-8")
     return content.decode(codec, errors="backslashreplace")
 
 

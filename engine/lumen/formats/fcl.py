@@ -37,7 +37,9 @@ _DECLARATION = re.compile(
 )
 _FRAME = re.compile(r"\s*(?:FUNCTION_BLOCK(?:[ \t]+[^\s;]+)?|END_FUNCTION_BLOCK|;)?\s*", re.IGNORECASE)
 
-_DECLARED = Known(read=frozenset(("NAME", "REAL", "RANGE")), meaningless={"LREAL": "all numbers are of that kind"})
+_DECLARED = Known(
+    read=frozenset(("NAME", "REAL", "RANGE")), meaningless={"LREAL": "all numbers in Lumen have this precision"}
+)
 KNOWN: FormatTable = {
     "VAR_INPUT": _DECLARED,
     "VAR_OUTPUT": _DECLARED,
@@ -45,11 +47,14 @@ KNOWN: FormatTable = {
     "DEFUZZIFY": Known(frozenset(("TERM", "RANGE", "METHOD", "DEFAULT", "ACCU"))),
     "RULEBLOCK": Known(
         frozenset(("RULE", "AND", "OR", "ACT", "ACCU")),
-        meaningless={"RULE name": "rules count in their order", "RULEBLOCK name": "of a single block"},
+        meaningless={
+            "RULE name": "rules are identified by their order",
+            "RULEBLOCK name": "a single block needs no name",
+        },
     ),
     "FUNCTION_BLOCK": Known(
         frozenset(("VAR_INPUT", "VAR_OUTPUT", "FUZZIFY", "DEFUZZIFY", "RULEBLOCK")),
-        meaningless={"FUNCTION_BLOCK name": "the file's name is the controller's"},
+        meaningless={"FUNCTION_BLOCK name": "the controller has the name of the file"},
     ),
 }
 """The parts of a function block that are carried over, by section."""
@@ -85,7 +90,7 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     reader.tell_outside(block, sections)
     reader.tell_cut(block)
     if not any(section.kind == "FUZZIFY" for section in sections):
-        raise broken(Place(file), "not-a-controller", "this is no function block: it has no FUZZIFY")
+        raise broken(Place(file), "not-a-controller", "this is not a function block: it has no FUZZIFY")
     return reader.block(sections), findings.diagnostics
 
 
@@ -146,7 +151,7 @@ class _FclReader:
         if len(begins) < 2:
             return text
         place = self.place(begins[1].start(), len("FUNCTION_BLOCK"))
-        self.findings.lost(place, "a second function block is left out", "put each into a file of its own")
+        self.findings.lost(place, "a second function block is left out", "save each block in its own file")
         return text[: begins[1].start()]
 
     def tell_outside(self, text: str, sections: list[FclSection]) -> None:
@@ -158,7 +163,7 @@ class _FclReader:
                 at = match.end()
             if word := re.compile(r"\S+").match(outside, at):
                 near = get_close_matches(word[0].upper(), [*KNOWN, *(f"END_{name}" for name in KNOWN)], 1)
-                message = f"`{word[0][:40]}` and what follows it are left out: that is no section"
+                message = f"`{word[0][:40]}` is not a section; it and the text after it are left out"
                 hint = f"did you mean `{near[0]}`?" if near else ""
                 self.findings.lost(self.place(begin + at, len(word[0])), message, hint)
 
@@ -168,7 +173,7 @@ class _FclReader:
             r"\bEND_FUNCTION_BLOCK\b", text, re.IGNORECASE
         ):
             place = self.place(len(text.rstrip()))
-            self.findings.changed(place, "`END_FUNCTION_BLOCK` is missing: the file may be cut off")
+            self.findings.changed(place, "`END_FUNCTION_BLOCK` is missing: the file may be incomplete")
 
     def block(self, sections: list[FclSection]) -> dict[str, Any]:
         blocks = [section for section in sections if section.kind == "RULEBLOCK"]
@@ -186,7 +191,7 @@ class _FclReader:
             self.draft.blocks.append({**named, "rules": [rule for rule in rules if rule]})
         for _, name, statement in self.declarations:
             if name not in self.draft.names:
-                self.findings.lost(self.at(statement), f"`{name}` has no terms, and is left out")
+                self.findings.lost(self.at(statement), f"`{name}` is left out: it has no terms")
         return self.draft.result()
 
     def declare(self, section: FclSection) -> None:
@@ -199,22 +204,22 @@ class _FclReader:
                 continue
             match = _DECLARATION.fullmatch(statement.text)
             if match is None:
-                self.findings.lost(self.at(statement), "this can't be read", "a declaration reads: a, b : REAL;")
+                self.findings.lost(self.at(statement), "this is not a declaration", "write: a, b : REAL;")
                 continue
             names = [name.strip() for name in match["names"].split(",")]
             for twice in self.declared.intersection(names):
-                message = f"`{twice}` is declared twice: the variables of both are read as one"
-                self.findings.changed(self.at(statement), message, "give the other one a name of its own")
+                message = f"`{twice}` is declared twice: both declarations are read as one variable"
+                self.findings.changed(self.at(statement), message, "if you mean two variables, rename one")
             self.declared.update(names)
             self.declarations += [(section.kind, name, statement) for name in names]
             if match["range"]:
                 self.ranges.update((name, (match["range"], statement)) for name in names)
             known = KNOWN[section.kind]
             if match["type"].upper() not in (*known.read, *known.meaningless):
-                message = f"`{match['type'][:40]}` is read as REAL: a value is any number"
+                message = f"the type `{match['type'][:40]}` is read as REAL"
                 self.findings.changed(self.at(statement), message)
             if match["rest"]:
-                self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` of a declaration is left out")
+                self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` in a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
         """Inputs without terms that formulas ask for: any number may come in."""
@@ -240,23 +245,27 @@ class _FclReader:
             if key not in _OPERATORS:
                 continue
             if key in seen:
-                self.findings.lost(self.at(statement), f"`{key}` comes twice: the last one counts")
+                self.findings.lost(self.at(statement), f"`{key}` is set twice: the last value is used")
             seen.add(key)
             side, other = ("conjunction", "disjunction") if key == "AND" else ("disjunction", "conjunction")
             if key in ("AND", "OR") and (pair := (ANDS if key == "AND" else ORS).get(word)):
                 if side in partners and pair[0] != partners[side]:
-                    message = f"`{statement.text}` is not the partner of what stands before it: both are as they say"
-                    self.findings.changed(self.at(statement), message, "jFuzzyLogic takes the last one for both")
+                    message = f"`{statement.text}` does not match the operator before it: both are used as written"
+                    self.findings.changed(self.at(statement), message, "jFuzzyLogic derives both from the last one")
                 found[side], partners[other] = pair
             elif key == "ACT" and word in ACTS:
                 found["implication"] = ACTS[word]
             elif key == "ACCU" and word in ACCUS:
                 accu = ACCUS[word]
             else:
-                self.findings.lost(self.at(statement), f"there is no {key} `{word.upper()}` here")
+                self.findings.lost(self.at(statement), f"unknown {key} `{word.upper()}`")
         if self.accu.setdefault("", accu) != accu:
             place = self.place(section.offset, len(section.kind))
-            self.findings.lost(place, "another ACCU than that of the first rule block is left out", "say one for all")
+            self.findings.lost(
+                place,
+                "ACCU differs from that of the first rule block and is left out",
+                "write the same ACCU in all blocks",
+            )
         return {**partners, **found}
 
     def variable(self, section: FclSection) -> None:
@@ -267,10 +276,10 @@ class _FclReader:
             if (match := _SETTING.fullmatch(statement.text)) and not statement.text.upper().startswith("TERM"):
                 key = match[1].upper()
                 if key in settings:
-                    self.findings.lost(self.at(statement), f"`{key}` comes twice: the first one counts")
+                    self.findings.lost(self.at(statement), f"`{key}` is set twice: the first value is used")
                 settings.setdefault(key, (match[2].strip(), statement))
                 for _, hint in KNOWN[section.kind].losses([key]) if side == "inputs" else ():
-                    self.findings.lost(self.at(statement), f"`{key}` is not for inputs", hint)
+                    self.findings.lost(self.at(statement), f"an input can't have `{key}`", hint)
         if side == "outputs":
             self.output(spec, settings)
         ends: list[float] = []
@@ -278,7 +287,7 @@ class _FclReader:
             if match := _TERM.fullmatch(statement.text):
                 ends += self.term(section.name, spec, match[1], match[2].strip(), statement)
             elif not _SETTING.fullmatch(statement.text):
-                self.findings.lost(self.at(statement), "this can't be read")
+                self.findings.lost(self.at(statement), "this is neither a term nor a setting")
         if side == "outputs":
             self.accumulated(section, spec)
         self.range(section, spec, settings, ends)
@@ -288,8 +297,8 @@ class _FclReader:
         declared = self.ranges.get(section.name, ("", None))
         said, statement = settings.get("RANGE", declared)
         if declared[1] and _RANGE.sub(r"\1 \2", said) != _RANGE.sub(r"\1 \2", declared[0]):
-            message = f"`{section.name}` has another range in its declaration: that one is left out"
-            self.findings.lost(self.at(declared[1]), message, "write one of the two")
+            message = f"`{section.name}` has a different range in its declaration, which is left out"
+            self.findings.lost(self.at(declared[1]), message, "delete one of the two ranges")
         match = _RANGE.fullmatch(said)
         if match and match[1] and match[2] and float(match[1]) < float(match[2]):
             spec["range"] = ranged(float(match[1]), float(match[2]))
@@ -297,13 +306,13 @@ class _FclReader:
         place = self.at(statement) if statement else self.place(section.offset, len(section.kind))
         weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         if len(set(ends)) < 2 and weighted:
-            self.findings.changed(place, f"the range of `{section.name}` stands for none: nothing is cut off there")
+            self.findings.changed(place, f"the range of `{section.name}` is empty: its values are not limited")
             ends = [*(ends or [0.0]), (ends or [0.0])[0] + 1.0]
         elif len(set(ends)) < 2:
             self.findings.lost(place, f"`{section.name}` has no range", "write: RANGE := (0 .. 10);")
             ends = [0.0, 1.0]
         else:
-            message = f"the range of `{section.name}` is that of its terms"
+            message = f"`{section.name}` has no range: it gets the range of its terms"
             self.findings.changed(place, message, "write: RANGE := (0 .. 10);")
         spec["range"] = ranged(min(ends), max(ends))
 
@@ -321,7 +330,7 @@ class _FclReader:
                 case "RANGE":
                     pass
                 case _:
-                    self.findings.lost(self.at(statement), f"`{key} : {said}` is not for outputs")
+                    self.findings.lost(self.at(statement), f"an output can't have `{key} : {said}`")
 
     def accumulated(self, section: FclSection, spec: dict[str, Any]) -> None:
         """How conclusions about an output become one: the same for single values, of each term's degrees."""
@@ -329,8 +338,8 @@ class _FclReader:
         said = spec.pop("aggregation", "") or self.accu.get("", "")
         if not said and not weighted:
             place = self.place(section.offset, len(section.kind))
-            message = f"no ACCU is said: of conclusions about `{section.name}` the greatest counts"
-            self.findings.changed(place, message, "jFuzzyLogic adds them: write ACCU : SUM;")
+            message = f"ACCU is missing: the conclusions about `{section.name}` are combined by their maximum"
+            self.findings.changed(place, message, "for the sum, as in jFuzzyLogic, write ACCU : SUM;")
         usual = "unbounded-sum" if weighted else "maximum"
         spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
@@ -358,7 +367,7 @@ class _FclReader:
         """A single value that is computed from the inputs."""
         output = spec is self.draft.sides["outputs"].get(self.draft.names[variable])
         inputs = {theirs: ours for theirs, ours in self.draft.names.items() if ours in self.draft.sides["inputs"]}
-        found = function(text, inputs) if output else Trouble("a single value is no set", 0)
+        found = function(text, inputs) if output else Trouble("a single value is not a set", 0)
         if isinstance(found, Trouble):
             message = f"the term `{name}` of `{variable}` is left out: {found.message}"
             self.findings.lost(self.at(statement), message)
@@ -384,7 +393,9 @@ class _FclReader:
         match = _RULE.fullmatch(statement.text)
         if match is None:
             if not (setting := _SETTING.fullmatch(statement.text)) or setting[1].upper() not in _OPERATORS:
-                self.findings.lost(self.at(statement), "this can't be read", "a rule reads: RULE 1 : IF … THEN …;")
+                self.findings.lost(
+                    self.at(statement), "this is neither a rule nor an operator", "write: RULE 1 : IF … THEN …;"
+                )
             return ""
         begin = statement.offset + match.start(1)
 

@@ -77,13 +77,13 @@ _VARIABLE = Known(read=frozenset(("Name", "Range", "NumMFs", "MF…")))
 KNOWN: FormatTable = {
     "[System]": Known(
         read=frozenset((*_NORMS, "Type", "NumInputs", "NumOutputs", "NumRules")),
-        meaningless={"Name": "the file's name is the controller's", "Version": "of the format"},
+        meaningless={"Name": "the controller has the name of the file", "Version": "the version of the format"},
     ),
     "[Input]": _VARIABLE,
     "[Output]": _VARIABLE,
     "[Rules]": Known(
         read=frozenset(("rule", "hedge", "not", "weight", "AND or OR")),
-        meaningless={"AND or OR of a single condition": "nothing is joined"},
+        meaningless={"AND or OR of a single condition": "a single condition needs no operator"},
     ),
 }
 """The parts of a MATLAB or Octave system that are carried over, by section; `MF…` means `MF1`, `MF2`, …"""
@@ -126,7 +126,7 @@ def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     text = text_of(file, content, findings)
     sections = list(_sections(file, text, findings))
     if not any(section.kind == "input" for section in sections):
-        raise broken(Place(file), "not-a-controller", "this is no system of MATLAB: it has no [Input1]")
+        raise broken(Place(file), "not-a-controller", "this is not a MATLAB fuzzy system: it has no [Input1]")
     return _FisReader(file, findings).system(sections), findings.diagnostics
 
 
@@ -144,7 +144,7 @@ def _sections(file: str, text: str, findings: ConversionFindings) -> Iterator[Fi
             section = FisSection(match[1].lower(), int(match[2][:6] or 0), [], place)
         elif section is None or said.startswith("["):
             hint = "the sections are [System], [Input1], [Output1] and [Rules]"
-            findings.lost(place, f"`{said[:40]}` is left out: it is in no section", hint)
+            findings.lost(place, f"`{said[:40]}` is left out: it is not in a section", hint)
         else:
             key, equals, value = said.partition("=")
             plain = section.kind == "rules" or not equals
@@ -169,7 +169,7 @@ class _FisReader:
             for section in self.numbered([section for section in sections if section.kind == side]):
                 self.variable(section, said)
         for twice in [section for section in sections if section.kind == "rules"][1:]:
-            self.findings.changed(twice.place, "a second [Rules]: its rules follow those of the first")
+            self.findings.changed(twice.place, "the rules of a second [Rules] are added to those of the first")
         lines = [line for section in sections if section.kind == "rules" for line in section.lines]
         rules = [self.rule(line) for line in lines]
         if heads:
@@ -192,7 +192,7 @@ class _FisReader:
             for name, hint in table.losses([key]):
                 self.findings.lost(line.place, f"`{(name or line.value)[:40]}` is left out", hint)
             if line.key and line.key in seen:
-                self.findings.lost(line.place, f"`{line.key}` comes twice: the first one counts")
+                self.findings.lost(line.place, f"`{line.key}` is set twice: the first value is used")
             seen.add(line.key)
 
     def numbered(self, sections: list[FisSection]) -> list[FisSection]:
@@ -201,15 +201,15 @@ class _FisReader:
         for number, section in enumerate(found, 1):
             if section.number != number:
                 kind = section.kind.capitalize()
-                message = f"[{kind}{section.number or ''}] is number {number} of its kind: rules count by that"
-                self.findings.lost(section.place, message, f"number the sections: [{kind}{number}]")
+                message = f"[{kind}{section.number or ''}] is read as number {number}: rules refer to it by this number"
+                self.findings.lost(section.place, message, f"write [{kind}{number}]")
         return found
 
     def count(self, section: FisSection, key: str, found: int) -> None:
         """Report a count in the file that differs from the number found."""
         line = section.line(key)
         if line and _numbers(line.value) != [float(found)]:
-            self.findings.lost(line.place, f"`{key}` is {line.value[:20]}, and there are {found}: all of them count")
+            self.findings.lost(line.place, f"`{key}` is {line.value[:20]}, but the file has {found}: all are read")
 
     def norms(self, head: FisSection) -> dict[str, Any]:
         said: dict[str, Any] = {}
@@ -221,14 +221,20 @@ class _FisReader:
                     said.setdefault(word, table[value])
                 else:
                     near = did_you_mean(value, table, "there are")
-                    self.findings.lost(line.place, f"there is no {word} `{value}` here: the usual one is used", near)
+                    self.findings.lost(line.place, f"unknown {word} `{value}`: the default is used", near)
             elif line.key == "Type" and value not in _TYPES:
-                self.findings.lost(line.place, f"`{value[:40]}` is no type of a system", f"one of {', '.join(_TYPES)}")
+                self.findings.lost(
+                    line.place, f"unknown system type `{value[:40]}`", f"write one of {', '.join(_TYPES)}"
+                )
         kind, weighted = head.line("Type"), said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         if kind and (kind.value.strip("'\"").lower() == "mamdani") == weighted:
             method = said.get("defuzzifier", "centroid")
-            message = f"`Type` is {kind.value[:40]}, and the values are found by {method}: that counts"
-            self.findings.changed(kind.place, message, "mamdani has sets, sugeno and tsukamoto have wtaver or wtsum")
+            message = f"`Type` is {kind.value[:40]}, but the defuzzification is {method}, which is used"
+            self.findings.changed(
+                kind.place,
+                message,
+                "mamdani needs a defuzzification for sets; sugeno and tsukamoto need wtaver or wtsum",
+            )
         if weighted:
             said.pop("implication", None)  # a value is not cut
             said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever is set in the file
@@ -245,7 +251,7 @@ class _FisReader:
         span = section.line("Range")
         ends = _numbers(span.value.strip("[]")) if span else []
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
-            self.findings.lost(span.place if span else place, f"the range of `{name}` holds nothing")
+            self.findings.lost(span.place if span else place, f"the range of `{name}` is empty")
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
         if side == "output":
@@ -264,11 +270,7 @@ class _FisReader:
         match = _TERM.fullmatch(line.value)
         variable.terms.append("")
         if match is None or match["shape"] not in _SHAPES:
-            what = (
-                f"there is no shape `{match['shape']}` here"
-                if match
-                else "'NAME':'SHAPE',[PARAMETERS] should stand here"
-            )
+            what = f"unknown shape `{match['shape']}`" if match else "write 'NAME':'SHAPE',[PARAMETERS]"
             self.findings.lost(line.place, f"a term of `{said}` is left out: {what}")
             return
         kind, order = _SHAPES[match["shape"]]
@@ -287,14 +289,18 @@ class _FisReader:
         match = _RULE.fullmatch(line.value)
         asked, said = (_numbers(match[key]) for key in ("asked", "said")) if match else ([], [])
         if match is None or (len(asked), len(said)) != (len(self.order["input"]), len(self.order["output"])):
-            self.findings.lost(line.place, "this rule can't be read", "it reads: 1 2, 1 (1) : 1")
+            self.findings.lost(
+                line.place,
+                "this is not a rule for these inputs and outputs",
+                "with two inputs and one output, write: 1 2, 1 (1) : 1",
+            )
             return ""
         inputs = self.propositions("input", asked, line)
         outputs = self.propositions("output", said, line)
         if inputs is None or outputs is None:
             return ""
         if not outputs:
-            self.findings.lost(line.place, "this rule names a term that is not there")
+            self.findings.lost(line.place, "this rule refers to a term that does not exist")
             return ""
         join = " and " if match["join"] == "1" else " or "
         everything = f"{self.order['input'][0].name} is any"
@@ -317,7 +323,7 @@ class _FisReader:
             size = abs(number) if abs(number) < MAX_TERM_NUMBER else 0.0
             which = int(size) if size == size else 0
             if not (0 < which <= len(variable.terms) and variable.terms[which - 1]):
-                self.findings.lost(line.place, "this rule names a term that is not there")
+                self.findings.lost(line.place, "this rule refers to a term that does not exist")
                 return None
             term, power = variable.terms[which - 1], round(10 * (size - which), 2) or 1.0
             derive = side == "output" and (number < 0 or power != 1.0)
@@ -339,9 +345,9 @@ class _FisReader:
         formula = set_formula(kind, values)
         what = f"`{variable.name} is {'not ' if negated else ''}{term}`"
         if power != 1.0:
-            what += f", a hedge: its membership to the power of {power:g}"
+            what += f" to the power of {power:g} (a hedge)"
         if not formula:
-            self.findings.lost(line.place, f"this rule is left out: it uses {what}, and `{term}` is not a set")
+            self.findings.lost(line.place, f"this rule is left out: it uses {what}, but `{term}` is not a set")
             return ""
         raised = formula if power == 1.0 else f"pow({formula}, {power:g})"
         name = f"{'not-' if negated else ''}{term}{'' if power == 1.0 else f'-{power:g}'}".replace(".", "_")

@@ -29,4 +29,4 @@ def _number(text: str) -> float:
 
 
 def _refuse(text: str) -> NoReturn:
-    raise ValueError(f"`{text[:40]}` is no number")
+    raise ValueError(f"`{text[:40]}` is not a number")

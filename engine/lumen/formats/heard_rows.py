@@ -6,9 +6,7 @@ from lumen.interpreters.talk.hearing import ENTRY
 from lumen.language.actions import Expression
 from lumen.language.machines import Hears, Transition
 
-LOST_ELSEWHERE = (
-    "elsewhere it has to be written: which row has more words, what is negated or asked, and what was caught"
-)
+LOST_ELSEWHERE = "another tool must implement this guard: the longest match, negation, questions and the values caught"
 """The hint of a finding about a row of `hears`: what is lost."""
 HEARD_TEXT = "event.data.result"
 

@@ -117,8 +117,8 @@ class _XmlReader:
         return self.place(self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber)
 
     def refuse(self, *_: object) -> None:
-        hint = "delete the `<!DOCTYPE …>`; it is not needed"
-        raise broken(self.here, "not-xml", "the file declares a document type or entities, which are not read", hint)
+        hint = "delete the `<!DOCTYPE …>`"
+        raise broken(self.here, "not-xml", "the file has a document type or entities, which are not allowed", hint)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self.count += 1
@@ -126,9 +126,9 @@ class _XmlReader:
             what = (
                 f"more than {MAX_XML_LEVELS} levels"
                 if len(self.open) >= MAX_XML_LEVELS
-                else f"more than {self.most:,} parts"
+                else f"more than {self.most:,} elements"
             )
-            raise broken(self.here, "too-large", f"the file is too large to be read: it has {what}")
+            raise broken(self.here, "too-large", f"the file is too large: it has {what}")
         known = {self.local(key): value for key, value in attributes.items() if not key.startswith(_XML)}
         here, start = self.here, self.parser.CurrentByteIndex
         element = XmlElement(self.local(name), known, here, source=self.source, start=start)

@@ -131,5 +131,5 @@ def _named(machine: MachineDefinition, name: str, wanted: Callable[[State], bool
     found = [state for state in states if name in (state.name, state.path)] or (ends if len(ends) == 1 else [])
     if not found:
         hint = did_you_mean(name, [state.name for state in states], "there are")
-        raise UsageError(f"`{machine.id}` has no such state `{name}`: {hint}")
+        raise UsageError(f"`{machine.id}` has no state `{name}`: {hint}")
     return found[0]

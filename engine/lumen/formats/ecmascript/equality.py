@@ -35,7 +35,7 @@ def _undefined(translation: Translation, node: Binary, strict: bool) -> Expressi
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"
         if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
-            raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
+            raise ScriptError("`typeof` can only be compared with 'undefined'")
         if isinstance(one, Unary) and kind_asked:
             return _absent(translation, one.operand, False)
         if one == _UNDEFINED or (one == Literal(None) and not strict):
@@ -67,10 +67,10 @@ def _equal(translation: Translation, node: Binary, strict: bool) -> ExpressionNo
     left, right = translation.value(node.left), translation.value(node.right)
     kinds = {translation.kind(left), translation.kind(right)} - {UNKNOWN_KIND}
     if kinds & {LIST, MAP}:
-        raise ScriptError("lists and objects are compared by identity")
+        raise ScriptError("ECMAScript compares lists and objects by identity, Lumen by value")
     if len(kinds) == 2 and NULL not in kinds:
         if not strict:
-            raise ScriptError("`==` has values of two kinds, which ECMAScript would convert")
+            raise ScriptError("`==` compares values of different types, which ECMAScript would convert")
         return Literal(False)
     return guarded(translation, Binary("==", left, right), left, right)
 

@@ -61,9 +61,9 @@ def method(translation: Translation, node: FunctionCall) -> ExpressionNode:
             return Binary("in", read[0], base)
         if TEXT in (translation.kind(base), translation.kind(read[0])):
             return FunctionCall("contains", (base, read[0]))
-        raise ScriptError("`.includes()` of something that may be a text or a list")
+        raise ScriptError("`.includes()` of a value that may be a text or a list")
     if not (isinstance(read[0], Literal) and isinstance(read[0].value, str)):
-        raise ScriptError(f"`{name}()` of a text that is not written there")
+        raise ScriptError(f"`{name}()` needs a text in quotes as its first argument")
     pattern = re.sub(r"([^\w\s])", r"\\\1", read[0].value, flags=re.ASCII)
     return FunctionCall("matches", (base, Literal(f"^{pattern}" if name == ".startsWith" else f"{pattern}$")))
 
@@ -73,7 +73,7 @@ def _joined(translation: Translation, owner: ExpressionNode, arguments: list[Exp
     result, *others = [part for part in parts if part != ListLiteral(())] or [ListLiteral(())]
     for other in others:
         if translation.kind(result) == TEXT or translation.kind(other) not in (LIST, ""):
-            raise ScriptError("`.concat()` of something that is no list")
+            raise ScriptError("`.concat()` of a value that is not a list")
         result = Binary("+", result, other)
     return result
 

@@ -64,10 +64,10 @@ def read_value(source: str, names: ScriptNames) -> ExpressionNode:
 def printed(tree: ExpressionNode) -> str:
     """The text of one of our trees; raises ScriptError where it is longer or deeper than an expression may be."""
     if any(level > MAX_TREE_DEPTH for _, level in walk(tree)):
-        raise ScriptError("it has too many levels")
+        raise ScriptError("it is nested too deeply")
     text = unparse(tree)
     if len(text) > MAX_EXPRESSION_LENGTH:
-        raise ScriptError(f"it becomes longer than {MAX_EXPRESSION_LENGTH:,} characters")
+        raise ScriptError(f"the converted expression is longer than {MAX_EXPRESSION_LENGTH:,} characters")
     return text
 
 
@@ -153,12 +153,12 @@ class ScriptTranslator:
             return Literal(self.names.title)
         if name in ("_event", "_sessionid", "_ioprocessors", "_x"):
             raise ScriptError(f"`{name}` as a whole has no counterpart")
-        raise ScriptError(f"`{name}` stands in no datamodel")
+        raise ScriptError(f"`{name}` is not declared in a `<datamodel>`")
 
     def _field(self, base: ExpressionNode, name: str) -> ExpressionNode:
         if base == EVENT:
             if name not in ("name", "data"):
-                raise ScriptError(f"an event has no `{name}` here, only `name` and `data`")
+                raise ScriptError(f"events in Lumen have no `{name}`, only `name` and `data`")
             return FieldAccess(Identifier("event"), name)
         if base == Identifier("_x") and name in ("state", "heard"):
             return Identifier(name)
@@ -173,10 +173,10 @@ class ScriptTranslator:
         if node.sign == "!":
             return self.condition(node)
         if node.sign == "typeof":
-            raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
+            raise ScriptError("`typeof` can only be compared with 'undefined'")
         read = self.value(node.operand)
         if self.kind(read) not in (NUMBER, UNKNOWN_KIND) or (node.sign == "+" and self.kind(read) != NUMBER):
-            raise ScriptError(f"`{node.sign}` turns a value into a number")
+            raise ScriptError(f"`{node.sign}` would convert a value to a number")
         return read if node.sign == "+" else Unary("-", read)
 
     def _either(self, node: Logic) -> ExpressionNode:
@@ -200,7 +200,7 @@ class ScriptTranslator:
             return guarded(self, Binary(sign, left, right), left, right)
         if sign == "in":
             if self.kind(left) != TEXT:
-                raise ScriptError("`in` asks for a key of an object, in quotes")
+                raise ScriptError("`in` needs a key in quotes before it")
             return Binary("in", left, right)
         self._same_kind(sign, left, right, (NUMBER, TEXT) if sign == "+" else (NUMBER,))
         if sign == "/" and not (is_float(left) or is_float(right)):
@@ -220,7 +220,7 @@ class ScriptTranslator:
     def _same_kind(self, sign: str, left: ExpressionNode, right: ExpressionNode, allowed: tuple[str, ...]) -> None:
         kinds = {self.kind(left), self.kind(right)} - {UNKNOWN_KIND}
         if not kinds <= set(allowed) or len(kinds) > 1:
-            raise ScriptError(f"`{sign}` has values of two kinds, which ECMAScript would convert")
+            raise ScriptError(f"`{sign}` joins values of different types, which ECMAScript would convert")
 
     def _call(self, node: FunctionCall) -> ExpressionNode:
         if node.function == "In":
@@ -246,7 +246,7 @@ class ScriptTranslator:
                 return FunctionCall("In", (Literal(states[state]),))
             case (state,):
                 return FunctionCall("In", (self.value(state),))
-        raise ScriptError("`In` takes the id of a state")
+        raise ScriptError("`In` needs the id of a state")
 
 
 def _floats(left: ExpressionNode, right: ExpressionNode) -> tuple[ExpressionNode, ExpressionNode]:

@@ -41,13 +41,13 @@ class _ScriptParser(PrattParser):
     def unexpected(self, hint: str = "") -> ScriptError:
         token = self.token
         if token.kind == "end":
-            return ScriptError("it ends too early")
+            return ScriptError("it ends unexpectedly")
         if token.text in _FOREIGN:
             return ScriptError(f"Lumen's expressions have no {_FOREIGN[token.text]}")
-        return ScriptError(f"`{token.text[:40]}` can't stand there")
+        return ScriptError(f"`{token.text[:40]}` is unexpected")
 
     def too_deep(self, offset: int) -> ScriptError:
-        return ScriptError("it has too many levels")
+        return ScriptError("it is nested too deeply")
 
     def minus(self, power: int) -> ExpressionNode:
         """`-operand`; of a number it is a number."""
@@ -64,7 +64,7 @@ class _ScriptParser(PrattParser):
         return key.text if key.kind == "name" else str(key.value)
 
     def call(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        raise ScriptError("only functions with a name can be called")
+        raise ScriptError("only named functions can be called")
 
     operands: ClassVar = {
         "number": PrattParser.literal,

@@ -26,7 +26,7 @@ class ScriptError(Exception):
 def tokenize_script(source: str) -> list[Token]:
     """The tokens of an expression, of the kinds number, text, name and sign, and last `end`; raises ScriptError."""
     if len(source) > MAX_EXPRESSION_LENGTH:
-        raise ScriptError(f"it has more than {MAX_EXPRESSION_LENGTH:,} characters")
+        raise ScriptError(f"it is longer than {MAX_EXPRESSION_LENGTH:,} characters")
     found, offset = [], 0
     while offset < len(source):
         match = _TOKEN.match(source, offset)
@@ -50,7 +50,7 @@ def _number(text: str) -> float:
     if len(text) < MAX_DIGITS and text.isdecimal():
         return int(text)
     if text[:2] in ("0x", "0X") or isinf(value := float(text)):
-        raise ScriptError(f"`{text[:40]}` is too large a number")
+        raise ScriptError(f"the number `{text[:40]}` is too large")
     return value
 
 
@@ -60,5 +60,5 @@ def _unescaped(match: re.Match[str]) -> str:
         return _SIMPLE.get(match[4], match[4])
     number = int(code, 16)
     if number > 0x10FFFF or 0xD800 <= number <= 0xDFFF:
-        raise ScriptError(f"`{match[0]}` is no character")
+        raise ScriptError(f"`{match[0]}` is not a character")
     return chr(number)

@@ -76,8 +76,8 @@ class ControllerDraft:
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours = unused_name(stem, taken.__contains__, len(taken))
         if ours != name:
-            reason = "that name is taken" if stem == name else "rules can't say that name"
-            self.findings.changed(place, f"`{name}` is called `{ours}`", reason)
+            reason = "that name is already used" if stem == name else "rules can't contain that name"
+            self.findings.changed(place, f"`{name}` is renamed to `{ours}`", reason)
         return ours
 
     def term(self, variable: str, spec: dict[str, Any], name: str, kind: str, values: Any, place: Place) -> None:
@@ -102,14 +102,14 @@ class ControllerDraft:
         if kind == "function":
             return ""
         if any(isnan(value) for value in values) or (kind not in _ENDLESS and not all(map(isfinite, values))):
-            return "a parameter is no number"
+            return "a parameter is not a number"
         if len(values) > MAX_TERM_PARAMETERS:
             return f"it has more than {MAX_TERM_PARAMETERS:,} numbers"
         wanted = TERM_PARAMETERS[kind]
         fits = len(values) - len(wanted) in (0, 1) or kind in ("linear", "discrete")
         if kind == "discrete" and (len(values) < 2 or len(values) % 2):
             fits = False
-        return "" if fits else f"it has {len(values)} parameters and takes {len(wanted)} ({', '.join(wanted)})"
+        return "" if fits else f"it has {len(values)} parameters instead of {len(wanted)} ({', '.join(wanted)})"
 
     def rule(self, text: str, place: Place, spot: PlaceOfWord) -> str:
         """The rule in our words; empty where it is left out."""
@@ -120,7 +120,7 @@ class ControllerDraft:
             return ""
         wrong = next((word for mention in said.mentions if (word := self._unknown(mention))), None)
         if wrong:
-            self.findings.lost(spot(wrong), f"this rule is left out: there is no `{wrong.text}`")
+            self.findings.lost(spot(wrong), f"this rule is left out: unknown name `{wrong.text}`")
             return ""
         concluded = [self._ours(one, concluded=True) for one in said.consequents]
         return rule_text(self._asked(said.antecedent), concluded, said.weight)
@@ -160,14 +160,14 @@ class ControllerDraft:
         """The data of the file: one block of rules stands at its top, several have names."""
         outputs = self.sides["outputs"]
         if not any(spec.get("terms") for spec in outputs.values()):
-            raise self._empty("no output is left", "a controller decides something: give it an output with terms")
+            raise self._empty("no output is left", "add an output with terms")
         for name in [name for name, spec in outputs.items() if not spec.get("terms")]:
             del outputs[name]
-            self.findings.lost(self.places[name], f"the output `{name}` has no terms, and is left out")
+            self.findings.lost(self.places[name], f"the output `{name}` is left out: it has no terms")
         data = {**self.data, **{side: specs for side, specs in self.sides.items() if specs}}
         blocks = [block for block in self.blocks if block["rules"]]
         if not blocks:
-            raise self._empty("no rule is left", "a rule reads: if INPUT is TERM then OUTPUT is TERM")
+            raise self._empty("no rule is left", "write a rule: if INPUT is TERM then OUTPUT is TERM")
         if len(blocks) == 1:
             data["rules"] = blocks[0]["rules"]
             if blocks[0]["operators"]:

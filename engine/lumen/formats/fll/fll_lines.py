@@ -47,7 +47,7 @@ class FllLineReader:
             elif part:
                 part.lines.append(line)
             else:
-                self.lost(line, f"`{line.key}` stands before the engine")
+                self.lost(line, f"`{line.key}` is before `Engine:`")
         if part:
             yield part
 
@@ -66,7 +66,7 @@ class FllLineReader:
             if colon:
                 yield line
             else:
-                self.lost(line, "this line can't be read: `key: value` should stand here")
+                self.lost(line, "this line can't be read: write `key: value`")
 
     def place(self, line: FllLine, offset: int | None = None, length: int | None = None) -> Place:
         """Of the line's value, or of a part of it."""

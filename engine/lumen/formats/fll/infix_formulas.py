@@ -43,7 +43,7 @@ def _tokens(text: str) -> list[Token]:
     while offset < len(text.rstrip()):
         match = _TOKEN.match(text, offset)
         if not match or not match.lastgroup:
-            raise ExpressionError(f"`{text[offset:].strip()[:1]}` has no meaning", offset)
+            raise ExpressionError(f"`{text[offset:].strip()[:1]}` is unexpected", offset)
         tokens.append(Token(match.lastgroup, match[match.lastgroup], match.start(match.lastgroup)))
         offset = match.end()
     return [*tokens, Token("end", "", len(text))]
@@ -60,7 +60,7 @@ class _FormulaParser(PrattParser):
 
     def unexpected(self, hint: str = "") -> ExpressionError:
         text = self.token.text
-        return ExpressionError(f"`{text}` can't stand here" if text else "it ends too early", self.token.offset)
+        return ExpressionError(f"`{text}` is unexpected" if text else "it ends unexpectedly", self.token.offset)
 
     def too_deep(self, offset: int) -> ExpressionError:
         return ExpressionError("it is nested too deeply", offset)
@@ -69,7 +69,7 @@ class _FormulaParser(PrattParser):
         token = self.advance()
         value = float(token.text)
         if value == float("inf"):
-            raise ExpressionError(f"`{token.text}` is too large a number", token.offset)
+            raise ExpressionError(f"the number `{token.text}` is too large", token.offset)
         return Literal(int(value) if value == int(value) and abs(value) < 1e15 else value)
 
     def minus(self, power: int) -> ExpressionNode:
@@ -84,7 +84,7 @@ class _FormulaParser(PrattParser):
         text, offset = self.advance()[1:3]
         if not self.accept("("):
             if text not in self.names and text not in ("x", "pi"):
-                raise ExpressionError(f"there is no `{text}`", offset)
+                raise ExpressionError(f"unknown name `{text}`", offset)
             return Identifier(self.names.get(text, text))
         arguments, _ = self.listed(")")
         if text == "pi" and not arguments:
@@ -93,7 +93,8 @@ class _FormulaParser(PrattParser):
             return Binary(_COMPARISONS[text], *arguments)
         function = {"fabs": "abs"}.get(text, text)
         if FORMULA_FUNCTIONS.get(function) != len(arguments):
-            raise ExpressionError(f"there is no function `{text}` of {len(arguments)}", offset)
+            few = f"{len(arguments)} argument{'s' * (len(arguments) != 1)}"
+            raise ExpressionError(f"there is no function `{text}` with {few}", offset)
         return FunctionCall(function, arguments)
 
     def joined(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:

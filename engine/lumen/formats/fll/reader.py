@@ -20,13 +20,13 @@ from lumen.loading.rule_parser import RuleWord
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}
 _VARIABLE = frozenset(("description", "enabled", "range", "lock-range", "term"))
 KNOWN: FormatTable = {
-    "Engine": Known(frozenset(("description",)), meaningless={"Engine": "the file's name is the controller's"}),
+    "Engine": Known(frozenset(("description",)), meaningless={"Engine": "the controller has the name of the file"}),
     "InputVariable": Known(_VARIABLE),
     "OutputVariable": Known(_VARIABLE | {"lock-previous", "default", "defuzzifier", "aggregation"}),
     "RuleBlock": Known(
         read=frozenset(("enabled", "conjunction", "disjunction", "implication", "activation", "rule")),
         lost={"description": "write a comment"},
-        meaningless={"RuleBlock": "the name of a single block, or of one without rules"},
+        meaningless={"RuleBlock": "a single block, or one without rules, needs no name"},
     ),
 }
 """The parts of an engine that are carried over, by kind."""
@@ -51,7 +51,7 @@ class _FllReader(FllLineReader):
     def engine(self, text: str) -> dict[str, Any]:
         parts = list(self.parts(text))
         if not any(part.head.key in _SIDES for part in parts):
-            message = "this is no engine of FuzzyLite: it has no variables"
+            message = "this is not a FuzzyLite engine: it has no variables"
             raise broken(Place(self.file), "not-a-controller", message)
         for part in parts:
             self.known(part)
@@ -77,9 +77,9 @@ class _FllReader(FllLineReader):
             for _, hint in () if line.key == "description" else KNOWN[part.head.key].losses([line.key]):
                 self.lost(line, f"{kind} has no `{line.key}`", hint)
             if line.key in seen and line.key not in ("term", "rule"):
-                self.lost(line, f"`{line.key}` comes twice: the last one counts")
+                self.lost(line, f"`{line.key}` is set twice: the last value is used")
             if line.key in _FLAGS and line.value not in ("true", "false"):
-                self.lost(line, f"`{line.value}` is neither `true` nor `false`", "write one of them")
+                self.lost(line, f"`{line.value}` is neither `true` nor `false`", "write true or false")
             seen.add(line.key)
 
     def variable(self, part: FllPart) -> None:
@@ -89,7 +89,7 @@ class _FllReader(FllLineReader):
         if (line := said.get("description")) and line.value:
             spec["description"] = line.value
         if (line := said.get("enabled")) and line.value == "false":
-            self.lost(line, f"`{name}` is switched off, which a variable of ours can't be")
+            self.lost(line, f"`{name}` is switched off; in Lumen it is always on")
         self.range(side, name, spec, said.get("range"), part.head)
         if (line := said.get("lock-range")) and line.value == "true":
             spec["lock-range"] = True
@@ -102,10 +102,10 @@ class _FllReader(FllLineReader):
     def range(self, side: str, name: str, spec: dict[str, Any], line: FllLine | None, head: FllLine) -> None:
         ends = [_number(word) for word in line.value.split()] if line else []
         if line is None or len(ends) != 2 or not ends[0] < ends[1]:
-            self.lost(line or head, f"the range of `{name}` holds nothing", "write: range: 0.0 1.0")
+            self.lost(line or head, f"the range of `{name}` is empty", "write: range: 0.0 1.0")
             ends = [0.0, 1.0]
         if side == "outputs" and not all(map(isfinite, ends)):
-            self.lost(line or head, f"the range of the output `{name}` has no end", "write two numbers")
+            self.lost(line or head, f"the range of the output `{name}` is infinite", "write two numbers")
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
 
@@ -114,7 +114,7 @@ class _FllReader(FllLineReader):
         if line and isfinite(default := _number(line.value)):
             spec["default"] = plain(default)
         elif line and line.value not in ("nan", ""):
-            self.lost(line, f"`{line.value}` is no number")
+            self.lost(line, f"`{line.value}` is not a number")
         if (line := said.get("lock-previous")) and line.value == "true":
             spec["lock-previous"] = True
         method = self.defuzzifier(spec, said.get("defuzzifier"))
@@ -126,7 +126,7 @@ class _FllReader(FllLineReader):
         words = line.value.split() if line else []
         if line is None or not words or words[0] not in METHODS:
             if line and words != ["none"]:
-                self.lost(line, f"there is no defuzzifier `{line.value}`", f"FuzzyLite has {', '.join(METHODS)}")
+                self.lost(line, f"unknown defuzzifier `{line.value}`", f"FuzzyLite has {', '.join(METHODS)}")
             return "centroid"
         method = METHODS[words[0]]
         if method != "centroid":
@@ -137,17 +137,13 @@ class _FllReader(FllLineReader):
             elif word == "Tsukamoto" and method in WEIGHTED_DEFUZZIFIERS:
                 continue  # our terms imply it
             elif word not in ("Automatic", "TakagiSugeno") or method not in WEIGHTED_DEFUZZIFIERS:
-                self.lost(line, f"`{word}` is not for defuzzifiers")
+                self.lost(line, f"a defuzzifier can't have `{word}`")
         return method
 
     def term(self, side: str, variable: str, spec: dict[str, Any], line: FllLine) -> None:
         words = line.value.split(maxsplit=2)
         if len(words) < 2 or words[1] not in SHAPES:
-            what = (
-                f"there is no shape `{words[1]}`"
-                if len(words) > 1
-                else "`term: NAME SHAPE PARAMETERS` should stand here"
-            )
+            what = f"unknown shape `{words[1]}`" if len(words) > 1 else "write `term: NAME SHAPE PARAMETERS`"
             self.lost(line, f"a term of `{variable}` is left out: {what}")
             return
         kind = SHAPES[words[1]]
@@ -176,7 +172,7 @@ class _FllReader(FllLineReader):
             return None
         if NORMS.get(line.value) in wanted:
             return NORMS[line.value]
-        self.lost(line, f"there is no norm `{line.value}` for {line.key}")
+        self.lost(line, f"unknown norm `{line.value}` for {line.key}")
         return None
 
     def block(self, part: FllPart) -> None:
@@ -212,7 +208,7 @@ class _FllReader(FllLineReader):
         except (ValueError, IndexError, OverflowError):
             method = ""
         if not method or not set(settings) - {"method"} <= set(ACTIVATIONS[method]):
-            self.lost(line, f"`{line.value}` is no activation", f"FuzzyLite has {', '.join(ACTIVATED)}")
+            self.lost(line, f"unknown activation `{line.value}`", f"FuzzyLite has {', '.join(ACTIVATED)}")
             return None
         return {key: value for key, value in settings.items() if value != _PLAIN_SETTINGS.get(key)}
 

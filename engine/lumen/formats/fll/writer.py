@@ -45,14 +45,16 @@ class _FllWriter:
 
     def renamed(self, names: Mapping[str, str], where: tuple[str | int, ...], name: str) -> None:
         if names[name] != name:
-            self.report.changed(f"`{name}` is called `{names[name]}`", where, "FuzzyLite's names are A-Z, 0-9 and _")
+            self.report.changed(
+                f"`{name}` is renamed to `{names[name]}`", where, "FuzzyLite's names consist of A-Z, a-z, 0-9 and _"
+            )
 
     def lines(self) -> Iterator[str]:
         controller = self.controller
         yield f"Engine: {_UNFIT.sub('_', controller.name)}"
         if controller.input_bindings or controller.context_inputs or controller.output_bindings or controller.signals:
-            message = "what the controller is bound to is left out"
-            self.report.changed(message, ("bind",), "FuzzyLite is handed numbers and returns them")
+            message = "the controller's bindings are left out"
+            self.report.changed(message, ("bind",), "FuzzyLite only computes numbers")
         for variable in controller.inputs.values():
             yield from self.variable("Input", variable)
         for variable in controller.outputs.values():
@@ -80,22 +82,22 @@ class _FllWriter:
         yield f"  default: {'nan' if variable.default is None else written(variable.default)}"
         yield f"  lock-previous: {str(variable.lock_previous).lower()}"
         if weighted and len({term.kind in (*VALUE_TERMS, "function") for term in variable.terms.values()}) > 1:
-            message = f"`{variable.name}` mixes terms that have a value with terms that are read backwards"
-            self.report.lost(f"{message}: FuzzyLite can't", variable.where, "make them two outputs")
+            message = f"`{variable.name}` mixes terms that have a value with terms that are inverted"
+            self.report.lost(f"{message}, which FuzzyLite does not allow", variable.where, "split it into two outputs")
 
     def shape(self, variable: Variable, term: Term) -> str:
         parameters = [written(value) for value in term.parameters]
         if term.kind == "function":
             text, chose = write_formula(term.formula, self.names)
             if chose:
-                message = f"the choices in `{term.name}` of `{variable.name}` are written as sums"
-                self.report.changed(message, (*term.where, "function"), "where one side has no value, the sum has none")
+                message = f"the conditional values in `{term.name}` of `{variable.name}` are written as sums"
+                self.report.changed(message, (*term.where, "function"), "if one side has no value, the sum has none")
             parameters = [text]
         elif term.kind == "linear":
             parameters += ["0"] * (len(self.controller.inputs) + 1 - len(parameters))
         if term.height != 1.0:
             if term.kind in (*VALUE_TERMS, "function"):
-                self.report.lost(f"`{term.kind}` has no height there", term.where)
+                self.report.lost(f"FuzzyLite has no height for `{term.kind}`", term.where)
             else:
                 parameters.append(written(term.height))
         return " ".join([foreign(SHAPES, term.kind), *parameters])

@@ -28,7 +28,7 @@ def read_gesture(
     curves = _curves(file, content, body, findings, timeline)
     data = MotionWriter(body, findings, retime).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
     if not data["keyframes"]:
-        message = f"nothing in it moves a joint of {body.name}"
+        message = f"the file moves no joint of {body.name}"
         lost = [finding for finding in findings.diagnostics if finding.code == LOST]
         if not lost:
             raise broken(Place(file), "not-a-motion", message)

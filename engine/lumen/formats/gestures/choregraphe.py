@@ -27,12 +27,12 @@ NAO_HANDS = ("LHand", "RHand")
 ROOTS = ("ChoregrapheProject", "ChoregrapheBox")
 VERSION = "3"
 
-_DRAWING = "how the box is drawn"
-_WIRES = "only boxes that do something else use it"
+_DRAWING = "only for drawing the box"
+_WIRES = "used only by boxes that are left out"
 _BOX = Known(
     read=frozenset(("<Timeline>", "<Box>", "<script>")),
     meaningless={
-        "name": "what `--timeline` chooses by",
+        "name": "`--timeline` selects by it",
         "id": _WIRES, "localization": _DRAWING, "tooltip": _DRAWING, "x": _DRAWING, "y": _DRAWING, "plugin": _WIRES,
         "<bitmap>": _DRAWING, "<Input>": _WIRES, "<Output>": _WIRES, "<Parameter>": _WIRES, "<Resource>": _WIRES,
         "<Link>": _WIRES,
@@ -43,27 +43,32 @@ KNOWN: FormatTable = {
     "<Box>": _BOX,
     "<Timeline>": Known(
         read=frozenset(("enable", "fps", "start_frame", "end_frame", "<ActuatorList>", "<BehaviorLayer>")),
-        meaningless={"size": "how long the ruler is drawn: a motion ends at its last key"},
+        meaningless={"size": "a motion ends at its last key"},
     ),
-    "<Timeline> without curves": Known(meaningless={"enable": "nothing of it is played"}),
-    "<ActuatorCurve> without keys": Known(meaningless={"…": "a muted curve without a key moves nothing"}),
-    "<Diagram> without boxes": Known(meaningless={"…": "nothing begins there"}),
-    "<Tangent> before a straight way": Known(meaningless={"…": "no curve leads to the next key"}),
+    "<Timeline> without curves": Known(meaningless={"enable": "it plays nothing"}),
+    "<ActuatorCurve> without keys": Known(meaningless={"…": "without a key it moves nothing"}),
+    "<Diagram> without boxes": Known(meaningless={"…": "without boxes it does nothing"}),
+    "<Tangent> before a straight way": Known(meaningless={"…": "a straight line needs no tangent"}),
     "<script> without text": Known(meaningless={"…": "it does nothing"}),
-    "<script>": Known(frozenset(("<content>",)), meaningless={"language": "a script that does something is listed"}),
+    "<script>": Known(frozenset(("<content>",)), meaningless={"language": "scripts are listed in any language"}),
     "<BehaviorLayer>": Known(frozenset(("<BehaviorKeyframe>",)), meaningless={"name": _DRAWING}),
     "<BehaviorKeyframe>": Known(
-        frozenset(("<Diagram>",)), meaningless={"name": _DRAWING, "index": "when boxes begin that are left out"}
+        frozenset(("<Diagram>",)), meaningless={"name": _DRAWING, "index": "its boxes are left out"}
     ),
     "<Diagram>": Known(frozenset(("<Box>",)), meaningless={"scale": _DRAWING, "<Link>": _WIRES}),
-    "<ActuatorList>": Known(frozenset(("<ActuatorCurve>",)), meaningless={"model": "the robot on which it was drawn"}),
+    "<ActuatorList>": Known(
+        frozenset(("<ActuatorCurve>",)), meaningless={"model": "joints are checked against the robot's body"}
+    ),
     "<ActuatorCurve>": Known(
         read=frozenset(("actuator", "mute", "unit", "<Key>")),
-        meaningless={"name": _DRAWING, "recordable": "whether the editor records it"},
+        meaningless={"name": _DRAWING, "recordable": "only for recording in the editor"},
     ),
     "<Key>": Known(
         read=frozenset(("frame", "value", "<Tangent>")),
-        meaningless={"smooth": "how the editor moves handles", "symmetrical": "how the editor moves handles"},
+        meaningless={
+            "smooth": "only for moving handles in the editor",
+            "symmetrical": "only for moving handles in the editor",
+        },
     ),
     "<Tangent>": Known(frozenset(("side", "abscissaParam", "ordinateParam", "interpType"))),
     "interpType": Known(frozenset(("bezier", "bezier_auto", "linear", "constant"))),
@@ -94,9 +99,9 @@ def read_choregraphe(
     """
     root = parse_xml(file, content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
-        raise broken(root.place, "not-a-motion", f"this is no behaviour of Choregraphe: it begins with `{local(root)}`")
+        raise broken(root.place, "not-a-motion", f"this is not a Choregraphe behaviour: it begins with `{local(root)}`")
     if (version := root.get("xar_version", VERSION)) != VERSION:
-        message = f"`xar_version` is {version[:20]}: the file is read as one of version {VERSION}"
+        message = f"`xar_version` is {version[:20]}: the file is read as version {VERSION}"
         findings.changed(root.place, message, "compare the motion with the original")
     timelines = dict(_timelines(root))
     chosen = _chosen(root, timelines, timeline)
@@ -112,9 +117,11 @@ def read_choregraphe(
                 findings.lost(curve.place, f"`{joint}` is muted")
             continue
         if curve.get("mute", "0") != "0":
-            findings.lost(curve.place, f"`{joint}` is not muted: `mute` is `{curve.get('mute')[:20]}`", "write 0 or 1")
+            findings.lost(
+                curve.place, f"`mute` of `{joint}` is `{curve.get('mute')[:20]}`: it is read as 0", "write 0 or 1"
+            )
         if joint in curves:
-            findings.lost(curve.place, f"`{joint}` has a curve already")
+            findings.lost(curve.place, f"a second curve for `{joint}` is left out")
         elif points := list(_points(curve, _played(keys, curve, flags, findings), flags, findings, hands)):
             curves[joint] = points
     return curves
@@ -132,7 +139,11 @@ def choregraphe_list(content: bytes) -> str:
         return ""
     named = [e for e in root.walk() if local(e) == "BehaviorDescription"]
     files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
-    return f"import {' or '.join(f'`{file}`' for file in files[:20])} beside it" if files else "it lists no behaviour"
+    return (
+        f"import {' or '.join(f'`{file}`' for file in files[:20])} instead"
+        if files
+        else "the project lists no behaviour"
+    )
 
 
 def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
@@ -148,7 +159,7 @@ def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindi
     for box in way:
         if local(box) == "Timeline" and (enabled := box.get("enable", "1")) not in ("0", "1"):
             findings.lost(
-                box.place, f"`enable` is `{enabled[:20]}`: the timeline counts as switched on", "write 0 or 1"
+                box.place, f"`enable` is `{enabled[:20]}`: the timeline is read as switched on", "write 0 or 1"
             )
         for script in (child for child in box.children if local(child) == "script"):
             if any(part.text.strip() for part in script.walk()):
@@ -173,12 +184,16 @@ def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
         said = timeline.get(flag, f"{none:g}")
         frame = number(said)
         if frame is None or (frame < 1 and frame != none):
-            findings.lost(timeline.place, f"`{flag}` is `{said[:20]}`, which is no frame", f"write {none:g} for none")
+            findings.lost(
+                timeline.place,
+                f"`{flag}` is `{said[:20]}`, which is not a frame",
+                f"write a frame, or {none:g} for none",
+            )
             frame = none
         found[flag] = frame
     first, last = found["start_frame"], inf if found["end_frame"] < 1 else found["end_frame"]
     if last < first:
-        message = f"the End flag ({last:g}) is before the Start flag ({first:g}): no key is played between them"
+        message = f"the End flag ({last:g}) is before the Start flag ({first:g}): no key is played"
         findings.lost(timeline.place, message)
     return Flags(first, last, _pace(timeline, findings))
 
@@ -196,8 +211,8 @@ def _played(
             outside.append(key)
     if outside:
         keys_are = "a key" if len(outside) == 1 else f"{len(outside)} keys"
-        message = f"{keys_are} of `{curve.get('actuator')}` before the Start flag or behind the End flag"
-        findings.changed(outside[0].place, f"{message}: not played there, and left out here")
+        message = f"{keys_are} of `{curve.get('actuator')}` before the Start flag or after the End flag"
+        findings.changed(outside[0].place, f"{message}: left out, as in Choregraphe")
 
 
 def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
@@ -206,14 +221,14 @@ def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
     if fps is not None and fps > 0:
         return fps
     findings.changed(
-        timeline.place, f"the timeline has no `fps` above 0: {DEFAULT_FPS:g} frames are taken for a second"
+        timeline.place, f"the timeline has no `fps` above 0: it is read with {DEFAULT_FPS:g} frames per second"
     )
     return DEFAULT_FPS
 
 
 def _chosen(root: XmlElement, timelines: Timelines, name: str) -> XmlElement:
     if not timelines:
-        raise broken(root.place, "not-a-motion", "no timeline in it moves a joint")
+        raise broken(root.place, "not-a-motion", "no timeline in the file moves a joint")
     if name in timelines:
         return timelines[name]
     if name:
@@ -221,7 +236,9 @@ def _chosen(root: XmlElement, timelines: Timelines, name: str) -> XmlElement:
         raise broken(root.place, "not-a-motion", f"there is no timeline `{name}`", hint)
     if len(timelines) > 1:
         names = ", ".join(f"`{n}`" for n in timelines)
-        raise broken(root.place, "not-a-motion", f"it has several timelines: {names}", "choose one: --timeline NAME")
+        raise broken(
+            root.place, "not-a-motion", f"the file has several timelines: {names}", "choose one: --timeline NAME"
+        )
     return next(iter(timelines.values()))
 
 
@@ -251,7 +268,7 @@ def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, 
         around = any(element is chosen or local(element) == "Box" for element in list(box.walk())[1:])
         if local(box) == "Box" and (id(box) in inside or not around):
             say = findings.changed if asked and id(box) not in inside else findings.lost
-            say(box.place, f"box `{box.get('name')}` is left out: only joints of a timeline are read")
+            say(box.place, f"the box `{box.get('name')}` is left out: only joints of a timeline are read")
 
 
 def _points(
@@ -268,15 +285,17 @@ def _points(
         for tangent in _under(key, "Tangent"):
             if (side := tangent.get("side")) not in ("left", "right") or side in tangents:
                 findings.lost(
-                    tangent.place, f"a tangent of `{joint}` is `{side[:20]}`", "a key has one left, one right"
+                    tangent.place, f"a tangent of `{joint}` has the side `{side[:20]}`", "write left or right"
                 )
             tangents.setdefault(side, tangent)
             kind = tangent.get("interpType")
             for _, hint in KNOWN["interpType"].losses([kind]):
-                findings.lost(tangent.place, f"`{joint}` moves here by `{kind[:20]}`, which is unknown", hint)
+                findings.lost(tangent.place, f"unknown interpolation `{kind[:20]}` for `{joint}`", hint)
         kinds = {tangent.get("interpType") for tangent in tangents.values()}
         if "constant" in kinds:
-            findings.changed(key.place, f"`{joint}` jumps here; no joint can jump, so it moves in a straight line")
+            findings.changed(
+                key.place, f"`{joint}` jumps to the next key; no joint can jump, so it moves in a straight line"
+            )
         left = tangents.get("left")
         straight = left is not None and left.get("interpType") in ("linear", "constant")
         into, out = (_handle(tangents.get(side), flags.fps, factor, findings) for side in ("left", "right"))
@@ -299,10 +318,10 @@ def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: Con
         return 0.0, 0.0
     frames, value = (number(tangent.get(name, "0")) for name in ("abscissaParam", "ordinateParam"))
     if frames is None or value is None:
-        findings.lost(tangent.place, "a tangent is left out: `abscissaParam` and `ordinateParam` are numbers")
+        findings.lost(tangent.place, "a tangent is left out: `abscissaParam` and `ordinateParam` must be numbers")
     elif (frames > 0) == (tangent.get("side") == "left") and frames:
         findings.lost(
-            tangent.place, "a tangent is left out: on the left `abscissaParam` is below 0, on the right above"
+            tangent.place, "a tangent is left out: `abscissaParam` must be below 0 on the left, above 0 on the right"
         )
     return ((frames or 0.0) / fps, (value or 0.0) * factor)
 

@@ -60,17 +60,17 @@ def _cut(points: list[CurvePoint], excess: Excess, body: Body, findings: Convers
     wanted, limit = (f"{round(angle * factor, 2):g}{unit}" for angle in (excess.value, excess.limit))
     if excess.joint != _joint(excess) or i == len(points) or points[i].time != excess.key.time:
         near = points[min(i, len(points) - 1)]
-        beside = f"where `{_joint(excess)}` is at {excess.key.time:g} s"
-        findings.changed(near.place, f"`{excess.joint}` can't go to {wanted} {beside}: it goes to {limit}")
+        beside = f"at the angle that `{_joint(excess)}` has at {excess.key.time:g} s"
+        findings.changed(near.place, f"`{excess.joint}` can't reach {wanted} {beside}: it goes to {limit}")
         points.insert(i, CurvePoint(excess.key.time, excess.limit, near.place, near.straight))
     elif abs(points[i].angle - excess.value) < SAME_ANGLE:
         others = [coupled.on for coupled in body.coupled if coupled.joint == excess.joint]
-        beside = f" where `{others[0]}` is then" if others else ""
-        findings.changed(points[i].place, f"`{excess.joint}` can't go to {wanted}{beside}: it goes to {limit}")
+        beside = f" at the angle that `{others[0]}` has then" if others else ""
+        findings.changed(points[i].place, f"`{excess.joint}` can't reach {wanted}{beside}: it goes to {limit}")
         points[i] = points[i]._replace(angle=excess.limit, handle_in=(0.0, 0.0), handle_out=(0.0, 0.0))
     else:
         findings.changed(
-            points[i].place, f"`{excess.joint}` would come to {wanted} on the way: its handles are left out"
+            points[i].place, f"`{excess.joint}` would reach {wanted} between two keys: its handles are left out"
         )
         points[i] = points[i]._replace(handle_in=(0.0, 0.0))
         if i:

@@ -64,7 +64,7 @@ class MotionWriter:
                 self.findings.lost(points[0].place, f"{self.body.name} has no joint `{joint}`")
             elif leader in curves:
                 if [p[:2] for p in points] != [p[:2] for p in curves[leader]]:
-                    message = f"`{joint}` shares its motor with `{leader}` and goes where that goes"
+                    message = f"`{joint}` shares its motor with `{leader}` and moves with it"
                     self.findings.changed(points[0].place, message)
             else:
                 found[joint] = points
@@ -75,10 +75,12 @@ class MotionWriter:
         kept: list[CurvePoint] = []
         for point in points:
             if point.time < 0:
-                self.findings.lost(point.place, f"`{joint}` is somewhere {-point.time:g} s before the motion begins")
+                self.findings.lost(point.place, f"`{joint}` has a key {-point.time:g} s before the motion begins")
             elif kept and point.time < kept[-1].time + MIN_KEY_DISTANCE:
-                message = f"at {point.time:g} s `{joint}` has a key too late: it has one at {kept[-1].time:g} s already"
-                self.findings.lost(point.place, message, "times have to increase")
+                message = (
+                    f"the key of `{joint}` at {point.time:g} s is left out: the key before it is at {kept[-1].time:g} s"
+                )
+                self.findings.lost(point.place, message, "times must increase")
             else:
                 kept.append(point._replace(angle=self._inside(joint, point)))
         return kept
@@ -89,7 +91,7 @@ class MotionWriter:
         if angle != point.angle:
             wanted, limit = self._angle(joint, point.angle), self._angle(joint, angle)
             unit = "" if joint in self.body.hands else " deg"
-            message = f"`{joint}` can't go to {wanted:g}{unit}: it goes to {limit:g}{unit}"
+            message = f"`{joint}` can't reach {wanted:g}{unit}: it goes to {limit:g}{unit}"
             self.findings.changed(point.place, message)
         return angle
 
@@ -98,8 +100,8 @@ class MotionWriter:
         first = min((points[0] for points in curves.values()), key=lambda p: p.time, default=None)
         if first is None or first.time >= MIN_KEY_DISTANCE:
             return curves
-        takes = f"the robot takes {TIME_TO_FIRST_POSE:g} s to come to it"
-        message = f"the first pose stands at 0 s: {takes}, and all else comes later"
+        takes = f"the robot takes {TIME_TO_FIRST_POSE:g} s to reach it"
+        message = f"the first pose is at 0 s: {takes}, and all other keys are delayed"
         self.findings.changed(first.place, message)
         return {
             joint: [p._replace(time=p.time + TIME_TO_FIRST_POSE) for p in points] for joint, points in curves.items()

@@ -54,7 +54,7 @@ def read_naoqi(file: str, text: str, findings: ConversionFindings, timeline: str
         except _TooManyStepsError as error:
             if rounds:
                 continue
-            message = f"it takes more than {MAX_STEPS:,} steps: do its functions call each other for ever?"
+            message = f"the script takes more than {MAX_STEPS:,} steps: its functions may call each other without end"
             raise broken(error.place, "too-large", message) from None
         break
     findings.include(found)
@@ -85,8 +85,8 @@ def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: s
         reading.used.update(lists)
     reading.tell_changes()
     if not reading.called:
-        hint = "it should call angleInterpolation or angleInterpolationBezier with lists that are written out"
-        raise broken(Place(file), "not-a-motion", "no keyframes for ALMotion stand in it", hint)
+        hint = "call angleInterpolation or angleInterpolationBezier with literal lists"
+        raise broken(Place(file), "not-a-motion", "the file has no keyframes for ALMotion", hint)
     return reading.curves
 
 
@@ -105,15 +105,15 @@ def _chosen(
         for other, function in gestures.items():
             if other not in called:
                 place = Place(file, function.lineno, function.col_offset + 1)
-                message = f"the function `{other}` is left out: nothing calls it"
-                findings.changed(place, message, f"--timeline {other} reads it instead of the rest")
+                message = f"the function `{other}` is left out: the file does not call it"
+                findings.changed(place, message, f"to import only this function, pass --timeline {other}")
         return None
     within = {inner for each in gestures for inner in own.reached(gestures[each].body) - {each}}
     roots = [each for each in gestures if each not in within] or list(gestures)
     if len(roots) > 1:
         names = ", ".join(f"`{root}`" for root in roots)
         hint = "choose one: --timeline NAME"
-        raise broken(Place(file), "not-a-motion", f"it has several functions that are motions: {names}", hint)
+        raise broken(Place(file), "not-a-motion", f"the file has several functions that are motions: {names}", hint)
     return gestures[roots[0]] if roots else None
 
 
@@ -129,7 +129,7 @@ def _tree(file: str, text: str) -> ast.Module:
         place = Place(file, line, column, line, column + 1)
         raise broken(place, "not-a-motion", f"this is not Python: {error.msg}") from None
     except (ValueError, RecursionError, MemoryError):
-        raise broken(Place(file), "not-a-motion", "this is not Python that can be read") from None
+        raise broken(Place(file), "not-a-motion", "the file can't be read as Python") from None
 
 
 class _Reading:
@@ -262,7 +262,7 @@ class _Reading:
     def _own(self, call: ast.Call, function: FunctionNode, statement: ast.stmt, branch: Branch) -> None:
         """Follow a function of the file with its arguments."""
         if function.name in self.entered:
-            self.findings.lost(self._place(call), f"`{function.name}` calls itself: here it does once")
+            self.findings.lost(self._place(call), f"`{function.name}` calls itself: it is imported once")
             return
         names = [argument.arg for argument in (*function.args.posonlyargs, *function.args.args)]
         if names[:1] == ["self"]:
@@ -286,16 +286,16 @@ class _Reading:
             return
         seconds: Any = self._value(call.args[0]) if len(call.args) == 1 else None
         if not _is_number(seconds) or seconds < 0:
-            message = f"how long `{written(call)[:60]}` is, is known only when the file runs: it is left out"
-            self.findings.lost(self._place(call), message, "write the number out")
+            message = f"the pause `{written(call)[:60]}` is left out: its length is known only when the file runs"
+            self.findings.lost(self._place(call), message, "write a number")
             return
         if branch is Branch.ELSE:
             self.findings.lost(self._place(call), "a pause in an `else` or `except` is left out")
             return
         if branch is Branch.LOOP:
-            self.findings.lost(self._place(call), "this pause is in a loop: here it is made once")
+            self.findings.lost(self._place(call), "this pause is in a loop: it is imported once")
         elif branch is Branch.IF:
-            self.findings.changed(self._place(call), "this pause is in an `if`: here it is always made")
+            self.findings.changed(self._place(call), "this pause is in an `if`: it is imported without the condition")
         self.begin += float(seconds)
 
     def _is_stiff(self, call: ast.Call) -> bool:
@@ -325,10 +325,12 @@ class _Reading:
                 shown = written(statement).partition("\n")[0][:60]
                 told = f"`{shown}` changes `{found[0]}`"
                 if branch is Branch.IF:
-                    self.findings.changed(self._place(statement), f"{told} in an `if`: here it always does")
+                    self.findings.changed(
+                        self._place(statement), f"{told} in an `if`: it is imported without the condition"
+                    )
                 else:
-                    message = f"{told} in a way that is known only when the file runs: it is left out"
-                    self.findings.lost(self._place(statement), message, "write the numbers out")
+                    message = f"{told}: the change is left out, since it is known only when the file runs"
+                    self.findings.lost(self._place(statement), message, "write the numbers as literals")
 
     def _followed(self, statement: ast.stmt) -> bool:
         """Carry out an assignment or an `append` of what is written out; whether the statement is no more than that."""
@@ -365,7 +367,7 @@ class _Reading:
         joints = [joint for name in (names if isinstance(names, list) else [names]) for joint in _joints(name)]
         rows = _rows(times, keys, len(joints))
         if rows is None or not all(isinstance(joint, str) for joint in joints):
-            self.findings.lost(self._place(node), "names, times and keys do not fit together")
+            self.findings.lost(self._place(node), "names, times and keys do not match")
             return
         for joint, (moments, angles) in zip(joints, rows, strict=True):
             curve = self.curves.setdefault(joint, [])
@@ -395,23 +397,25 @@ class _Reading:
         arguments = node.args
         if not 3 <= len(arguments) <= 4:
             wanted = ", ".join(ALMOTION_CALLS[method])
-            self.findings.lost(self._place(node), f"`{method}` is handed {len(arguments)} values", f"it takes {wanted}")
+            self.findings.lost(self._place(node), f"`{method}` has {len(arguments)} arguments", f"it needs {wanted}")
             return
         if branch is Branch.ELSE:
-            self.findings.lost(self._place(node), "what an `else` or `except` does is left out")
+            self.findings.lost(self._place(node), "a call in an `else` or `except` is left out")
             return
         if branch is Branch.LOOP:
-            self.findings.lost(self._place(node), "this is in a loop: here the robot does it once")
+            self.findings.lost(self._place(node), "this call is in a loop: it is imported once")
         elif branch is Branch.IF:
-            self.findings.changed(self._place(node), "this is in an `if`: here the robot always does it")
+            self.findings.changed(self._place(node), "this call is in an `if`: it is imported without the condition")
         try:
             values = dict(zip(ALMOTION_CALLS[method], (value_of(a, self.values) for a in arguments), strict=False))
             absolute = value_of(arguments[3], self.values) if len(arguments) > 3 else True
         except NotWrittenOutError as error:
-            self.findings.lost(self._place(error.node), f"`{error}` is known only when the file runs", "write it out")
+            self.findings.lost(
+                self._place(error.node), f"`{error}` is known only when the file runs", "write a literal value"
+            )
             return
         if not absolute:
-            self.findings.lost(self._place(node), "angles relative to where the robot stands are not read")
+            self.findings.lost(self._place(node), "relative angles are not read")
             return
         self.play(node, values["names"], values["times"], values["keys"])
 
@@ -426,7 +430,7 @@ class _Reading:
             leaves, out = _handle(handles[1]) if len(handles) > 1 else (kind, (0.0, 0.0))
             if kind not in (BEZIER, LINEAR) or (time != times[0] and left != kind):
                 self.findings.changed(
-                    self._place(node), f"`{joint}` comes to {time:g} s in a way that is not known here"
+                    self._place(node), f"`{joint}` reaches its key at {time:g} s by an unknown interpolation"
                 )
             left = leaves
             yield CurvePoint(float(time), float(angle), self._place(node), kind != BEZIER, into, out)

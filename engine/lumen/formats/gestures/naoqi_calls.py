@@ -25,13 +25,13 @@ CHAINS: Mapping[str, tuple[str, ...]] = {
     "Body": _BODY, "Joints": _BODY, "JointActuators": _BODY, "Actuators": _BODY,
 }  # fmt: skip
 
-_READS = "it reads something; where a number of a motion comes from it, that is listed"
-_COMPUTES = "it computes something; where a number of a motion comes from it, that is listed"
-_CONNECTS = "it connects the script and the robot"
-_SHOWS = "it shows something to who runs the script"
-_BOX = "it ends a box of Choregraphe"
+_READS = "it reads a value; if a motion uses that value, the use is listed"
+_COMPUTES = "it computes a value; if a motion uses that value, the use is listed"
+_CONNECTS = "it connects the script to the robot"
+_SHOWS = "it prints or reads text in the terminal"
+_BOX = "it ends a Choregraphe box"
 _STILL = "it does not move the robot"
-_SPEED = "write a keyframe with the time that it takes"
+_SPEED = "write a keyframe with a time"
 _WALK = "in a behaviour: `walk: {x: 0.3, y: 0, theta: 0}`"
 _SAY = "in a behaviour: `say: Hello`"
 
@@ -40,7 +40,7 @@ CALLS = Known(
     lost={
         "goToPosture": "in a behaviour: `posture: Stand`", "applyPosture": "in a behaviour: `posture: Stand`",
         "wakeUp": "in a behaviour: `wake: true`", "rest": "in a behaviour: `rest: true`",
-        "say": _SAY, "playFile": "in a behaviour: a sound is a task of its own", "play": "in a behaviour: `play: NAME`",
+        "say": _SAY, "playFile": "in a behaviour: `sound: sounds/NAME.wav`", "play": "in a behaviour: `play: NAME`",
         "runBehavior": "import that behaviour too, and `play` it", "startBehavior": "import that behaviour too",
         "openHand": "write a keyframe: {RHand: 1}", "closeHand": "write a keyframe: {RHand: 0}",
         "setAngles": _SPEED, "changeAngles": _SPEED, "setAngle": _SPEED, "changeAngle": _SPEED,
@@ -50,9 +50,9 @@ CALLS = Known(
         "moveTo": _WALK, "move": _WALK, "moveToward": _WALK, "walkTo": _WALK, "setWalkTargetVelocity": _WALK,
         "walkInit": _WALK, "moveInit": _WALK, "setFootSteps": _WALK, "setFootStepsWithSpeed": _WALK,
         "stopMove": _WALK, "stopWalk": _WALK,
-        "setStiffnesses": "motors of ours are stiff from `wake` to `rest`",
-        "stiffnessInterpolation": "motors of ours are stiff from `wake` to `rest`",
-        "fadeRGB": "in a behaviour: `eyes: red`", "setLanguage": "`languages` of lumen.yaml",
+        "setStiffnesses": "in Lumen, motors are stiff from `wake` to `rest`",
+        "stiffnessInterpolation": "in Lumen, motors are stiff from `wake` to `rest`",
+        "fadeRGB": "in a behaviour: `eyes: red`", "setLanguage": "write `languages` in lumen.yaml",
     },
     meaningless={
         **dict.fromkeys(("get…", "is…"), _READS),

@@ -21,23 +21,23 @@ def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurv
     row = [(behind, first[1]), *rest] if behind else lines.pop(0) if lines else []
     joints = [cell for cell in row if cell[0]]
     if not joints:
-        raise broken(Place(file), "not-a-motion", "the first two lines name no joint")
+        raise broken(Place(file), "not-a-motion", "the first two lines contain no joint names")
     names = [name for name, _ in joints]
     if twice := next((cell for i, cell in enumerate(joints) if cell[0] in names[:i]), None):
-        raise broken(twice[1], "not-a-motion", f"`{twice[0]}` is named twice")
+        raise broken(twice[1], "not-a-motion", f"the joint `{twice[0]}` is listed twice")
     curves: dict[str, list[CurvePoint]] = {name: [] for name in names}
     time = 0.0
     for cells in lines:
         takes = _takes(cells, len(joints))
         if takes is None:
             wanted = f"`{POSE}%`, {len(joints)} angles and a time above 0 s, joined by `%`"
-            findings.lost(cells[0][1], f"this line can't be read: {wanted} should stand here")
+            findings.lost(cells[0][1], f"this line can't be read: write {wanted}")
             continue
         time += takes
         for name, (word, place) in zip(names, cells[1:-1], strict=True):
             angle = number(word)
             if angle is None:
-                findings.lost(place, f"`{word}` is no angle", "write a number in rad")
+                findings.lost(place, f"`{word}` is not an angle", "write a number in rad")
             else:
                 curves[name].append(CurvePoint(time, angle, place, straight=True))
     return {joint: points for joint, points in curves.items() if points}

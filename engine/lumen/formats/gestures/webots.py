@@ -20,7 +20,7 @@ WEBOTS_VERSION = "V1.0"
 
 KNOWN: FormatTable = {
     "first line": Known(frozenset(("#WEBOTS_MOTION", "V1.0", "V1.1", "joint"))),
-    "pose": Known(frozenset(("time", "angle", "*")), lost={"name": "keyframes of ours have none"}),
+    "pose": Known(frozenset(("time", "angle", "*")), lost={"name": "keyframes in Lumen have no names"}),
 }
 """The parts of a `.motion` that are carried over: the cells of its lines, by kind."""
 
@@ -40,17 +40,19 @@ def read_webots(file: str, text: str, findings: ConversionFindings) -> JointCurv
         time = _time(cells[0][0])
         if time is None or len(cells) != len(joints) + 2:
             wanted = "a time like 00:01:500" if time is None else f"a name and {len(joints)} angles"
-            findings.lost(cells[0][1], f"this line can't be read: {wanted} should stand here")
+            findings.lost(cells[0][1], f"this line can't be read: write {wanted}")
             continue
         if not renamed and not _PLAIN_NAME.fullmatch(cells[1][0]):
-            findings.changed(cells[1][1], "poses have names here; a motion of ours has none")
+            findings.changed(cells[1][1], "the names of poses are left out: a motion in Lumen has none")
             renamed = True
         for (joint, _), (word, place) in zip(joints, cells[2:], strict=True):
             angle = number(word)
             if angle is not None:
                 curves[joint].append(CurvePoint(time, angle, place, straight=True))
             elif word != "*":
-                findings.lost(place, f"`{word}` is no angle", "write a number in rad, or * to leave the joint alone")
+                findings.lost(
+                    place, f"`{word}` is not an angle", "write a number in rad, or * to leave the joint alone"
+                )
     return {joint: points for joint, points in curves.items() if points}
 
 
@@ -58,20 +60,22 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
     """The joints, taken off the front of the lines; some tools write their names into the second line."""
     head = lines.pop(0) if lines else []
     if not head or head[0][0] != FIRST_CELL:
-        raise broken(Place(file), "not-a-motion", f"this is no motion of Webots: it does not begin with {FIRST_CELL}")
+        raise broken(Place(file), "not-a-motion", f"this is not a Webots motion: it does not begin with {FIRST_CELL}")
     if len(head) < 2 or head[1][0] != WEBOTS_VERSION:
         said = head[1][0] if len(head) > 1 else "nothing"
         raise broken(
-            head[-1][1], "not-a-motion", f"only {WEBOTS_VERSION} and {SOCCER_VERSION} are known, and this says {said}"
+            head[-1][1],
+            "not-a-motion",
+            f"unknown version {said}: only {WEBOTS_VERSION} and {SOCCER_VERSION} can be read",
         )
     joints = [cell for cell in head[2:] if cell[0]]
     if not joints and lines and _time(lines[0][0][0]) is None:
         joints = [cell for cell in lines.pop(0) if cell[0]]
     names = [name for name, _ in joints]
     if not joints:
-        raise broken(head[0][1], "not-a-motion", "the first line names no joint")
+        raise broken(head[0][1], "not-a-motion", "the first line contains no joint names")
     if twice := next((cell for i, cell in enumerate(joints) if cell[0] in names[:i]), None):
-        raise broken(twice[1], "not-a-motion", f"`{twice[0]}` is named twice")
+        raise broken(twice[1], "not-a-motion", f"the joint `{twice[0]}` is listed twice")
     return joints
 
 

@@ -24,7 +24,7 @@ def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
     panels = [memberships(variable) for variable in variables(controller)]
     answers = list(chain.from_iterable(_answers(survey, output) for output in controller.outputs.values()))
     gaps = any(isnan(y) for panel in answers for line in panel.lines for y in line.ys)
-    note = "Where a line is broken no rule fires: the default holds, or the value before." if gaps else ""
+    note = "Gaps in a line: no rule fires, so the default or the previous value is used." if gaps else ""
     count = len(panels) + len(answers)
     return PlotSheet(f"Controller {controller.name}", (*panels, *answers), min(count, 3 if count <= 9 else 4), note)
 

@@ -17,7 +17,7 @@ def explained_sheet(controller: ControllerDefinition, said: Explanation) -> Plot
     ]
     texts = tuple(_short(rule.text) for rule, _ in said.rules)
     bars = PlotBars(texts, tuple(degree for _, degree in said.rules))
-    panels.append(PlotPanel("How much each rule fires", PlotAxis("degree", 0.0, 1.0), PlotAxis(""), bars=bars))
+    panels.append(PlotPanel("Degree of each rule", PlotAxis("degree", 0.0, 1.0), PlotAxis(""), bars=bars))
     panels += [_concluded(controller.outputs[name], found) for name, found in said.outputs.items()]
     given = ", ".join(f"{name} = {value:g}" for name, value in said.inputs.items())
     return PlotSheet(f"Controller {controller.name} at {given}", tuple(panels), min(3, len(panels)))

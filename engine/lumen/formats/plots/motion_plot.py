@@ -16,7 +16,7 @@ def motion_sheet(motion: MotionDefinition, body: Body) -> PlotSheet:
     tracks = sorted(Trajectory(motion).tracks, key=lambda track: _place(body, track.joint))
     title = f"Motion {motion.name}, {motion.duration:g} s"
     panels = tuple(_panel(motion, body, track) for track in tracks)
-    return PlotSheet(title, panels, min(4, max(1, len(tracks))), "Dots: the keys. Level lines: the joint's limits.")
+    return PlotSheet(title, panels, min(4, max(1, len(tracks))), "Dots: keys. Horizontal lines: the joint's limits.")
 
 
 def _panel(motion: MotionDefinition, body: Body, track: JointTrack) -> PlotPanel:

@@ -22,7 +22,7 @@ def whole(path: Path) -> bool:
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC:
-                raise RecordingError(f"{path} is no recording: an MCAP file begins with other bytes")
+                raise RecordingError(f"{path} is not a recording: it is not an MCAP file")
             size = file.seek(0, 2)
             file.seek(max(0, size - END_BYTES))
             end = file.read()

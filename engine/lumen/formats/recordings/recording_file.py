@@ -106,7 +106,7 @@ class RecordingFile:
 
 def renamed(wanted: Path, path: Path) -> str:
     """Return a notice if a recording could not get the wanted name; empty if it has it."""
-    return f"{wanted} is there already: this recording is {path}" if path != wanted else ""
+    return f"{wanted} exists already: this recording is {path}" if path != wanted else ""
 
 
 def writable(path: Path) -> Path:
@@ -115,7 +115,7 @@ def writable(path: Path) -> Path:
     Raises RecordingError where its folder is missing.
     """
     if not path.parent.is_dir():
-        raise RecordingError(f"{path} can't be written: there is no folder {path.parent}")
+        raise RecordingError(f"{path} can't be written: the folder {path.parent} does not exist")
     number = 2
     found = path
     while found.exists() or found.is_symlink():

@@ -30,13 +30,13 @@ def _lines(
     model: RobotModel, roles: GuessedRoles, joints: Sequence[ModelJoint], title: str, mjcf: str
 ) -> Iterator[str]:
     yield "#"
-    yield "# Made by `lumen import`. What was guessed is marked: look at it, correct it (docs/bodies.md)."
+    yield "# Made by `lumen import`. Guesses are marked: check and correct them (docs/bodies.md)."
     yield f"name: {_quoted(model.name or title)}"
     yield f"mjcf: {_quoted(mjcf)}"
     yield "units: {angle: rad, length: m}"
     if not all(joint.servo for joint in joints if not joint.follows):
         yield ""
-        yield "# Joints without a position servo get one, which gives all its torque where it is that far off."
+        yield "# Joints without a position servo get one. It gives its full torque at this distance from the goal."
         yield f"motors: {{give: {GIVE}}}{GUESSED}"
     yield ""
     yield "joints:"
@@ -50,7 +50,7 @@ def _lines(
     yield "\nroles:"
     yield from _roles(model, roles)
     if camera := roles.camera:
-        yield "\n# The image has four columns to three rows; the angles of view are those of the model."
+        yield "\n# The image has the format 4:3; the angles of view are those of the model."
         across = 2 * atan2(tan(camera.fovy / 2) * WIDTH / HEIGHT, 1.0)
         down = atan2(-camera.ahead[2], hypot(camera.ahead[0], camera.ahead[1]))
         position = ", ".join(f"{c:.6g}" for c in camera.position)
@@ -58,7 +58,7 @@ def _lines(
             f"camera: {{width: {WIDTH}, height: {HEIGHT}, horizontal_fov: {across:.6g},"
             f" vertical_fov: {camera.fovy:.6g}, position: [{position}], pitch: {down + 0:.6g}}}"
         )
-    yield f"\npostures:{GUESSED}: all joints at zero, or as near as they go"
+    yield f"\npostures:{GUESSED}: all joints at zero, or as near to it as they can go"
     stand = {joint.name: f"{min(max(0.0, _low(joint)), _high(joint)):.6g}" for joint in joints}
     for posture in ("Stand", "Crouch") if roles.biped else ("Stand",):
         yield f"  {posture}:"

@@ -116,8 +116,8 @@ class _Guesser:
         ends = [j for k in ("elbow", "wrist") for j, _ in joints[k]]
         way = [b - a for a, b in zip(start.position, ends[-1].position, strict=True)] if ends else [0.0] * 3
         if not ends or way[0] < 0.8 * sum(c * c for c in way) ** 0.5:
-            message = f"the {side} arm has no roles: at zero it does not point straight ahead, from where roles count"
-            hint = "motions name its joints; or turn its links in the model so that all zeros point ahead"
+            message = f"the {side} arm has no roles: at zero it does not point straight ahead"
+            hint = "use its joint names in motions, or turn its links in the model so that it points ahead at zero"
             self.findings.changed(start.place, message, hint)
             return
         for joint, _ in joints["shoulder"]:
@@ -149,11 +149,15 @@ class _Guesser:
         if not all(has.values()):
             return False
         lacking = [f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES if name not in has[side]]
-        lacking += [] if self.roles.soles else ["a site `left_sole` and `right_sole` beneath the feet (x ahead, z up)"]
+        lacking += (
+            [] if self.roles.soles else ["the sites `left_sole` and `right_sole` beneath the feet (x ahead, z up)"]
+        )
         lacking += [f"a sensor `{kind}`" for kind in ("gyro", "accelerometer") if kind not in self.model.sensors]
         if lacking:
-            message = "it has legs, but lacks what walking needs, and is written as one that stays where it is"
-            self.findings.changed(self.model.root, message, f"in the model: {', '.join(lacking)}")
+            message = (
+                "the robot has legs, but lacks parts that walking needs: it is imported as a robot that can't walk"
+            )
+            self.findings.changed(self.model.root, message, f"add to the model: {', '.join(lacking)}")
         return not lacking
 
 

@@ -49,7 +49,9 @@ class _MjcfReader:
         self.one_of(root, compiler.get("autolimits", "true"), "autolimits", ("true", "false"))
         if len(self.sequence) != len(_ORIGIN) or not set(self.sequence.lower()) <= set(AXES):
             findings.lost(
-                root.place, f"`eulerseq` is `{self.sequence[:20]}`", "three of x, y, z, in capitals for fixed axes"
+                root.place,
+                f"`eulerseq` is `{self.sequence[:20]}`",
+                "write three of x, y and z, in capitals for fixed axes",
             )
         self.autolimits = compiler.get("autolimits", "true") != "false"
         self.motors: dict[str, XmlElement] = {}
@@ -63,23 +65,23 @@ class _MjcfReader:
         """Report a value that MuJoCo does not accept."""
         if said not in words:
             message = f"`{name}` is `{said[:40]}`: it is read as `{words[-1]}`"
-            self.findings.lost(element.place, message, f"MuJoCo reads {', '.join(words)}")
+            self.findings.lost(element.place, message, f"write one of {', '.join(words)}")
 
     def classed(self, element: XmlElement, childclass: str = "") -> XmlElement:
         """The element with the defaults of its class; a missing class is listed."""
         for name in (element.get("class"), childclass):
             if not self.defaults.has(name):
-                hint = "MuJoCo refuses the model: correct the name, or write the class into `<default>`"
-                self.findings.lost(element.place, f"there is no class `{name[:60]}`", hint)
+                hint = "correct the name, or add the class to `<default>`: MuJoCo rejects the model"
+                self.findings.lost(element.place, f"the class `{name[:60]}` does not exist", hint)
         return self.defaults.whole(element, childclass)
 
     def read(self) -> RobotModel:
         tell_losses(self.root, KNOWN, self.findings, lambda element: element.tag != "equality")
         for element in self.root.walk():
             if element.tag in _PLACED_ELSEWHERE:
-                message = f"`<{element.tag}>` is not followed: joints that it makes are not seen"
+                message = f"`<{element.tag}>` is not expanded: joints that it adds are left out"
                 self.findings.changed(
-                    element.place, message, "import what `mj_saveLastXML` writes, where joints are missing"
+                    element.place, message, "if joints are missing, import the file that `mj_saveLastXML` writes"
                 )
         for actuator in (e for block in self.root.of("actuator") for e in block.of(*ACTUATORS)):
             whole = self.classed(actuator)
@@ -154,7 +156,7 @@ class _MjcfReader:
         if kind == "free":
             self.free(joint)
         elif kind != "hinge":
-            self.findings.lost(joint.place, f"the joint `{name}` is a `{kind}`, and a body's joints turn")
+            self.findings.lost(joint.place, f"the joint `{name}` is a `{kind}`: only joints that turn are imported")
         elif not name:
             self.findings.lost(joint.place, f"a joint of `{link}` has no name", "give it one in the model")
         elif self.followers.get(name) != "":
@@ -173,8 +175,8 @@ class _MjcfReader:
             )  # fmt: skip
 
     def free(self, joint: XmlElement) -> None:
-        hint = "delete it from the model: Lumen gives the robot one in its hall"
-        self.findings.lost(joint.place, "the model frees itself from the world", hint)
+        hint = "delete it: Lumen adds one when it places the robot in a hall"
+        self.findings.lost(joint.place, "the model has a free joint to the world", hint)
 
     def limits(self, joint: XmlElement) -> tuple[float | None, float | None]:
         """The joint's range [rad], or nothing where it turns for ever."""
@@ -185,7 +187,7 @@ class _MjcfReader:
             return None, None
         if span[0] >= span[1]:
             self.findings.lost(
-                joint.place, f"the range {span[0]:g} to {span[1]:g} leaves no room", "the second is greater"
+                joint.place, f"the range {span[0]:g} to {span[1]:g} is empty", "make the second number the greater one"
             )
             return None, None
         return span[0] * self.angle, span[1] * self.angle
@@ -196,14 +198,16 @@ class _MjcfReader:
             return
         span, gear = self.numbers.all(motor, "ctrlrange", 2), self.gear(motor)
         if gear != 1.0 and motor.get("name") == joint.get("name"):
-            message = f"the motor of `{motor.get('name')}` has a `gear` of {gear:g}: it turns to other angles"
-            self.findings.changed(motor.place, message, "leave out `gear`: goals are angles of the joint")
+            message = (
+                f"the motor of `{motor.get('name')}` has a `gear` of {gear:g}: its goals are not the joint's angles"
+            )
+            self.findings.changed(motor.place, message, "delete `gear`: in Lumen, goals are angles of the joint")
         if motor.get("ctrllimited", "auto") == "false" or not span or span[0] >= span[1] or not gear:
             return
         least, most = sorted(end / gear for end in span)
         if low is None or high is None or least > low + SAME_ANGLE or most < high - SAME_ANGLE:
             reach = f"{degrees(least):.4g} to {degrees(most):.4g} deg"
-            message = f"the motor of `{joint.get('name')}` turns it from {reach} only"
+            message = f"the motor of `{joint.get('name')}` turns it only from {reach}"
             self.findings.changed(motor.place, message, "give the joint this `range` in the body")
 
     def gear(self, motor: XmlElement) -> float:
@@ -229,7 +233,9 @@ class _MjcfReader:
         """Report torques that differ by the direction."""
         for low, high in spans:
             if abs(low + high) > SAME_TORQUE * max(abs(low), abs(high)):
-                message = f"`{element.get('name')}` has {low:g} to {high:g} of torque: here it has {high:g} either way"
+                message = (
+                    f"`{element.get('name')}` has a torque of {low:g} to {high:g}: it gets {high:g} in both directions"
+                )
                 self.findings.changed(element.place, message)
 
     def camera(self, camera: XmlElement, link: str) -> None:
@@ -238,7 +244,7 @@ class _MjcfReader:
         given = self.numbers.one(camera, "fovy")
         fovy = _FOVY if given is None else given
         if not 0.0 < fovy < 180.0:
-            self.findings.lost(camera.place, f"`fovy` of {fovy:g} degrees is no angle of view")
+            self.findings.lost(camera.place, f"`fovy` is {fovy:g} degrees, which is not an angle of view")
             return
         position, ahead = self.numbers.vector(camera, "pos", _ORIGIN), rotated(self.turned(camera), (0.0, 0.0, -1.0))
         self.cameras.append(ModelCamera(camera.get("name"), link, position, ahead, fovy * pi / 180.0))

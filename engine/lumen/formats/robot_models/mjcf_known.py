@@ -5,7 +5,7 @@ The names are those of MuJoCo 3 (`mj_printSchema`): a name in no table is misspe
 
 from lumen.formats.known import FormatTable, Known
 
-_STAYS = "it stays in the model, which MuJoCo reads"
+_STAYS = "only MuJoCo uses it: it stays in the model"
 
 
 def _known(read: str, stays: str) -> Known:

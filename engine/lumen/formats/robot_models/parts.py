@@ -71,7 +71,5 @@ class RobotModel:
 
 def follows(follower: str, leader: str) -> tuple[str, str]:
     """The message and the hint for a joint that follows another one with a factor or an offset."""
-    message = (
-        f"`{follower}` follows `{leader}` times a factor, or shifted: the model moves it, and the body has no motor"
-    )
-    return message, "motions name the joint that it follows"
+    message = f"`{follower}` follows `{leader}` with a factor or an offset: only the model moves it"
+    return message, "in motions, use the joint that it follows"

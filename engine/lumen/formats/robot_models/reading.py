@@ -36,12 +36,10 @@ def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, l
     root = parse_xml(file, content)
     reader = _READERS.get(root.tag)
     if reader is None:
-        message = f"this is no robot's model: it begins with <{root.tag}>"
+        message = f"this is not a robot model: it begins with <{root.tag}>"
         raise broken(root.place, "not-a-robot", message, "URDF begins with <robot>, MJCF with <mujoco>")
     if sum(element.tag == "joint" for element in root.walk()) > MAX_JOINTS:
-        raise broken(
-            root.place, "too-large", f"the model has more than {MAX_JOINTS:,} joints", "import the robot alone"
-        )
+        raise broken(root.place, "too-large", f"the model has more than {MAX_JOINTS:,} joints", "import only the robot")
     findings = ConversionFindings()
     model = reader(root, file, findings)
     roles = guess_roles(model, findings)
@@ -51,8 +49,8 @@ def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, l
     joints = _named(wanted, findings)
     if not joints:
         lost = next((finding for finding in findings.diagnostics if finding.code == LOST and wanted), None)
-        message = f"no joint is left: {lost.message}" if lost else "the model has no joint that turns and has a name"
-        hint = lost.hint if lost else "import the robot itself, not a scene or a part of it"
+        message = f"no joint is left: {lost.message}" if lost else "the model has no named joint that turns"
+        hint = lost.hint if lost else "import the robot, not a scene or a part of the robot"
         raise broken(lost.place if lost else root.place, "not-a-robot", message, hint)
     names = {joint.name for joint in joints}
     roles.joints = {path: name for path, name in roles.joints.items() if name in names}
@@ -68,10 +66,10 @@ def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[M
     found: dict[str, ModelJoint] = {}
     for joint in joints:
         if not _NAME.fullmatch(joint.name):
-            hint = "rename it in the model: a letter, then letters, digits, _ and -"
-            findings.lost(joint.place, f"the joint `{joint.name[:60]}` has a name that can't be written", hint)
+            hint = "rename it in the model: begin with a letter and use letters, digits, _ and -"
+            findings.lost(joint.place, f"the name of the joint `{joint.name[:60]}` is not allowed", hint)
         elif joint.name in found:
-            findings.lost(joint.place, f"there is another joint `{joint.name}`", "rename one of them in the model")
+            findings.lost(joint.place, f"a second joint is named `{joint.name}`", "rename one of them in the model")
         else:
             found[joint.name] = joint
     return [joint for joint in found.values() if not joint.follows or joint.follows in found]
@@ -81,15 +79,17 @@ def _missing(model: RobotModel, joints: Sequence[ModelJoint], findings: Conversi
     """What a body needs that the model does not say."""
     for joint in joints:
         if joint.low is None:
-            hint = f"write how far it turns; until then `range: [-{CIRCLE:.4g}, {CIRCLE:.4g}]`"
-            findings.changed(joint.place, f"`{joint.name}` turns for ever, or says no limits", hint)
+            hint = f"write its `range` into the body file, which has [-{CIRCLE:.4g}, {CIRCLE:.4g}] now"
+            findings.changed(joint.place, f"`{joint.name}` has no limits", hint)
         if joint.effort is None and not joint.servo and not joint.follows:
-            message = f"nothing says what torque `{joint.name}` has, and no servo drives it"
-            findings.lost(joint.place, message, "write `effort:` [N m] from its motor's data sheet")
+            message = f"`{joint.name}` has no torque in the model, and no servo"
+            findings.lost(joint.place, message, "write `effort:` [N m] into the body file, from its motor's data sheet")
     if still := [joint.name for joint in joints if joint.speed is None]:
         names = ", ".join(f"`{name}`" for name in still[:3]) + (
             f" and {len(still) - 3} others" if len(still) > 3 else ""
         )
         findings.changed(
-            model.root, f"nothing says how fast {names} turn", "write `speed:` from their motors' data sheet"
+            model.root,
+            f"the model has no speed for {names}",
+            "write `speed:` into the body file, from the motors' data sheet",
         )

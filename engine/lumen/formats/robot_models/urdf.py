@@ -8,8 +8,8 @@ from lumen.formats.robot_models.orientation import AXES, NestedFrame, Quaternion
 from lumen.formats.robot_models.parts import ModelJoint, RobotModel, follows
 from lumen.formats.xml_elements import XmlElement
 
-_LOOKS = "how it looks"
-_SIMULATOR = "a setting of another simulator"
+_LOOKS = "only its appearance"
+_SIMULATOR = "a setting for another simulator"
 _SHAPE = Known(frozenset(("size", "radius", "length")))
 _LINK = Known(frozenset(("link",)))
 KNOWN: FormatTable = {
@@ -18,7 +18,7 @@ KNOWN: FormatTable = {
         lost={"<mujoco>": "write it into the MJCF", "<sensor>": "write it into the MJCF"},
         meaningless={
             "version": "of the format", "<material>": _LOOKS, "<gazebo>": _SIMULATOR, "<ros2_control>": _SIMULATOR,
-            "<transmission>": "limits of joints are in `<limit>`",
+            "<transmission>": "the limits of joints are read from `<limit>`",
         },
     ),
     "<link>": Known(
@@ -41,9 +41,9 @@ KNOWN: FormatTable = {
             ("name", "type", "<origin>", "<parent>", "<child>", "<axis>", "<limit>", "<mimic>", "<dynamics>")
         ),
         lost={"<safety_controller>": "write its narrower limits into `<limit>`"},
-        meaningless={"<calibration>": "joints of ours know their zero"},
+        meaningless={"<calibration>": "in Lumen, a joint needs no calibration"},
     ),
-    "<joint> that is fixed": Known(meaningless={"name": "its two links are one body", "xyz": "nothing turns"}),
+    "<joint> that is fixed": Known(meaningless={"name": "its two links become one body", "xyz": "it does not turn"}),
     "<origin>": Known(frozenset(("xyz", "rpy"))),
     "<parent>": _LINK,
     "<child>": _LINK,
@@ -81,7 +81,7 @@ class _UrdfReader:
         for hinge in found:
             if hinge.follows and hinge.follows not in names:
                 self.findings.lost(
-                    hinge.place, f"`{hinge.name}` follows `{hinge.follows}`, which is no joint that turns"
+                    hinge.place, f"`{hinge.name}` follows `{hinge.follows}`, which is not a joint that turns"
                 )
             elif hinge.name in self.driven:
                 self.findings.changed(self.driven[hinge.name].place, *follows(hinge.name, hinge.follows))
@@ -94,14 +94,14 @@ class _UrdfReader:
         for end in ("parent", "child"):
             link = next((element.get("link") for element in joint.of(end)), "")
             if link not in self.links:
-                said = f"names the {end} `{link}`" if link else f"has no {end}"
-                hint = f"give `<joint>` a `<{end} link=…>` that the file has"
-                self.findings.lost(joint.place, f"the joint `{name}` {said}, and there is no such link", hint)
+                said = f"has the {end} `{link}`, which does not exist" if link else f"has no {end}"
+                hint = f'write `<{end} link="…"/>` with a link of the file'
+                self.findings.lost(joint.place, f"the joint `{name}` {said}", hint)
                 return False
             ends.append(link)
         parent, child = ends
         if child in self.above or self.hangs(parent, child):
-            self.findings.lost(joint.place, f"`{child}` hangs on two joints", "a link hangs on one joint, in a tree")
+            self.findings.lost(joint.place, f"`{child}` is the child of two joints", "give each link one parent joint")
             return False
         self.links[child], self.above[child] = parent, joint
         return True
@@ -133,7 +133,7 @@ class _UrdfReader:
         if kind == "fixed":
             return None
         if kind not in _HINGES:
-            hint = "a body's joints turn; leave it to the model, or make it `revolute`"
+            hint = "only joints that turn are imported: if it turns, write `revolute`"
             self.findings.lost(joint.place, f"the joint `{name}` is `{kind or 'of no type'}`", hint)
             return None
         axis = next(joint.of("axis"), None)
@@ -141,8 +141,8 @@ class _UrdfReader:
         limit = next(joint.of("limit"), None)
         low, high, speed, effort = self.limits(limit)
         if kind == "revolute" and low is None:
-            hint = 'give it `<limit lower="-1" upper="1" …/>` [rad]'
-            self.findings.lost(joint.place, f"the joint `{name}` says no limits", hint)
+            hint = 'write `<limit lower="-1" upper="1" …/>` [rad]'
+            self.findings.lost(joint.place, f"the joint `{name}` has no limits", hint)
         leader, equal = self.mimic(joint)
         if leader and not equal:
             self.driven[name] = next(joint.of("mimic"))
@@ -161,7 +161,9 @@ class _UrdfReader:
         if high is None and low is not None:
             high = 0.0
         if low is not None and high is not None and low >= high:
-            self.findings.lost(limit.place, f"the limits {low:g} to {high:g} leave no room", "`upper` is above `lower`")
+            self.findings.lost(
+                limit.place, f"the limits {low:g} to {high:g} are empty", "write an `upper` above `lower`"
+            )
             low = high = None
         return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
 

@@ -78,19 +78,19 @@ class ScxmlActionReader:
             return template_of(element, self.context.names)
         except ScriptError as error:
             source = element.get("expr")
-            self.findings.changed(element.place, f"`<log>` writes `{source}` as it stands: {error}")
+            self.findings.changed(element.place, f"`<log>` writes `{source}` as plain text: {error}")
             return plain_template(element, source)
 
     def _named(self, element: XmlElement) -> str:
         if not (name := element.get("event")):
-            raise LeftOutError(f"`<{element.tag}>` names no event", 'write event="…"')
+            raise LeftOutError(f"`<{element.tag}>` has no event", 'write event="…"')
         return self.context.names.events.get(name, name)
 
     def _assign(self, element: XmlElement) -> ActionData:
         location = element.get("location").strip()
         id, *within = location.split(".") if _WAY.fullmatch(location) else [location]
         if id not in self.context.keys:
-            where = "stands in no datamodel" if within or location.isidentifier() else "is no plain name"
+            where = "is not declared" if within or location.isidentifier() else "is not a plain name"
             raise LeftOutError(f"`<assign>` to `{location}`, which {where}", "declare it with `<data>`")
         if element.children:
             raise LeftOutError(f"`<assign>` of XML to `{location}`")
@@ -103,7 +103,7 @@ class ScxmlActionReader:
         found = assignments(element.text) if "src" not in element.attributes else None
         keys = self.context.keys
         if found is None or any(name not in keys for name, _ in found):
-            raise LeftOutError("`<script>`: ECMAScript is not run here", "say it with `<assign>` and conditions")
+            raise LeftOutError("`<script>`: Lumen does not run ECMAScript", "use `<assign>` and conditions")
         yield from ({"assign": {keys[name]: self.value(source)}} for name, source in found)
 
     def value(self, source: str) -> Any:
@@ -134,19 +134,21 @@ class ScxmlActionReader:
         processor = self._constant(element, "type", "typeexpr", optional=True)
         delay = self._delay(element)
         if processor not in PROCESSORS:
-            raise LeftOutError(f"`<send>` through `{processor}`", "only events for the chart itself are carried over")
+            raise LeftOutError(
+                f"`<send>` with the type `{processor}` is left out", "only events to the chart itself are carried over"
+            )
         to = target.removeprefix("#_") if target.startswith("#_") and not target.startswith("#_scxml_") else ""
         if target and not to:
-            hint = "only events for the chart itself, for `#_parent` and for what it invokes are carried over"
-            raise LeftOutError(f"`<send>` to `{target}`", hint)
+            hint = "only events to the chart itself, to `#_parent` and to charts that it invokes are carried over"
+            raise LeftOutError(f"`<send>` to `{target}` is left out", hint)
         if "idlocation" in element.attributes:
-            raise LeftOutError("`<send>` with `idlocation`", "give it an `id`")
+            raise LeftOutError("`<send>` with `idlocation` is left out", "write `id` instead")
         body: dict[str, Any] = {"event": event}
         if (data := self.data(element)) is not None:
             body["data"] = data
         if target == "#_internal":
             if delay:
-                raise LeftOutError("`<send>` to `#_internal` with a delay", "leave out the target")
+                raise LeftOutError("`<send>` to `#_internal` can't have a delay", "delete the target")
             return {"raise": body if len(body) > 1 else event}
         if to:
             body["to"] = to
@@ -159,7 +161,7 @@ class ScxmlActionReader:
     def _delay(self, element: XmlElement) -> float:
         text = self._constant(element, "delay", "delayexpr", optional=True)
         if (length := milliseconds(text)) is None:
-            raise LeftOutError(f"`{text}` is no delay", "write 500ms or 2s")
+            raise LeftOutError(f"`{text}` is not a delay", "write 500ms or 2s")
         return length
 
     def _constant(self, element: XmlElement, name: str, computed: str, *, optional: bool = False) -> str:
@@ -196,4 +198,4 @@ def own(element: XmlElement) -> Any:
     try:
         return foreign_json(element.text)
     except (ValueError, RecursionError):
-        raise LeftOutError("this is not the JSON that Lumen writes") from None
+        raise LeftOutError("this element must contain JSON as Lumen writes it") from None

@@ -66,7 +66,7 @@ class ScxmlActionWriter:
         match step.action:
             case Assign(values):
                 if any(isinstance(v, Expression) and not is_constant(v.source) for v in list(values.values())[1:]):
-                    message = "this `assign` becomes several: where one fails, those before it have happened"
+                    message = "this `assign` becomes several: if one fails, those before it keep their effect"
                     self.report.changed(message, step.where)
                 for key, value in values.items():
                     yield XmlTag("assign", {"location": self._location(key), "expr": self.value(value)})

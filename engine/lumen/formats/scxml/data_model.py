@@ -49,7 +49,7 @@ class ScxmlDataModel:
         """Give the id of a `<data>` a key; report it and return False if an earlier one has that id."""
         id = element.get("id")
         if id in self.keys:
-            hint = "give each an id of its own: all of a chart see all data"
+            hint = "give each its own id: data is visible in the whole chart"
             self.findings.lost(element.attribute_place("id"), f"a second `<data>` has the id `{id}`", hint)
             return False
         wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
@@ -67,8 +67,8 @@ class ScxmlDataModel:
     def _first(self, element: XmlElement) -> Any:
         id = element.get("id")
         if "src" in element.attributes:
-            hint = f"write it here in place of `{element.get('src')}`"
-            self.findings.lost(element.place, f"the first value of `{id}` lies in another file", hint)
+            hint = f"write the value here instead of `{element.get('src')}`"
+            self.findings.lost(element.place, f"the first value of `{id}` is in another file", hint)
             return None
         if "expr" in element.attributes:
             return self._expression(element, element.get("expr"))
@@ -93,8 +93,8 @@ class ScxmlDataModel:
             return
         first = {id(element) for element in _top_data(outline.scxml)}
         for element in (each for each in elements if id(each) not in first):
-            hint = "all values are there from the beginning here"
-            self.findings.lost(element.place, f'`binding="late"` of `{element.get("id")}`', hint)
+            hint = "in Lumen, all values exist from the beginning"
+            self.findings.lost(element.place, f'`binding="late"` of `{element.get("id")}` has no counterpart', hint)
 
     def _widen(self, outline: ScxmlStateTree) -> None:
         """Find the keys that are given values of another kind than their first."""

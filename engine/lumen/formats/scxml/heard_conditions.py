@@ -20,7 +20,7 @@ def guard_in(key: str, condition: str) -> str:
         return ""
     if condition.startswith(asked + _AND) and condition.endswith(_END):
         return condition.removeprefix(asked + _AND).removesuffix(_END)
-    raise ScriptError(f"a row of `hears` begins with `{asked}`")
+    raise ScriptError(f"the condition of a row of `hears` must begin with `{asked}`")
 
 
 def _asked(key: str) -> str:

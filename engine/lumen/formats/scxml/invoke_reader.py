@@ -17,16 +17,16 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
     if kind.rstrip("/") not in {p.rstrip("/") for p in PROCESSORS} or "typeexpr" in element.attributes:
         raise LeftOutError(f"the service `{kind or element.get('typeexpr')}` is not carried over")
     if "srcexpr" in element.attributes or not source:
-        raise LeftOutError("a chart that is computed or stands inside is not carried over", "put it into its own file")
+        raise LeftOutError("a computed or inline chart is not carried over", "save the chart in its own file")
     if "idlocation" in element.attributes:
-        raise LeftOutError("`idlocation` has no counterpart", "give it an `id`")
+        raise LeftOutError("`idlocation` has no counterpart", "write `id` instead")
     name = PurePosixPath(source).stem
     if not _NAME.fullmatch(name):
         raise LeftOutError(f"`{source}` can't be the name of a behaviour", "rename the file")
     row: dict[str, Any] = {"behavior": name}
     id = element.get("id")
     if id and not _ID.fullmatch(id):
-        raise LeftOutError(f"`{id}` can't be an id here")
+        raise LeftOutError(f"`{id}` can't be an id in Lumen")
     if id and id != name:
         row["id"] = id
     if data := contents.data(element):

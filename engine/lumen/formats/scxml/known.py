@@ -5,33 +5,34 @@ from collections.abc import Mapping
 from lumen.formats.known import FormatTable, Known
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
 
-_FINAL = "nothing follows a final state here"
+_FINAL = "nothing follows a final state"
 _ENTERED = "a parallel state enters all of its states"
 _PROCESSOR = "write `type`"
-_DEFAULT = "the way into a state is taken without event or condition"
+_ONE_FILE = "other files are not read"
+_DEFAULT = "a transition into a state has no event or condition"
 
 ATTRIBUTES: FormatTable = {
     "scxml": Known(
         frozenset(("initial", "name", "datamodel", "binding", "version")),
         {"initialstate": "write `initial`", "profile": "write `datamodel`"},
-        {"exmode": "sets how strictly other interpreters read the file"},
+        {"exmode": "only for other interpreters"},
     ),
     "state": Known(
         frozenset(("id", "initial", "lumen:root", "lumen:key")),
-        {"final": "write `<final>`", "src": "states of other files are not read", "task": "all states are alike"},
+        {"final": "write `<final>`", "src": _ONE_FILE, "task": "Lumen has no tasks"},
     ),
-    "parallel": Known(frozenset(("id", "lumen:root", "lumen:key")), {"initial": _ENTERED, "src": "it is not read"}),
+    "parallel": Known(frozenset(("id", "lumen:root", "lumen:key")), {"initial": _ENTERED, "src": _ONE_FILE}),
     "final": Known(frozenset(("id", "lumen:key", "lumen:end"))),
     "history": Known(frozenset(("id", "type", "lumen:key"))),
-    "initial": Known(meaningless={"id": "nothing can name it"}),
+    "initial": Known(meaningless={"id": "nothing can refer to it"}),
     "transition": Known(
         frozenset(("event", "cond", "target", "type", "lumen:hears", "lumen:end")),
         {"guard": "write `cond`", "condition": "write `cond`", "next": "write `target`", "anchor": "write a history"},
-        {"id": "nothing can name it"},
+        {"id": "nothing can refer to it"},
     ),
     "onentry": Known(),
     "onexit": Known(),
-    "datamodel": Known(lost={"src": "write the data here", "schema": "no schema is checked"}),
+    "datamodel": Known(lost={"src": "write the data here", "schema": "data is not checked against a schema"}),
     "data": Known(frozenset(("id", "src", "expr")), {"name": "write `id`"}),
     "donedata": Known(),
     "param": Known(frozenset(("name", "expr", "location"))),
@@ -46,17 +47,17 @@ ATTRIBUTES: FormatTable = {
     "if": Known(frozenset(("cond",))),
     "elseif": Known(frozenset(("cond",))),
     "else": Known(),
-    "log": Known(frozenset(("label", "expr")), meaningless={"level": "the log has one level"}),
+    "log": Known(frozenset(("label", "expr")), meaningless={"level": "Lumen's log has one level"}),
     "assign": Known(
         frozenset(("location", "expr")),
-        {"name": "write `location`", "type": "XML is not assigned", "attr": "XML is not assigned"},
+        {"name": "write `location`", "type": "XML can't be assigned", "attr": "XML can't be assigned"},
     ),
     "send": Known(
         frozenset(
             ("event", "eventexpr", "target", "targetexpr", "type", "typeexpr", "id", "idlocation", "delay", "delayexpr",
              "namelist")
         ),
-        {"sendid": "write `id`", "targettype": _PROCESSOR, "hints": "no processor gets hints"},
+        {"sendid": "write `id`", "targettype": _PROCESSOR, "hints": "hints are not sent"},
     ),
     "cancel": Known(frozenset(("sendid", "sendidexpr"))),
     "lumen:machine": Known(),
@@ -69,13 +70,13 @@ ATTRIBUTES: FormatTable = {
 
 _ACTION_NAMES = frozenset(("raise", "send", "cancel", "log", "assign", "if", "script", "lumen:action"))
 _OTHER_ACTIONS = {
-    "foreach": "there are no loops here",
-    "var": "declare it with `<data>`, and set it with `<assign>`",
+    "foreach": "Lumen has no loops in actions",
+    "var": "declare it with `<data>` and set it with `<assign>`",
     "event": "write `<raise>`",
-    "validate": "no schema is checked",
+    "validate": "data is not checked against a schema",
 }
 _ACTIONS = Known(_ACTION_NAMES, _OTHER_ACTIONS)
-_SCRIPT = {"script": "ECMAScript is not run here"}
+_SCRIPT = {"script": "Lumen does not run ECMAScript"}
 _WITHIN_STATE = frozenset(
     ("state", "parallel", "history", "transition", "onentry", "onexit", "datamodel", "invoke", "lumen:do",
      "lumen:buttons", "lumen:state")
@@ -92,12 +93,12 @@ ELEMENTS: FormatTable = {
     "parallel": Known(_WITHIN_STATE | {"final"}, _SCRIPT | {"initial": _ENTERED, "donedata": _FINAL}),
     "final": Known(
         frozenset(("onentry", "onexit", "donedata", "lumen:state")),
-        dict.fromkeys(("state", "parallel", "final", "history"), "a state can't lie in a `<final>`")
+        dict.fromkeys(("state", "parallel", "final", "history"), "a `<final>` has no inner states")
         | {"transition": _FINAL, "invoke": _FINAL, "datamodel": "write it in `<scxml>`"},
     ),
     "history": Known(
         frozenset(("transition",)),
-        dict.fromkeys(("state", "parallel", "final", "history"), "a state can't lie in a `<history>`"),
+        dict.fromkeys(("state", "parallel", "final", "history"), "a `<history>` has no inner states"),
     ),
     "initial": Known(frozenset(("transition",))),
     "transition": Known(_ACTION_NAMES, _OTHER_ACTIONS | {"target": "write `target=` in the `<transition>`"}),
@@ -119,10 +120,10 @@ ACTION_HOLDERS = frozenset(tag for tag, known in ELEMENTS.items() if "raise" in 
 """Elements whose children are executable content."""
 
 MEANINGLESS_ELEMENTS = {
-    "editorinfo": "how Qt Creator draws the chart",
-    "layout": "how an editor draws the chart", "geometry": "how an editor draws the chart",
-    "graphics": "how an editor draws the chart", "position": "how an editor draws the chart",
-    "metadata": "notes of an editor", "documentation": "notes of an editor", "description": "notes of an editor",
+    "editorinfo": "the layout in Qt Creator",
+    "layout": "the layout in an editor", "geometry": "the layout in an editor",
+    "graphics": "the layout in an editor", "position": "the layout in an editor",
+    "metadata": "notes for readers", "documentation": "notes for readers", "description": "notes for readers",
 }  # fmt: skip
 """Elements of other namespaces that are no actions, wherever they are."""
 
@@ -177,7 +178,7 @@ def _place(tag: str) -> Known:
 
 KNOWN: FormatTable = {
     **{f"<{tag}>": _place(tag) for tag in ATTRIBUTES},
-    "timer of an `after`": Known(meaningless={"…": "to begin or to end it twice is to do so once"}),
+    "timer of an `after`": Known(meaningless={"…": "a second start or cancel has no effect"}),
     "any element": Known(meaningless={f"<{name}>": why for name, why in MEANINGLESS_ELEMENTS.items()}),
 }
 

@@ -30,7 +30,7 @@ def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], l
         name = root.tag.rpartition("}")[2]
         if name == "scxml":
             hint = f'write xmlns="{SCXML_NAMESPACE}"'
-            raise broken(root.place, "not-scxml", "this is <scxml> of another namespace, not W3C's", hint)
+            raise broken(root.place, "not-scxml", "<scxml> is not in W3C's namespace", hint)
         raise broken(root.place, "not-scxml", f"the file begins with <{name}>, not with <scxml>")
     return _ScxmlReader(root, title).data()
 
@@ -93,7 +93,7 @@ class _ScxmlReader:
         if regular(node):
             data["states"] = {child.key: self._state(child) for child in node.children} | self._passed(node)
         elif node.source.get("initial") or any(node.source.of("initial")):
-            message = f"`initial` of `{node.name}`, which has no states within"
+            message = f"`initial` of `{node.name}` is left out: the state has no inner states"
             place = next((e.place for e in node.source.of("initial")), node.source.attribute_place("initial"))
             self.findings.lost(place, message, "delete it")
         return data
@@ -117,7 +117,7 @@ class _ScxmlReader:
         """Report the parts that a transition into a state can't have."""
         for name in ("event", "cond", "type"):
             if name in transition.attributes:
-                message = f"`{name}`: the way into a state is taken without event or condition"
+                message = f"`{name}` is left out: a transition into a state has no event or condition"
                 self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
@@ -128,7 +128,7 @@ class _ScxmlReader:
             return {}
         wrong = next((t for t in found if home is None or not t.lies_below(home)), None)
         if wrong is not None:
-            self.findings.lost(transition.place, f"`{wrong.name}` does not lie in `{home.name if home else ''}`")
+            self.findings.lost(transition.place, f"`{wrong.name}` is not inside `{home.name if home else ''}`")
             return {}
         if key == "target" and any(target.source.tag == "history" for target in found):
             self.findings.lost(transition.place, "a history can't lead to a history", "name a state")
@@ -137,7 +137,11 @@ class _ScxmlReader:
         if actions and home is not None and home.source.tag != "parallel":
             return {key: self._pass_through(home, transition, found, actions)}
         if actions:
-            self.findings.lost(transition.place, "actions on the way to the states of a parallel one", "move them")
+            self.findings.lost(
+                transition.place,
+                "actions on the way into a parallel state are left out",
+                "move them to `<onentry>` of the state",
+            )
         return {key: self.transitions.named(node, found, inside=key == "initial")}
 
     def _pass_through(
@@ -146,8 +150,8 @@ class _ScxmlReader:
         """A state that is left at once, doing on the way what SCXML does between `home` and its states."""
         passed = self.passed.setdefault(home, {})
         key = passing_key(home, passed)
-        hint = "it is passed through at once"
-        self.findings.changed(transition.place, f"what is done here becomes a state of its own, `{key}`", hint)
+        hint = "the behaviour passes through it immediately"
+        self.findings.changed(transition.place, f"these actions become a separate state, `{key}`", hint)
         pretended = ForeignState(transition, home, key, "", "")
         passed[key] = {"always": {"target": self.transitions.named(pretended, targets), "actions": actions}}
         return key
@@ -210,16 +214,18 @@ class _ScxmlReader:
                 rows.append(self._named_apart(node, element, invocation(element, self.contents)))
             except (LeftOutError, ScriptError) as error:
                 id = element.get("id")
-                hint = f"what waits for `done.invoke.{id}` stays: invoke a behaviour by that id" if id else ""
+                hint = (
+                    f"invoke a behaviour with the id `{id}`: transitions on `done.invoke.{id}` are kept" if id else ""
+                )
                 self.findings.lost(element.place, f"`<invoke>`: {error}", hint)
                 continue
             for part in (e for e in element.of("finalize") if e.children):
-                hint = "do it in a transition for the event"
+                hint = "do it in a transition on the event"
                 self.findings.lost(part.place, "`<finalize>` has no counterpart", hint)
             message = f"`<invoke>` of `{element.get('src')}` becomes the behaviour `{rows[-1]['behavior']}`"
-            hint = "import that file too"
+            hint = "import that file, too"
             if element.get("autoforward") != "true":
-                hint += '; it hears all events from outside, as with `autoforward="true"`'
+                hint += '; the behaviour receives all events from outside, as with `autoforward="true"`'
             self.findings.changed(element.place, message, hint)
         return rows
 
@@ -231,7 +237,7 @@ class _ScxmlReader:
             return name in self.invoked and self.invoked[name].meets(node)
 
         if element.get("id") and is_taken(id):
-            raise LeftOutError(f"a second one has the id `{id}`")
+            raise LeftOutError(f"a second `<invoke>` has the id `{id}`")
         if not element.get("id"):
             many = len(self.given) + len(self.invoked)
             if (free := unused_name(id, lambda name: name in self.given or is_taken(name), many)) != id:
@@ -242,7 +248,7 @@ class _ScxmlReader:
     def _several(self, blocks: list[XmlElement]) -> None:
         for block in blocks[:-1]:
             if any(e.tag not in ("raise", "log", "cancel") for e in block.children):
-                hint = "where an action of the first fails, the second is skipped too"
+                hint = "if an action of the first fails, the second is skipped, too"
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:
@@ -271,7 +277,7 @@ class _ScxmlReader:
             try:
                 return self.contents.data(element)
             except (LeftOutError, ScriptError) as error:
-                self.findings.lost(element.place, f"the data of `{node.name}`: {error}")
+                self.findings.lost(element.place, f"the data of `{node.name}` is left out: {error}")
         return None
 
 

@@ -55,7 +55,11 @@ class ScxmlStateTree:
                 self.by_id[element.get("id")] = node
             self._fill(node, level + 1)
         if parent.children and not regular(parent):
-            self.findings.lost(parent.source.place, f"`{parent.name}` has a history and no other states", "delete it")
+            self.findings.lost(
+                parent.source.place,
+                f"the history of `{parent.name}` is left out: the state has no other inner states",
+                "delete it",
+            )
             for child in parent.children:
                 self.by_id.pop(child.source.get("id"), None)
             parent.children.clear()
@@ -64,9 +68,12 @@ class ScxmlStateTree:
         id, place = element.get("id"), element.place
         message = hint = ""
         if level > MAX_STATE_LEVELS:
-            message, hint = f"`{id or element.tag}` lies more than {MAX_STATE_LEVELS} levels deep", "use fewer levels"
+            message, hint = (
+                f"`{id or element.tag}` is nested more than {MAX_STATE_LEVELS} levels deep",
+                "use fewer levels",
+            )
         elif id in self.by_id:
-            message, hint = f"a second state has the id `{id}`", "give each state an id of its own"
+            message, hint = f"a second state has the id `{id}`", "give each state its own id"
         if message:
             self.findings.lost(place, message, hint)
         return not message
@@ -76,8 +83,8 @@ class ScxmlStateTree:
         id = free_id(written, self.ids, self.given)
         self.given.add(id)
         if id != written:
-            message = f"the state `{written}` is called `{id}` here, wherever the chart names it"
-            self.findings.changed(element.place, message, "an id has no blanks, `#` and `*`")
+            message = f"the state `{written}` is renamed to `{id}` in the whole behaviour"
+            self.findings.changed(element.place, message, "an id can't contain spaces, `#` or `*`")
         stem = element.get(f"{{{LUMEN_NAMESPACE}}}key") or (id.removeprefix(f"{parent.path}.") if parent.path else id)
         key = free_key(parent, stem or element.tag, id, self.ids)
         return ForeignState(element, parent, key, id, parent.below(key))

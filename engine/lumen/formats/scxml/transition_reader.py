@@ -54,7 +54,7 @@ class ScxmlTransitionReader:
 
         def leave_out(row: TransitionData) -> None:
             place = places.get(id(row), node.source.place)
-            self.findings.lost(place, "the condition becomes too long", "put it into two")
+            self.findings.lost(place, "the converted condition is too long", "split it into two transitions")
 
         data: dict[str, Any] = {"on": arrange(rows, leave_out)} if rows else {}
         if hears:
@@ -71,14 +71,17 @@ class ScxmlTransitionReader:
         elif row:
             yield {"guard": "true", **row}
         else:
-            self.findings.lost(element.place, "a transition without event, condition and target runs for ever")
+            self.findings.lost(
+                element.place,
+                "a transition without event, condition and target is left out: it would repeat without end",
+            )
 
     def _descriptors(self, element: XmlElement) -> list[str]:
         found = [normal(word) for word in element.get("event").split()]
         found = [self.outline.events.get(word, word) for word in found]
         for word in found:
             if not _DESCRIPTOR.fullmatch(word):
-                self.findings.lost(element.place, f"`{word}` is no event", "write names with dots between")
+                self.findings.lost(element.place, f"`{word}` is not an event", "write names separated by dots")
         return list(dict.fromkeys(word for word in found if _DESCRIPTOR.fullmatch(word)))
 
     def _done(
@@ -119,7 +122,9 @@ class ScxmlTransitionReader:
                     row["guard"] = self.contents.condition(condition)
             except ScriptError as error:
                 hint = "the transition is left out"
-                self.findings.lost(element.place, f"the condition `{_short(element.get('cond'))}`: {error}", hint)
+                self.findings.lost(
+                    element.place, f"the condition `{_short(element.get('cond'))}` can't be converted: {error}", hint
+                )
                 return None
         if targets:
             row["target"] = self.named(node, targets)

@@ -47,11 +47,11 @@ class UnreadParts:
         for tag, elements in self.notes.items():
             namespace, name = tag[1:].rsplit("}", 1)
             times = f", {len(elements)} times" if len(elements) > 1 else ""
-            message = f"`<{name}>` of the namespace `{namespace}` means nothing here{times}"
-            self.findings.changed(elements[0].place, message, "notes and layouts of an editor are not carried over")
+            message = f"`<{name}>` of the namespace `{namespace}` is ignored{times}"
+            self.findings.changed(elements[0].place, message, "notes and layouts of editors are not carried over")
             for part in (part for element in elements for part in element.walk() if part.tag in ATTRIBUTES):
                 self.findings.lost(
-                    part.place, f"`<{part.tag}>` in `<{name}>` is not read", f"write it outside of `<{name}>`"
+                    part.place, f"`<{part.tag}>` in `<{name}>` is not read", f"move it out of `<{name}>`"
                 )
 
     def _element(self, element: XmlElement) -> None:
@@ -69,7 +69,7 @@ class UnreadParts:
         foreign = [name for name in element.attributes if _is_foreign(name) and name != _SCHEMA_LOCATION]
         for name in foreign:
             namespace, local = name[1:].rsplit("}", 1)
-            message = f"`{local}` of the namespace `{namespace}` means nothing here"
+            message = f"`{local}` of the namespace `{namespace}` is ignored"
             self.findings.changed(element.attribute_place(name), message)
         own = {plain(name): name for name in element.attributes if not _is_foreign(name)}
         for name, hint in known.losses(own):
@@ -79,7 +79,7 @@ class UnreadParts:
             if allowed := VALUES.get((shown, name)):
                 self._value(element, key, f"`{name}` of `<{shown}>`", allowed)
         if (needed := REQUIRED.get(shown)) and not element.get(needed):
-            self.findings.lost(element.place, f"a `<{shown}>` without `{needed}`", f'write {needed}="…"')
+            self.findings.lost(element.place, f"a `<{shown}>` has no `{needed}`", f'write {needed}="…"')
 
     def _value(self, element: XmlElement, key: str, shown: str, allowed: tuple[str, ...]) -> None:
         value = element.get(key)
@@ -111,7 +111,7 @@ class UnreadParts:
             message, hint = _lost(known, f"`<{name}>`" + (f" in `<{shown}>`" if elsewhere else ""), name, hint)
             hint = hint.replace("mean `", "mean `<").replace("`?", ">`?")
             if shown in ("elseif", "else"):
-                hint = f"write it behind `<{shown}/>`"
+                hint = f"move it after `<{shown}/>`"
             self.findings.lost(child.place, message, hint)
         return not losses
 
@@ -122,32 +122,38 @@ class UnreadParts:
             tag = plain(child.tag)
             single = (shown, tag) in SINGLE or (tag.startswith("lumen:") and tag != "lumen:action")
             if "else" in seen and tag in ("elseif", "else") and shown == "if":
-                self.findings.lost(child.place, f"`<{tag}>` behind `<else>` is never reached", "delete it")
+                self.findings.lost(child.place, f"`<{tag}>` after `<else>` is never reached", "delete it")
             if single and tag in seen:
-                self.findings.lost(child.place, f"a second `<{tag}>` in a `<{shown}>`", "only the first one counts")
+                self.findings.lost(
+                    child.place, f"a second `<{tag}>` in a `<{shown}>` is left out", "delete one of them"
+                )
             seen.add(tag)
         named: set[str] = set()
         for param in element.of("param"):
             if (name := param.get("name")) in named and name:
-                self.findings.lost(param.place, f"a second `<param>` is called `{name}`", "only the last one counts")
+                self.findings.lost(
+                    param.place, f"two `<param>` are named `{name}`: the last one is used", "delete one of them"
+                )
             named.add(name)
         for names in ALTERNATIVES.get(shown, ()):
             given = [name for name in names if _has(element, name)]
             if len(given) > 1:
                 parts = " and ".join(f"`{name}`" for name in given)
-                self.findings.lost(element.place, f"`<{shown}>` has {parts}: one of them is left out", "delete one")
+                self.findings.lost(
+                    element.place, f"`<{shown}>` has {parts}: one of them is left out", "delete one of them"
+                )
 
     def _data_model(self, scxml: XmlElement) -> None:
         kind, version = scxml.get("datamodel"), scxml.get("version")
         if version not in ("", "1.0"):
             message = f"version `{version}` is read as 1.0"
-            self.findings.changed(scxml.attribute_place("version"), message, 'there is one: write "1.0"')
+            self.findings.changed(scxml.attribute_place("version"), message, 'write "1.0", the only version')
         if kind.lower() == "null" and (part := next((e for e in scxml.walk() if e.tag in _OF_DATA), None)):
-            message = f"the data model `null` has no `<{part.tag}>`: it is read as ECMAScript"
+            message = f"the data model `null` does not allow `<{part.tag}>`: it is read as ECMAScript"
             self.findings.changed(scxml.attribute_place("datamodel"), message, 'write "ecmascript"')
         if kind.lower() not in _READ_DATA_MODELS:
             message = f"the data model `{kind}` is read as ECMAScript"
-            self.findings.changed(scxml.attribute_place("datamodel"), message, "look at each condition and value")
+            self.findings.changed(scxml.attribute_place("datamodel"), message, "check each condition and value")
 
 
 def _is_foreign(name: str) -> bool:

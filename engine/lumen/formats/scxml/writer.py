@@ -116,7 +116,7 @@ class _ScxmlWriter:
         if state.output is not None:
             children += self._output(state)
         if state.kind is StateKind.FINAL and self._is_region(state):
-            message = f"`{state.name}` is final in a parallel state, and becomes a state with a final one in it"
+            message = f"`{state.name}`, a final state in a parallel one, becomes a state with an inner final state"
             self.report.changed(message, state.where)
             return XmlTag(
                 "state", attributes, [*self._blocks(state), XmlTag("final", {"id": f"{attributes['id']}._end"})]
@@ -162,8 +162,8 @@ class _ScxmlWriter:
             except ScriptError as error:
                 self.report.lost(f"`invoke` of `{invoke.behavior}` is left out: {error}", invoke.where)
                 continue
-            hint = f"lumen export scxml {invoke.behavior} -o {file}"
-            self.report.changed(f"`invoke` of `{invoke.behavior}` looks for `{file}`", invoke.where, hint)
+            hint = f"run `lumen export scxml {invoke.behavior} -o {file}`"
+            self.report.changed(f"`invoke` of `{invoke.behavior}` needs the file `{file}`", invoke.where, hint)
             yield XmlTag(
                 "invoke", {"type": SCXML_INVOKE_TYPE, "id": invoke.id, "src": file, "autoforward": "true"}, params
             )
@@ -175,11 +175,11 @@ class _ScxmlWriter:
     def _transitions(self, state: State) -> Iterator[XmlTag]:
         for transition in in_asked_order(state.transitions):
             if transition.schedule:
-                message = f"`at: {transition.schedule.text}` is left out: SCXML knows no time of day"
+                message = f"`at: {transition.schedule.text}` is left out: SCXML has no time of day"
                 self.report.lost(message, transition.where)
                 continue
             if isinstance(transition.delay, Template):
-                message = f"`after: {transition.delay.shown}` is left out: its delay is computed"
+                message = f"`after: {transition.delay.shown}` is left out: a computed delay can't be converted"
                 self.report.lost(message, transition.where)
                 continue
             attributes = {"event": self._event(state, transition.event) if transition.exact else transition.event}
@@ -193,9 +193,9 @@ class _ScxmlWriter:
                 self.report.lost(f"{what} is left out: {error}", transition.where)
                 continue
             if transition.offer:
-                self.report.changed("`offer` is left out: SCXML asks no language model", transition.where)
+                self.report.changed("`offer` is left out: SCXML has no language model", transition.where)
             if transition.approve:
-                self.report.lost("`approve` is left out: in SCXML nothing waits for a person", transition.where)
+                self.report.lost("`approve` is left out: SCXML has no approval by a person", transition.where)
             attributes["target"] = self._ids(transition.targets)
             if self._inside(state, transition) and not transition.reenter:
                 attributes["type"] = "internal"

@@ -57,10 +57,10 @@ class XStateActionReader:
     def _action(self, data: Any, where: NodePath) -> ActionData | None:
         kind = data.get("type") if isinstance(data, dict) else data
         if data is None:
-            self.lost(where, "an action is null: JSON has no place for its code", "give it a name in `setup`")
+            self.lost(where, "an action is null: JSON can't contain its code", "give the action a name in `setup`")
             return None
         if not isinstance(kind, str):
-            self.lost(where, "this is no action", 'write "name" or {"type": "name", "params": …}')
+            self.lost(where, "this is not an action", 'write "name" or {"type": "name", "params": …}')
             return None
         params = data.get("params") if isinstance(data, dict) else None
         if kind.startswith(ACTION_PREFIX) and (own := self._own(kind.removeprefix(ACTION_PREFIX), params)):
@@ -74,16 +74,20 @@ class XStateActionReader:
             try:
                 return self._built_in(kind, body, where)
             except _AbsentError as error:
-                self.lost(where, f"`{kind}`: {error}", "a line in the log stands for it")
+                self.lost(where, f"`{kind}`: {error}", "a `log` replaces it: write the action into the behaviour")
         else:
-            self.lost(where, f"the code of the action `{kind}` is not in the file", "a line in the log stands for it")
+            self.lost(
+                where,
+                f"the code of the action `{kind}` is not in the file",
+                "a `log` replaces it: write the action into the behaviour",
+            )
         return _logged(shown_name(kind, data))
 
     def _params(self, place: str, data: Mapping[str, Any], where: NodePath) -> None:
         """Report the parts of the other form of an XState action that are not carried over."""
         params, where = data.get("params"), (*where, "params")
         if params is not None and not isinstance(params, dict):
-            self.lost(where, f"`params` of an {place} is no object", "delete it")
+            self.lost(where, f"`params` of an {place} is not an object", "delete it")
             return
         self._unread(place, params, where)
         for key in params or ():
@@ -132,7 +136,7 @@ class XStateActionReader:
             raise _AbsentError("its code is not in the file")
         sound = {key: quoted(value) for key, value in values.items() if key in self.context}
         for key in values.keys() - sound.keys():
-            self.lost((*where, "assignment", key), f"`{key}` is no key of the context", f"declare `{key}` there")
+            self.lost((*where, "assignment", key), f"`{key}` is not in the context", f"declare `{key}` in `context`")
         if not sound:
             raise _AbsentError("it assigns nothing")
         kept = (key for key in sound if self.context[key] is not None)
@@ -151,7 +155,7 @@ class XStateActionReader:
             body["data"] = more
         if delay is not None:
             if isinstance(delay, bool) or not isinstance(delay, int | float) or not 0 <= delay < MAX_DELAY:
-                raise _AbsentError(f"the delay `{delay}` is not in the file: write milliseconds")
+                raise _AbsentError(f"the delay `{delay}` is not a number of milliseconds")
             body["delay"] = duration(delay)
         if id is not None:
             body["id"] = _text(data, "id")
@@ -163,7 +167,7 @@ class XStateActionReader:
         if to is None and kind == "xstate.send":
             return ""
         if not isinstance(to, str) or not to.removeprefix("#_") or to == "#_internal":
-            raise _AbsentError("whom it goes to is not in the file")
+            raise _AbsentError("its recipient is not in the file")
         return PARENT if to == f"#_{PARENT}" else self.names.actor(to.removeprefix("#_"))
 
     def do(self, steps: Any) -> list[ActionData] | None:
@@ -185,7 +189,7 @@ class XStateActionReader:
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None
         if not isinstance(kind, str) or not kind:
-            self.lost(where, "this is no guard", 'write "name" or {"type": "name"}')
+            self.lost(where, "this is not a guard", 'write "name" or {"type": "name"}')
             return None
         if kind == EXPRESSION_GUARD and isinstance(params, dict) and isinstance(params.get("source"), str):
             if self.fits({"always": {"target": "a", "guard": params["source"]}}):
@@ -217,7 +221,7 @@ class XStateActionReader:
             self._guards[named] = key
             self.context[key] = False
         condition = "the condition" if named == kind else f"`{named}`"
-        hint = f"write {condition} in place of `context.{key}`, which is false"
+        hint = f"write {condition} instead of `context.{key}`, which is false"
         self.lost(where, f"the code of the guard `{kind}` is not in the file", hint)
         return key
 

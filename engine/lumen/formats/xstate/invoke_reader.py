@@ -36,7 +36,7 @@ class XStateInvokeReader:
             for key, message, hint in losses("invoke", row):
                 self.parts.lost((*where, key), message, hint)
             if not isinstance(row.get("id", ""), str):
-                self.parts.lost((*where, "id"), "`id` is no text", "put it in quotes")
+                self.parts.lost((*where, "id"), "`id` is not a text", "put it in quotes")
             if invoked := self._invoked(own, where, row):
                 invokes.append({**invoked, **self._ends(state, where, row)})
             elif (steps := self._steps(row)) is not None and "do" not in data:
@@ -63,12 +63,14 @@ class XStateInvokeReader:
         source = row.get("src")
         named = source.get("type") if isinstance(source, dict) else source
         shown = f" of `{shown_name(named, source)}`" if isinstance(named, str) else ""
-        hint = f"invoke a behaviour as `{id}`" + (", whose end is waited for" if waits else "")
+        hint = f"invoke a behaviour with the id `{id}`" + (": transitions wait for its end" if waits else "")
         self.parts.lost(where, f"`invoke`{shown}: its code is not in the file", hint)
         if "onSnapshot" in row:
-            self.parts.lost((*where, "onSnapshot"), "`onSnapshot`: nothing is heard of a behaviour before its end")
+            self.parts.lost((*where, "onSnapshot"), "`onSnapshot`: a behaviour reports only its end")
         if "input" in row:
-            self.parts.lost((*where, "input"), "`input` of an invoke", "give it to the behaviour that you invoke")
+            self.parts.lost(
+                (*where, "input"), "`input` of the `invoke` is left out", "write it into the `invoke` of the behaviour"
+            )
 
     def _ends(self, state: XStateNode, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
         """What follows the end of something that Lumen wrote."""
@@ -89,8 +91,8 @@ class XStateInvokeReader:
         if not self.parts.fits({"invoke": data}):
             return None
         if row.get("input", {}) != constant_data(inputs[id] or {}):
-            message = "`input` is not what `meta.lumen.invoke` says, which counts"
-            self.parts.changed((*where, "input") if "input" in row else where, message, "change both")
+            message = "`input` differs from `meta.lumen.invoke`, which is used"
+            self.parts.changed((*where, "input") if "input" in row else where, message, "make both equal")
         return data
 
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
@@ -103,4 +105,4 @@ class XStateInvokeReader:
             elif isinstance(row, str):
                 yield number, place, {"src": row}
             elif row is not None or isinstance(data, list):
-                self.parts.lost(place, "this is no invocation")
+                self.parts.lost(place, "this is not an invocation")

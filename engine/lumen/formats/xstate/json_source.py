@@ -41,7 +41,7 @@ def parse_json(file: str, content: bytes) -> JsonSource:
     except ValueError as error:
         raise broken(Place(file), "not-json", f"this is not JSON: {error}") from None
     except RecursionError:
-        raise broken(Place(file), "too-large", "the file is nested too deeply to be read") from None
+        raise broken(Place(file), "too-large", "the file is nested too deeply") from None
     if _depth(data) > MAX_JSON_LEVELS:
         raise broken(Place(file), "too-large", f"the file is nested deeper than {MAX_JSON_LEVELS} levels")
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON is YAML, but for tabs and surrogates

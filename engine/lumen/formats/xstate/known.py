@@ -6,8 +6,8 @@ from typing import Any
 from lumen.formats.known import FormatTable, Known
 
 _NOTE = {"description": "a note for readers"}
-_STATE_NOTES = {"key": "the key under `states` counts", "order": "the order is that of the file"}
-_TYPES = "types are not in JSON"
+_STATE_NOTES = {"key": "the key under `states` is used", "order": "the order of the file is used"}
+_TYPES = "JSON contains no types"
 _OF_STATE = frozenset(
     ("id", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "parallel",
      "description", "tags", "meta", "output", "data")
@@ -16,8 +16,8 @@ _OLD = {
     "activities": "write `invoke`",
     "onEntry": "write `entry`",
     "onExit": "write `exit`",
-    "history": "only a state of `type: history` has it",
-    "target": "only a state of `type: history` has it",
+    "history": "only a state of `type: history` can have it",
+    "target": "only a state of `type: history` can have it",
 }
 
 KNOWN: FormatTable = {
@@ -25,27 +25,27 @@ KNOWN: FormatTable = {
         _OF_STATE | {"context", "key"},
         _OLD
         | {
-            "input": "a behaviour gets its input in its context",
-            "delimiter": "paths are divided by dots",
-            "strict": "an event that nothing waits for is no error here",
+            "input": "a behaviour receives its input in its context",
+            "delimiter": "Lumen separates paths by dots",
+            "strict": "in Lumen, an unexpected event is not an error",
         },
         {
-            "$schema": "names a schema for editors", "version": "does not change the behaviour", "schema": _TYPES,
-            "schemas": _TYPES, "types": _TYPES, "tsTypes": _TYPES, "predictableActionArguments": "it is always so",
-            "preserveActionOrder": "it is always so", "order": "the order is that of the file",
+            "$schema": "only for editors", "version": "it does not change the behaviour", "schema": _TYPES,
+            "schemas": _TYPES, "types": _TYPES, "tsTypes": _TYPES, "predictableActionArguments": "always true",
+            "preserveActionOrder": "always true", "order": "the order of the file is used",
         },
     ),
     "state": Known(_OF_STATE, _OLD, _STATE_NOTES),
-    "parallel state": Known(_OF_STATE - {"initial"}, _OLD | {"initial": "all of its states are entered"}, _STATE_NOTES),
+    "parallel state": Known(_OF_STATE - {"initial"}, _OLD | {"initial": "it enters all of its states"}, _STATE_NOTES),
     "final state": Known(
         frozenset(("id", "type", "entry", "exit", "output", "data", "tags", "meta", "description", "states")),
-        dict.fromkeys(("on", "always", "after", "invoke", "onDone"), "nothing follows it here")
-        | dict.fromkeys(("initial", "parallel"), "a final state has no states within"),
+        dict.fromkeys(("on", "always", "after", "invoke", "onDone"), "nothing follows a final state")
+        | dict.fromkeys(("initial", "parallel"), "a final state has no inner states"),
         _STATE_NOTES,
     ),
     "history state": Known(
         frozenset(("id", "type", "history", "target", "tags", "meta", "description")),
-        {"states": "a history has no states within"},
+        {"states": "a history has no inner states"},
         _STATE_NOTES,
     ),
     "initial": Known(frozenset(("target", "actions")), meaningless=_NOTE),
@@ -63,11 +63,11 @@ KNOWN: FormatTable = {
     "invoke": Known(
         frozenset(("id", "src", "input", "onDone", "onError", "onSnapshot")),
         {
-            "data": "give the behaviour its `input`",
-            "autoForward": "a behaviour hears all events from outside",
-            "systemId": "an actor is named by its `id`",
+            "data": "write `input`",
+            "autoForward": "a behaviour always receives all events from outside",
+            "systemId": "an actor is identified by its `id`",
         },
-        {**_NOTE, "type": "all actors are alike", "meta": "notes for other tools"},
+        {**_NOTE, "type": "Lumen has one kind of actor", "meta": "notes for other tools"},
     ),
     "action": Known(frozenset(("type", "params")), {"exec": "its code is not in the file"}),
     "xstate.raise": Known(frozenset(("type", "event", "delay", "id", "params"))),

@@ -48,7 +48,7 @@ class XStateNames:
             if name not in found:
                 found[name] = unused_name(cleaned(name), taken.__contains__, len(names))
                 taken.add(found[name])
-                message = f"the {kind} `{name}` is called `{found[name]}` here, wherever the machine names it"
+                message = f"the {kind} `{name}` is renamed to `{found[name]}` in the whole behaviour"
                 self.outline.findings.changed(self.outline.source.place(where), message)
         return found
 

@@ -33,14 +33,19 @@ def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], 
         or not isinstance(source.data.get("states"), dict)
         or not source.data["states"]
     ):
-        hint = "the file should be the object that `createMachine` is given"
-        raise broken(source.place(()), "not-xstate", "this is no machine of XState: it has no `states`", hint)
+        hint = "the file must contain the object that is passed to `createMachine`"
+        raise broken(source.place(()), "not-xstate", "this is not an XState machine: it has no `states`", hint)
     if isinstance(source.data.get("order"), int) and isinstance(source.data.get("transitions"), list):
-        hint = "write JSON.stringify(machine.config)"
-        raise broken(source.place(()), "not-xstate", "this is a machine taken apart: JSON.stringify(machine)", hint)
+        hint = "save JSON.stringify(machine.config)"
+        raise broken(
+            source.place(()),
+            "not-xstate",
+            "this is not a machine's configuration, but the result of JSON.stringify(machine)",
+            hint,
+        )
     findings = ConversionFindings()
     for place, message in source.repeated:
-        findings.lost(place, message, "only the last one counts")
+        findings.lost(place, message, "only the last one is used: delete the others")
     outline = XStateStateTree(source, title, findings)
     if not outline.root.regular:
         raise broken(source.place(("states",)), "not-xstate", "the machine has no states")
@@ -52,11 +57,13 @@ def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], 
 def _context(data: Mapping[str, Any], findings: ConversionFindings, outline: XStateStateTree) -> dict[str, Any]:
     context = data.get("context", {})
     if not isinstance(context, dict):
-        findings.lost(outline.source.place(("context",)), "the context is no object")
+        findings.lost(outline.source.place(("context",)), "the context is not an object")
         return {}
     sound = {key: value for key, value in context.items() if key.isidentifier() and key.isascii()}
     for key in context.keys() - sound.keys():
-        findings.lost(outline.source.place(("context", key)), f"`{key}` can't be a context key", "use letters and `_`")
+        findings.lost(
+            outline.source.place(("context", key)), f"`{key}` can't be a context key", "use letters, digits and `_`"
+        )
     return sound
 
 
@@ -119,24 +126,24 @@ class _XStateReader:
         for key, value in source.items():
             where = (*state.where, key)
             if key == "tags":
-                self.parts.changed(where, "`tags` mean nothing here", "ask for the state itself with `In('state')`")
+                self.parts.changed(where, "`tags` are left out", "test the state itself with `In('state')`")
             elif key == "meta" and set(value if isinstance(value, dict) else {"": 0}) != {"lumen"}:
                 self.parts.changed(where, "`meta` is not carried over")
             elif key in ("output", "data") and kind != "final":
                 what = "a machine" if not state.parent else "a state that is not final"
-                self.parts.lost(where, f"`{key}` of {what}", "give each of its final states an `output`")
+                self.parts.lost(where, f"{what} has no `{key}`", "give each of its final states an `output`")
             elif key == "type" and value and value not in STATE_KINDS:
-                self.parts.lost(where, f"there is no kind of state `{value}`", f"one of {', '.join(STATE_KINDS)}")
+                self.parts.lost(where, f"unknown type of state `{value}`", f"write one of {', '.join(STATE_KINDS)}")
             elif (key, value) in (("type", "atomic"), ("type", "final")) and kind not in ("atomic", "final"):
-                self.parts.lost(where, f"`type: {value}` of a state that has states within", "delete it")
+                self.parts.lost(where, f"`type: {value}` is wrong: the state has inner states", "delete it")
             elif key == "initial" and kind == "atomic":
-                self.parts.lost(where, "`initial` of a state that has no states within", "delete it")
+                self.parts.lost(where, "`initial` is left out: the state has no inner states", "delete it")
             elif key == "parallel" and not isinstance(value, bool):
                 self.parts.lost(where, f"`parallel` can't be `{value}`", "write true or false")
             elif key == "history" and value not in (True, "shallow", "deep"):
                 self.parts.lost(where, f"`history` can't be `{value}`", 'write "shallow" or "deep"')
             elif key in ("id", "description") and not isinstance(value, str):
-                self.parts.lost(where, f"`{key}` is no text", "put it in quotes")
+                self.parts.lost(where, f"`{key}` is not a text", "put it in quotes")
             elif key == "data" and kind == "final" and "output" in source:
                 self.parts.lost(where, "`data` beside `output` is left out", "delete one of them")
         for key, value in _lumen(state).items():
@@ -168,7 +175,7 @@ class _XStateReader:
             elif found and all(target.lies_below(home) for target in found if home is not None):
                 data["target"] = self.transitions.named(state, found)
             elif found:
-                self.parts.lost((*state.where, "target"), "a history leads to a state beside its own parent")
+                self.parts.lost((*state.where, "target"), "the history's target is outside its parent state")
         return data if "target" in data else data | self._default(state)
 
     def _default(self, state: XStateNode) -> dict[str, Any]:
@@ -178,7 +185,9 @@ class _XStateReader:
         if home.kind == "compound":
             if not any(c.key == self.first[home] and c not in home.regular for c in home.children):
                 return {"target": self.first[home]}
-            self.parts.lost(state.where, "a history leads to a history, as its parent begins", "give it a `target`")
+            self.parts.lost(
+                state.where, "this history leads to a history, the first state of its parent", "give it a `target`"
+            )
             return {"target": self.transitions.named(state, home.regular[:1])}
         return {"target": self.transitions.named(state, list(home.regular))}
 
@@ -194,7 +203,7 @@ class _XStateReader:
         if found is None:
             found = self.outline.resolve(state, target) if isinstance(target, str) and target[:1] in "#." else None
         if found is None or not found.lies_below(state):
-            self.parts.lost(where, f"`{target}` is no state in this one", "the first one is entered")
+            self.parts.lost(where, f"`{target}` is not inside this state", "the first inner state is entered instead")
             found = first
         name = state.calls(found, self.outline.title, inside=True)
         actions = self.parts.actions(data.get("actions"), (*where, "actions")) if isinstance(data, dict) else []
@@ -203,7 +212,7 @@ class _XStateReader:
     def _pass_through(self, home: XStateNode, target: XStateNode, actions: list[ActionData]) -> str:
         passed = self.passed.setdefault(home, {})
         key = passing_key(home, passed)
-        self.parts.changed((*home.where, "initial"), f"what is done here becomes a state of its own, `{key}`")
+        self.parts.changed((*home.where, "initial"), f"these actions become a separate state, `{key}`")
         name = target.key if target.parent is home else f"#{target.name}"
         passed[key] = {"always": {"target": name, "actions": actions}}
         return key
@@ -215,8 +224,8 @@ class _XStateReader:
         own = _lumen(state)
         if "output" in own and self.parts.fits({"type": "final", "output": own["output"]}):
             if state.source[key] != constant_data(own["output"]):
-                message = f"`{key}` is not what `meta.lumen.output` says, which counts"
-                self.parts.changed((*state.where, key), message, "change both")
+                message = f"`{key}` differs from `meta.lumen.output`, which is used"
+                self.parts.changed((*state.where, key), message, "make both equal")
             return {"output": own["output"]}
         return {"output": quoted(state.source[key])}
 
@@ -232,7 +241,7 @@ class _XStateReader:
         invocations = self.invocations.of(state, own)
         data.update(invocations.data)
         if "onDone" in state.source and state.kind == "atomic":
-            self.parts.lost((*state.where, "onDone"), "`onDone` of a state that has no states")
+            self.parts.lost((*state.where, "onDone"), "`onDone` is left out: the state has no inner states")
         elif "onDone" in state.source and (rows := self.transitions.rows(state, "onDone")):
             data["onDone"] = single(rows)
         data.update(self._on(state, invocations.waits))
@@ -251,12 +260,12 @@ class _XStateReader:
             if event == "":
                 continue  # version 4's `always`
             if "*" in event and not own_event(event) and descriptor != event:
-                self.parts.changed(where, f"the events `{event}` are called `{descriptor}` here")
+                self.parts.changed(where, f"the events `{event}` are renamed to `{descriptor}`")
             if not is_descriptor(descriptor):
-                self.parts.lost(where, f"`{event}` is no event", "write names with dots between")
+                self.parts.lost(where, f"`{event}` is not an event", "write names separated by dots")
                 continue
             if descriptor.startswith("xstate."):
-                self.parts.lost(where, f"nothing says `{event}` here", "the transition stays, and is never taken")
+                self.parts.lost(where, f"Lumen never raises `{event}`", "the transition is kept, but never taken")
             for row in self.transitions.under(state, where, data, heard=bare(descriptor) == HEARD):
                 if key := row.pop("hears", ""):
                     hears.setdefault(key, []).append(row)
@@ -288,9 +297,9 @@ class _XStateReader:
                 rest = {key: value for key, value in row.items() if key != named}
                 found.append((str(name), (*where, number), rest))
             else:
-                self.parts.lost((*where, number), f"this is no transition: it has no `{named}`")
+                self.parts.lost((*where, number), f"this is not a transition: it has no `{named}`")
         if table is not None and not isinstance(table, list):
-            self.parts.lost(where, f"`{key}` is no object", "write each event, or delay, as a key")
+            self.parts.lost(where, f"`{key}` is not an object", "write each event or delay as a key")
         return found
 
     def _after(self, state: XStateNode) -> dict[str, Any]:

@@ -68,8 +68,8 @@ class XStateStateTree:
         id = data.get("id") if parent is not None else None
         named = free_id(id, self.ids, self.given) if isinstance(id, str) else ""
         if isinstance(id, str) and id != named:
-            message = f"the state `{id}` is called `{named}` here, wherever the machine names it"
-            self.findings.changed(self.source.place((*where, "id")), message, "an id has no blanks, `#` and `*`")
+            message = f"the state `{id}` is renamed to `{named}` in the whole behaviour"
+            self.findings.changed(self.source.place((*where, "id")), message, "an id can't contain spaces, `#` or `*`")
         self.given.add(named)
         path = parent.below(key) if parent else ""
         state = XStateNode(data, parent, key, "" if named == path else named, path)
@@ -83,9 +83,13 @@ class XStateStateTree:
                 data = {}
             id = data.get("id") if isinstance(data, dict) else None
             if not isinstance(data, dict):
-                self.findings.lost(self.source.place(where), f"`{original}` is no state", "a state is an object")
+                self.findings.lost(
+                    self.source.place(where), f"`{original}` is not a state", "write a state as an object"
+                )
             elif isinstance(id, str) and id in self.by_id:
-                self.findings.lost(self.source.place(where), f"a second state has the id `{id}`", "give each its own")
+                self.findings.lost(
+                    self.source.place(where), f"a second state has the id `{id}`", "give each state its own id"
+                )
             else:
                 key = free_key(parent, original, clean_id(id) if isinstance(id, str) else "", self.ids)
                 state = self._state(data, parent, key, original, where)
@@ -98,7 +102,9 @@ class XStateStateTree:
                 self._fill(state, level + 1)
         if parent.children and not parent.regular:
             self.findings.lost(
-                self.source.place(parent.where), "a state has a history and no other states", "delete it"
+                self.source.place(parent.where),
+                "the history is left out: its state has no other inner states",
+                "delete it",
             )
             for child in parent.named.values():
                 self.by_id.pop(child.source.get("id", ""), None)
@@ -109,16 +115,16 @@ class XStateStateTree:
         states = parent.source.get("states") or {}
         if level > MAX_STATE_LEVELS or not isinstance(states, dict):
             what = (
-                f"states more than {MAX_STATE_LEVELS} levels deep"
+                f"states are nested more than {MAX_STATE_LEVELS} levels deep"
                 if level > MAX_STATE_LEVELS
-                else "`states` is no object"
+                else "`states` is not an object"
             )
             if states:
                 self.findings.lost(self.source.place((*parent.where, "states")), what)
             return {}
         if declared_kind(parent.source) in ("final", "history") and states:
             kind = declared_kind(parent.source)
-            self.findings.lost(self.source.place((*parent.where, "states")), f"a {kind} state has no states within")
+            self.findings.lost(self.source.place((*parent.where, "states")), f"a {kind} state has no inner states")
             return {}
         return states
 

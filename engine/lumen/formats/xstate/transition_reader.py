@@ -28,7 +28,9 @@ class XStateTransitionReader:
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
         kept = [row for row in found if row is not None]
         if eventless and any("target" not in row and "guard" not in row for row in kept):
-            self.parts.lost(where, "a transition without event, guard and target runs for ever")
+            self.parts.lost(
+                where, "a transition without event, guard and target is left out: it would repeat without end"
+            )
             kept = [row for row in kept if "target" in row or "guard" in row]
         return kept
 
@@ -36,7 +38,7 @@ class XStateTransitionReader:
         if isinstance(data, str):
             data = {"target": data}
         if not isinstance(data, dict):
-            self.parts.lost(where, "this is no transition")
+            self.parts.lost(where, "this is not a transition")
             return None
         for key, message, hint in losses("transition", data):
             self.parts.lost((*where, key), message, hint)
@@ -93,8 +95,8 @@ class XStateTransitionReader:
         if found is None:
             self.parts.lost(
                 where,
-                f"`in`: there is no state `{data}`",
-                'write "#" and the id of the state; the transition is left out',
+                f"`in`: the state `{data}` does not exist",
+                'write "#" and the id of the state; until then the transition is left out',
             )
             return None
         return f"In('{found.name or self.outline.title}')"
@@ -125,7 +127,7 @@ class XStateTransitionReader:
             return {}
         if targets == [state] and not reenter and state.kind == "compound":
             self.parts.changed(
-                where, f"`{state.original or self.outline.title}` itself is not left: its first state is the target"
+                where, f"`{state.original or self.outline.title}` is not left: the target is its first inner state"
             )
             first = state.regular[0]
             initial = state.source.get("initial")
@@ -149,5 +151,7 @@ class XStateTransitionReader:
                 domain = ancestor
             ancestor = ancestor.parent
         if domain is not None and domain.kind == "parallel":
-            hint = "W3C's rule: a parallel state is entered whole"
-            self.parts.changed(where, f"this leaves and enters `{domain.original or self.outline.title}` too", hint)
+            hint = "SCXML enters a parallel state with all its regions"
+            self.parts.changed(
+                where, f"this transition also leaves and enters `{domain.original or self.outline.title}`", hint
+            )

@@ -22,7 +22,7 @@ from lumen.language.actions import Expression, PlacedAction, Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Answer, Hears, Invoke, MachineDefinition, State, StateKind, Transition
 
-_HINT = "give XState an implementation of that name"
+_HINT = "write an implementation with that name for XState"
 
 
 def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
@@ -78,7 +78,7 @@ class _XStateWriter:
         while prefix + key in self.machine.states:
             key += "_"
         data["initial"] = key
-        message = f"XState enters only children at first: `{key}`, which is passed through, leads deeper"
+        message = f"XState's `initial` must be a child: the additional state `{key}` leads to the inner state"
         self.report.changed(message, (*state.where, "initial"))
         targets = [self._id(path) for path in state.initial]
         return {key: {"always": {"target": targets[0] if len(targets) == 1 else targets}}}
@@ -139,7 +139,7 @@ class _XStateWriter:
         """Those that can be written: of a row of `hears` that asks for phrases of an entry, only what it finds."""
         for transition in found:
             if transition.hears and not key_of(transition.hears) and as_guard(transition) is None:
-                message = f"`{transition.hears.title}` is left out: phrases in an entry of a list have no counterpart"
+                message = f"`{transition.hears.title}` is left out: phrases in an entry of a list can't be converted"
                 self.report.lost(message, transition.where)
             else:
                 yield transition
@@ -148,10 +148,10 @@ class _XStateWriter:
         data: dict[str, list[Any]] = {}
         for transition in state.transitions:
             if transition.schedule:
-                message = f"`at: {transition.schedule.text}` is left out: XState knows no time of day"
+                message = f"`at: {transition.schedule.text}` is left out: XState has no time of day"
                 self.report.lost(message, transition.where)
             if isinstance(transition.delay, Template):
-                message = f"`after: {transition.delay.shown}` is left out: its delay is computed"
+                message = f"`after: {transition.delay.shown}` is left out: a computed delay can't be converted"
                 self.report.lost(message, transition.where)
             elif transition.delay is not None:
                 length = round(transition.delay * 1000, 6)
@@ -161,8 +161,8 @@ class _XStateWriter:
 
     def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
         """An actor called as the behaviour; what its input has to be computed from stands in `meta`."""
-        hint = f"give `setup` the actor `{invoke.behavior}`: lumen export xstate {invoke.behavior}"
-        self.report.changed(f"`invoke` of `{invoke.behavior}` names an actor", invoke.where, hint)
+        hint = f"give `setup` the actor `{invoke.behavior}` from `lumen export xstate {invoke.behavior}`"
+        self.report.changed(f"`invoke` of `{invoke.behavior}` becomes an actor", invoke.where, hint)
         data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}
         if invoke.input:
             data["input"] = {key: constant(value) for key, value in invoke.input.items()}
@@ -179,9 +179,9 @@ class _XStateWriter:
     def _row(self, state: State, transition: Transition) -> dict[str, Any]:
         row: dict[str, Any] = {}
         if transition.offer:
-            self.report.changed("`offer` is left out: XState asks no language model", transition.where)
+            self.report.changed("`offer` is left out: XState has no language model", transition.where)
         if transition.approve:
-            self.report.lost("`approve` is left out: in XState nothing waits for a person", transition.where)
+            self.report.lost("`approve` is left out: XState has no approval by a person", transition.where)
         if transition.targets:
             row["target"] = self._targets(state, transition.targets)
         if transition.hears:
