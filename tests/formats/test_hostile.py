@@ -41,7 +41,7 @@ HOSTILE_XML: list[tuple[bytes, int, str]] = [
     (b'<?xml version="1.0" encoding="UTF-8"?><scxml name="\xff"/>', 1, "not well-formed"),
     ("<scxml/>".encode("utf-32"), 1, "this is not XML"),
     (HEAD + b"<state>" * 200 + b"</state>" * 200 + b"</scxml>", 1, "100 levels"),
-    (HEAD + b"<state/>" * 60_000 + b"</scxml>", 1, "50,000 parts"),
+    (HEAD + b"<state/>" * 60_000 + b"</scxml>", 1, "50,000 elements"),
     (HEAD + b" " * 10_000_000 + b"</scxml>", 1, "10 MB"),
 ]
 
@@ -54,9 +54,9 @@ def test_hostile_xml(content: bytes, line: int, words: str) -> None:
 HOSTILE_JSON: list[tuple[bytes, int, str]] = [
     (b"", 1, "not JSON"),
     (b'{"states": {\n"a" 1}}', 2, "delimiter"),
-    (b"[1, 2]", 1, "no machine of XState"),
-    (b'{"id": "x", "states": {}}', 1, "no machine of XState"),
-    (b'{"states": {"a": {"x": NaN}}}', 1, "no number"),
+    (b"[1, 2]", 1, "not an XState machine"),
+    (b'{"id": "x", "states": {}}', 1, "not an XState machine"),
+    (b'{"states": {"a": {"x": NaN}}}', 1, "not a number"),
     (b'{"states": \xff}', 1, "encoding"),
     (b"[" * 100_000, 1, "nested"),
     (b'{"states":{"a":' * 60 + b"1" + b"}}" * 60, 1, "95 levels"),

@@ -134,7 +134,7 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><invoke type="scxml" src="b.scxml" autoforward="yes"/></state>',
          "`autoforward` of `<invoke>` can't be `yes`"),
         ('<state id="a" initial="b"/><state id="b"/>', "`initial` of `a` is left out: the state has no inner states"),
-        ('<state id="a"><initial><transition target="a"/></initial></state>', "`initial` of `a` is left out: the state has"),
+        ('<state id="a"><initial><transition target="a"/></initial></state>', "`initial` of `a` is left out: the"),
         ('<state id="a"><state id="b"><transition event="e" target="b c"/></state><state id="c"/></state>',
          "`b` and `c` can't be active together"),
         ('<state id="a"><history id="h"/><transition event="e" target="h"/></state>', "there is no state `h` to go to"),
