@@ -136,7 +136,7 @@ def test_what_is_no_recording_is_said_to_be_none(tmp_path: Path, capsys: pytest.
     with pytest.raises(RecordingError, match="no recording"):
         list(read_recording(path))
     assert main(["record", "--recover", str(path)]) == 2
-    assert "is no recording" in capsys.readouterr().err
+    assert "is not a recording" in capsys.readouterr().err
     assert path.read_text() == "hello"
     assert main(["record", "--recover", str(tmp_path / "none.mcap")]) == 2
 
@@ -156,5 +156,5 @@ def test_a_recording_never_takes_the_place_of_another(tmp_path: Path) -> None:
     assert writable(tmp_path / "a.mcap") == tmp_path / "a.mcap"
     (tmp_path / "a.mcap").touch()
     assert writable(tmp_path / "a.mcap") == tmp_path / "a-2.mcap"
-    with pytest.raises(RecordingError, match="no folder"):
+    with pytest.raises(RecordingError, match="the folder .* does not exist"):
         writable(tmp_path / "none" / "a.mcap")
