@@ -133,7 +133,7 @@ def test_several_become_one_and_attachments_are_kept(tmp_path: Path, long: bytes
 def test_what_is_no_recording_is_said_to_be_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "a.mcap"
     path.write_text("hello")
-    with pytest.raises(RecordingError, match="no recording"):
+    with pytest.raises(RecordingError, match="not a recording"):
         list(read_recording(path))
     assert main(["record", "--recover", str(path)]) == 2
     assert "is not a recording" in capsys.readouterr().err
