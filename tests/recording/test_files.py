@@ -156,5 +156,5 @@ def test_a_recording_never_takes_the_place_of_another(tmp_path: Path) -> None:
     assert writable(tmp_path / "a.mcap") == tmp_path / "a.mcap"
     (tmp_path / "a.mcap").touch()
     assert writable(tmp_path / "a.mcap") == tmp_path / "a-2.mcap"
-    with pytest.raises(RecordingError, match="the folder .* does not exist"):
+    with pytest.raises(RecordingError, match=r"the folder .* does not exist"):
         writable(tmp_path / "none" / "a.mcap")
