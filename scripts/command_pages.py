@@ -19,28 +19,30 @@ DOCS = ROOT / "docs/commands"
 
 _INTRODUCTION = """# The command line
 
-Written by `scripts/command_pages.py` from the parser that reads it; `lumen VERB --help` says the same. A verb or an
-option that is misspelt is answered with the one that was probably meant.
+`scripts/command_pages.py` writes these pages from the parser of the command line, so they agree with
+`lumen VERB --help`. If you misspell a verb or an option, the error names the one that you probably meant.
 
-| it ends with | when |
+| exit code | when |
 | --- | --- |
-| 0 | all is well |
-| 1 | what was asked for is not so: there are findings, a story failed, the robot refused |
-| 2 | it could not be tried: a word, a file or an exhibition that is not there. One line on standard error says so |
-| 130 | somebody pressed Ctrl-C |
+| 0 | all went well |
+| 1 | the result is negative: findings, files with errors, a story that failed, a refusal, no answer |
+| 2 | the command could not run: an unknown word, a missing file, no running exhibition |
+| 130 | Ctrl-C ended it |
 
-`--format json` prints one object on standard output, for programs; what is told meanwhile goes to standard error, and
-so does the one line of an exit with 2. What takes longer than two seconds shows on a terminal how far it is.
+With 2, the last line on standard error is the reason. The page of a verb names its own reasons for 1 and 2.
+
+`--format json` prints one object on standard output, for programs. Everything else goes to standard error. After two
+seconds, a long command shows its progress on the terminal.
 
 ## Completion
 
-| shell | once, in |
+| shell | add once to |
 | --- | --- |
 | bash | `~/.bashrc`: `eval "$(lumen completion bash)"` |
-| zsh | `~/.zshrc`, behind `compinit`: `eval "$(lumen completion zsh)"` |
-| fish | a terminal: `lumen completion fish > ~/.config/fish/completions/lumen.fish` |
+| zsh | `~/.zshrc`, after `compinit`: `eval "$(lumen completion zsh)"` |
+| fish | its completions, from a terminal: `lumen completion fish > ~/.config/fish/completions/lumen.fish` |
 
-Verbs, options and their choices are completed, and names of the project: stories, motions, behaviours, states,
+The shell then completes verbs, options, their choices, and names of the project: stories, motions, behaviours, states,
 languages, codes.
 
 ## Verbs

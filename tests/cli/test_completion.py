@@ -135,5 +135,5 @@ def test_fish_completes_with_what_it_means(path: str, tmp_path: Path) -> None:
     command = [program("fish"), "--no-config", "-c", asked]
     done = run_guarded(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     lines = done.stdout.splitlines()
-    assert lines[:2] == ["lint\tsay what is wrong in a project, and where", "--strict\tcount warnings as errors"]
+    assert lines[:2] == ["lint\treport what is wrong in a project, and where", "--strict\tcount warnings as errors"]
     assert {line.partition("\t")[0] for line in lines[2:]} >= VERBS.keys()

@@ -44,7 +44,7 @@ def test_what_is_left_out_is_listed_with_its_line(tmp_path: Path, capsys: pytest
     assert "id: chart" in printed.out
     assert main(["import", str(file), "--format", "json"]) == 1
     assert '"code": "not-carried-over"' in capsys.readouterr().err
-    assert "`lumen explain not-carried-over` says more" in printed.err
+    assert "For more: `lumen explain not-carried-over`" in printed.err
     assert main(["explain", "not-carried-over"]) == 0
     assert "left out" in capsys.readouterr().out
 

@@ -29,16 +29,16 @@ def test_every_row_of_a_state_is_explained(root: Path, capsys: pytest.CaptureFix
     ]
     assert rows[-1] == "offer else `not dance|sing` is taken before it"
     assert len(rows) == 8
-    assert out.endswith("\n  `not dance|sing` takes it and leads to `bye`\n")
+    assert out.endswith("\n  `not dance|sing` is taken and leads to `bye`\n")
 
 
 def test_without_a_state_every_state_that_hears_is_asked(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["hear", "show me the organ", "--project", str(root)]) == 0
     blocks = capsys.readouterr().out.split("\n\n")
     assert [block.split("\n")[0] for block in blocks] == ["ask_name", "offer", "choice", "offer.quiet", "quiz.ask"]
-    assert "`tour_of` takes it and leads to `choice`\n    exhibits: pipe organ" in blocks[2]
+    assert "`tour_of` is taken and leads to `choice`\n    exhibits: pipe organ" in blocks[2]
     assert "dance" not in blocks[2]
-    assert "`on heard` takes it and leads to `choice`" in blocks[3]
+    assert "`on heard` is taken and leads to `choice`" in blocks[3]
 
 
 def test_it_ends_with_1_if_no_row_takes_it(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,7 +69,7 @@ def test_programs_get_one_object(root: Path, capsys: pytest.CaptureFixture[str])
     ("words", "message"),
     [
         (["--state", "choise"], "no state `choise`: did you mean `choice`?"),
-        (["--state", "bye"], "neither `bye` nor a state around it hears: these do: `ask_name`, `choice`"),
+        (["--state", "bye"], "neither `bye` nor a state around it has `hears`: choose `ask_name`, `choice`"),
         (["--behavior", "gide"], "no behaviour `gide`: did you mean `guide`?"),
         (["--behavior", "still"], "no state of `still` has `hears`"),
         (["--language", "idd"], "no language `idd`: did you mean `id`?"),

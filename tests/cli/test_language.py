@@ -134,7 +134,7 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
         "behaviors/hello.yaml:22:28 de is missing: Hello!",
         "behaviors/hello.yaml:9:5 de is missing: goodbye; bye",
         "de: 3 of 3 are missing",
-        "de: no action lets the robot speak it: write `language: de` where a visitor asks for it",
+        "de: no action switches the robot to it: add the action `language: de` for visitors who ask for it",
     ]
     file.write_text(text.replace('de: "TODO Hello!"', "de: Hallo!"), "utf-8")
     assert main(["language", "check", "--format", "json", "--project", str(hall)]) == 1
@@ -153,7 +153,7 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
         (["add", "en"], "speaks `en` already"),
         (["add"], "write `lumen language add LANG`"),
         (["add", "de", "--from", "fr"], "does not speak `fr`"),
-        (["add", "German"], "`German` is no language's code: write two or three small letters, as `de`"),
+        (["add", "German"], "`German` is not a language code: write two or three lowercase letters, such as `de`"),
         (["check", "em"], "does not speak `em`: it speaks `en`"),
     ],
 )

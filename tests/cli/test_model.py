@@ -48,4 +48,4 @@ def test_where_there_is_none_it_says_so(exhibition: Exhibition, copy: Path, caps
     assert exhibition.node.loop.performer.questions.silenced == ""
     with pytest.raises(SystemExit):
         main(["model", "maybe", str(copy)])
-    assert "`maybe` can't stand here: one of `off`, `on`" in capsys.readouterr().err
+    assert "invalid STATE `maybe`: choose one of `off`, `on`" in capsys.readouterr().err

@@ -57,15 +57,18 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
     [
         (["--story", "vistor"], "did you mean `visitor`?"),
         (["--for", "3"], "--for takes a duration"),
-        (["--language", "fr"], "it speaks `en`, `id`"),
+        (["--language", "fr"], "it has `en`, `id`"),
         (["--bus", "amqp://guest:guest@127.0.0.1:1/"], "no broker listens at 127.0.0.1:1"),
         (["--bus", "carrier-pigeon://"], "write memory://"),
         (["--video", "film.avi"], "name an .mp4 file"),
         (["--robot", "recording", "--video", "film.mp4"], "--video films the simulation"),
-        (["--video", "film.mp4", "--size", "641x480"], "`641x480` is no size of a film"),
+        (
+            ["--video", "film.mp4", "--size", "641x480"],
+            "invalid `--size 641x480`: write two even numbers from 64 to 4096",
+        ),
         (
             ["--robot", "simulation", "--imperfections", "noise,backlsh"],
-            "there is no `backlsh`: did you mean `backlash`?",
+            "--imperfections has no `backlsh`: did you mean `backlash`?",
         ),
         (["--robot", "recording", "--imperfections", "none"], "those of a simulated robot"),
         (["--robot", "none", "--speed", "4"], "leave out --speed"),
@@ -101,7 +104,7 @@ def test_a_broken_project_is_named_with_its_place(copy: Path, capsys: pytest.Cap
 def test_so_much_time_and_no_more(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "5s"]
     assert main(run) == 1
-    assert "Ended before the story did: 0:05 of simulated time" in capsys.readouterr().out
+    assert "Ended before the story was over: 0:05 of simulated time" in capsys.readouterr().out
 
 
 @pytest.mark.process
@@ -179,7 +182,7 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
         until(lambda: re.search(r"stopped, interrupted(, unwatched)?  \(stop, then safety\.alarm", log.read_text()))
         process.send_signal(signal.SIGINT)
         assert process.wait(HANG) == 0
-    assert "Ended before the story did" in log.read_text()
+    assert "Ended before the story was over" in log.read_text()
 
 
 @pytest.mark.slow

@@ -60,7 +60,7 @@ def test_it_is_printed_for_people_and_programs(
     assert set(json.loads(capsys.readouterr().out)) == KEYS
     assert main(["status", str(copy)]) == 0
     text = capsys.readouterr().out
-    assert f"stopped   by {person()}: nobody moves it until `lumen resume`" in text
+    assert f"stopped   by {person()}: it does not move until `lumen resume`" in text
     assert "visitor   no name known, spoken to in en" in text
     assert main(["goto", "offer", str(copy), "--yes"]) == 0
     said = capsys.readouterr().out

@@ -100,7 +100,7 @@ def test_a_working_directory_that_is_gone_is_one_line(
     monkeypatch.chdir(gone)
     gone.rmdir()
     assert main(words) == 2
-    assert capsys.readouterr().err == f"lumen {words[0]}: the folder that you are in is gone: `cd` to another one\n"
+    assert capsys.readouterr().err == f"lumen {words[0]}: the current folder no longer exists: `cd` to another one\n"
 
 
 def test_a_question_that_is_not_answered_is_a_no(monkeypatch: pytest.MonkeyPatch) -> None:

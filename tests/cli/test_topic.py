@@ -124,7 +124,7 @@ def test_list_hz_and_bw_measure(run: Run) -> None:
 
     until(measured)
     until(lambda: _topics(run, "bw", "sonar")[0]["mean_bytes"] == len('{"rightSensor":0.5,"leftSensor":2.55}'))
-    assert "nothing came on `lumen.silence`" in run("topic", "hz", "lumen.silence", "--for", "50ms")[1]
+    assert "no message came on `lumen.silence`" in run("topic", "hz", "lumen.silence", "--for", "50ms")[1]
 
 
 def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
@@ -171,7 +171,9 @@ def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
     assert run("topic", "pub", "command", rest, "--wait", "10s") == (0, "command finished\n", "")
     code, out, err = run("topic", "pub", "lumen.elsewhere", "a text")
     assert (code, out, err.count("\n")) == (1, "", 1)
-    assert err.startswith("lumen topic: nobody listens to `lumen.elsewhere`: an exhibition listens to `avatar.NAO.aim`")
+    assert err.startswith(
+        "lumen topic: no process listens to `lumen.elsewhere`: an exhibition listens to `avatar.NAO.aim`"
+    )
     assert "`avatar.NAO.comand`: did you mean `avatar.NAO.command`?" in run("topic", "pub", "avatar.NAO.comand", "x")[2]
     assert "nobody listens" in run("topic", "pub", "lumen.elsewhere", "a text", "--wait", "50ms")[2]
     assert run("topic", "pub", "lumen.deaf", "a text", "--wait", "50ms")[::2] == (
@@ -206,8 +208,8 @@ def test_the_doctor_finds_what_is_silent(run: Run, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.4)
     code, out, _ = run("doctor")
     assert code == 1
-    assert "nothing came on `image` in 0.4 s" in out
-    assert "permissions" not in out or "routes may be used as they go" in out
+    assert "no message came on `image` in 0.4 s" in out
+    assert "permissions" not in out or "this user may use all" in out
     found = json.loads(run("doctor", "--format", "json")[1])
     assert found["ok"] is False
     assert {"what", "severity", "text"} == set(found["findings"][0])
@@ -235,11 +237,12 @@ def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytes
     words = ["topic", "pub", "--project", str(ROOT), "--bus", broker.url_of("eyes")]
     assert main([*words, "command", '{"method": "rest"}']) == 2
     said = capsys.readouterr()
-    assert "refuses to let us send `avatar.NAO.command`: ACCESS_REFUSED" in said.err
+    assert "does not let this user send `avatar.NAO.command`: ACCESS_REFUSED" in said.err
     assert said.err.count("\n") == 1
     assert main([*words, "face", '{"x": 160, "y": 120}']) == 1
     assert (
-        "nobody listens to `lumen.NAO.visual.face.detection`: does an exhibition run there?" in capsys.readouterr().err
+        "no process listens to `lumen.NAO.visual.face.detection`: check that the exhibition runs"
+        in capsys.readouterr().err
     )
 
 

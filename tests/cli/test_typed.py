@@ -72,18 +72,18 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
 @for_each(
     ("line", "says"),
     [
-        ("/tuch head", "`/tuch` is nothing that can be done: did you mean `touch`?"),
+        ("/tuch head", "no command `/tuch`: did you mean `touch`?"),
         ("/", "there are `go`, `help`, `press`, `stay`, `touch`"),
         ("/go", "True by the operator"),
         ("/stay", "False by the operator"),
-        ("/press", "write what stands on the button, as in `/press Next exhibit`"),
+        ("/press", "write the button's label, as in `/press Next exhibit`"),
         ("/press Next exhibit", "no Next exhibit for the operator"),
-        ("/touch", "write where, as in `/touch head`"),
+        ("/touch", "name a place, as in `/touch head`"),
         (
             "/touch heda 2s",
-            "the robot has no `heda` to be touched: did you mean `head`? there are `head`, `left bumper`",
+            "the robot has no place `heda` to touch: did you mean `head`? there are `head`, `left bumper`",
         ),
-        ("/touch chest", "the robot has no `chest` to be touched"),
+        ("/touch chest", "the robot has no place `chest` to touch"),
         ("/help", "/touch head       a hand on its head; also left bumper"),
     ],
 )

@@ -81,14 +81,14 @@ def test_a_run_tells_on_standard_error_and_says_how_it_ended(copy: Path, capsys:
 @for_each(
     ("words", "answer"),
     [
-        (["lnt"], "there is no verb `lnt`: did you mean `lint`?"),
-        (["lsit"], "there is no verb `lsit`: did you mean `lint`?"),
-        (["frobnicate"], "there is no verb `frobnicate`; --help lists them"),
-        (["lint", "--stirct"], "there is no option `--stirct`: did you mean `--strict`?"),
-        (["run", "--vidoe=x.mp4"], "there is no option `--vidoe`: did you mean `--video`?"),
-        (["export", "mermiad"], "argument FORMAT: `mermiad` can't stand here: did you mean `mermaid`?"),
-        (["lint", "--format", "jsn"], "argument --format: `jsn` can't stand here: did you mean `json`?"),
-        (["explain", "tab", "more"], "there is a word too much: `more`"),
+        (["lnt"], "no verb `lnt`: did you mean `lint`?"),
+        (["lsit"], "no verb `lsit`: did you mean `lint`?"),
+        (["frobnicate"], "no verb `frobnicate`; --help lists them"),
+        (["lint", "--stirct"], "no option `--stirct`: did you mean `--strict`?"),
+        (["run", "--vidoe=x.mp4"], "no option `--vidoe`: did you mean `--video`?"),
+        (["export", "mermiad"], "invalid FORMAT `mermiad`: did you mean `mermaid`?"),
+        (["lint", "--format", "jsn"], "invalid `--format jsn`: did you mean `json`?"),
+        (["explain", "tab", "more"], "unexpected word `more`"),
     ],
     ids=lambda words: " ".join(words) if isinstance(words, list) else "",
 )

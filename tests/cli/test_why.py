@@ -116,7 +116,7 @@ def test_it_reads_well(greeted: Exhibition) -> None:
     text = "\n".join(told)
     assert "because ask_name → ask_name, hears else, as context.name_tries < 2" in text
     assert "context.name_tries is 0" in text
-    assert "it would have, had event.data.result been " in text
+    assert "it would have happened if event.data.result had been " in text
 
 
 @pytest.mark.process

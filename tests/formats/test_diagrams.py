@@ -161,7 +161,7 @@ def test_a_program_called_dot_draws_where_there_is_one(
     assert file.read_text("utf-8").startswith("-Tpng\ndigraph {")
     program.write_text("#!/bin/sh\necho 'syntax error' >&2\nexit 1\n", "utf-8")
     assert main(["graph", "-o", str(file)]) == 2
-    assert "does not draw: syntax error; --layout own does without" in capsys.readouterr().err
+    assert "failed: syntax error; use --layout own" in capsys.readouterr().err
     assert main(["graph", "-o", str(tmp_path / "tour.svg"), "--layout", "own"]) == 0
     assert (tmp_path / "tour.svg").read_text("utf-8") == svg(overview(TOUR))
 

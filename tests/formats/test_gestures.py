@@ -272,4 +272,4 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["play", str(file)]) == 2
     assert "does not begin with" in capsys.readouterr().err
     assert main(["play", str(file.rename(tmp_path / "wave.json"))]) == 2
-    assert "wave.json is no motion: a file ends in .yaml, .motion, .xar or .py" in capsys.readouterr().err
+    assert "wave.json is not a motion: its name must end in .yaml, .motion, .xar or .py" in capsys.readouterr().err

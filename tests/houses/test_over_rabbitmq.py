@@ -99,7 +99,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     code, said = hall.call("status", "--robot-name", "ana")
     assert code == 2
     assert "ana       does not run: it ended without notice at " in said
-    assert f"stopped   by {by}: so it is when it runs again, until `lumen resume`" in said
+    assert f"stopped   by {by}: it stays so when it runs again, until `lumen resume`" in said
     process, told = hall.begin()
     until(hall.both)
     assert hall.status()["ana"]["stopped_by"] == by

@@ -55,7 +55,7 @@ def test_an_error_with_its_excerpt(
     ]
     assert shown[-2:] == [
         f"1 error in 1 file; 10 files checked in {project}",
-        "`lumen explain unknown-state` says more",
+        "For more: `lumen explain unknown-state`",
     ]
 
 

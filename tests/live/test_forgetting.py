@@ -185,7 +185,7 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
             assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 0
         told = capsys.readouterr().out
         assert "STILL THERE" not in told
-        assert "deleted: the memory that runs: visitors: 1" in told
+        assert "deleted: the running memory: visitors: 1" in told
         assert found(copy, "İpek") == []
         hear(bus, "and I am still here")
         until(lambda: stands(copy)["context"]["talks"])

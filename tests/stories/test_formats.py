@@ -84,9 +84,9 @@ def test_coverage_names_what_no_story_did(story: Write, capsys: pytest.CaptureFi
     ("arguments", "words"),
     [
         (["vistor"], "no project or story `vistor`: did you mean `visitor`?"),
-        (["--fail-under", "101"], "--fail-under takes a number from 0 to 100"),
+        (["--fail-under", "101"], "--fail-under must be a number from 0 to 100"),
         (["--bound", "0", "--explore"], "--bound takes a number of configurations"),
-        (["--home", "idle"], "--behavior and --home are for --explore"),
+        (["--home", "idle"], "--behavior and --home need --explore"),
         (["--explore", "--behavior", "tuor"], "no behaviour `tuor`: did you mean `tour`?"),
         (["--explore", "--home", "idel"], "no state `idel` in `tour`: did you mean `idle`?"),
         (["shy", "-o", "/no/such/folder/x.txt"], "can't write /no/such/folder/x.txt"),

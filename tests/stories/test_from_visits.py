@@ -142,7 +142,7 @@ def test_a_story_is_written_passes_and_fails_once_the_robot_says_something_else(
     assert main(["test", str(folder), "kept"]) == 1
     capsys.readouterr()
     assert ask(folder, "-o", str(output)) == 2
-    assert "is there already: name another file, or add --force" in capsys.readouterr().err
+    assert "already exists: name another file, or add --force" in capsys.readouterr().err
     assert ask(folder, "-o", str(output), "--force", "--format", "json") == 1, "it says something else now"
     said = json.loads(capsys.readouterr().out)
     assert (said["same"], said["was"], said["is"]) == (False, "“Goodbye!” (en)", "“So long!” (en)")

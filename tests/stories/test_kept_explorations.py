@@ -36,7 +36,7 @@ def test_the_second_time_the_same_is_told_without_a_search(
         patched.setattr("lumen.cli.test.explored", None)
         assert told(root, capsys) == (1, {**first, "known": True})
         main(["test", str(root), "--explore", "--behavior", "door"])
-        assert "(known: these files were explored before): " in capsys.readouterr().out
+        assert "(kept from an earlier run of the same files): " in capsys.readouterr().out
     assert not told(root, capsys, "--bound", "2")[1]["known"]
     door = root / "behaviors/door.yaml"
     door.write_text(door.read_text().replace("it never opens", "it stays shut"))

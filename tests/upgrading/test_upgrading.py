@@ -231,7 +231,7 @@ def test_the_command_offers_it_and_does_it_when_asked(tmp_path: Path, capsys: py
     main_file.write_text(f"lumen: 1\n{text}routes:\n  {row}\n", "utf-8")
     before = main_file.read_bytes()
     assert main(["upgrade", str(tmp_path), "--check"]) == 0
-    assert "1 key of 2015 would be heard by several robots: `lumen upgrade --keys`\n" in capsys.readouterr().out
+    assert "1 key from 2015 would reach several robots: run `lumen upgrade --keys`\n" in capsys.readouterr().out
     assert main_file.read_bytes() == before
     assert main(["upgrade", str(tmp_path), "--check", "--keys"]) == 1
     assert main(["upgrade", str(tmp_path), "--keys"]) == 0

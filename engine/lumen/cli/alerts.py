@@ -12,8 +12,12 @@ from lumen.loading.project import main_settings
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("what", choices=("test",), help="tell each of those in `alerts:` of lumen.yaml something, whatever the hour")
-    add("project", nargs="?", metavar="PROJECT", help="its folder; default: the one here or above")
+    add(
+        "what",
+        choices=("test",),
+        help="send a test alert to each recipient in `alerts:` of lumen.yaml, even in quiet hours",
+    )
+    add("project", nargs="?", metavar="PROJECT", help="the project's folder (default: here or above)")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -22,7 +26,7 @@ def run(options: argparse.Namespace) -> int:
     root = own_project(options.project)
     settings = main_settings(root)
     if settings is None or not settings.alerts.to:
-        raise UsageError(f"no recipient: there is no `alerts:` in {root / 'lumen.yaml'} with somebody under `to`")
+        raise UsageError(f"no recipient: write one under `to` of `alerts:` in {root / 'lumen.yaml'}")
     desk = AlertDesk(settings.alerts, Origin(settings.name or root.name, settings.robot), root, lambda _: None)
     told = []
     for whom, why in desk.test():

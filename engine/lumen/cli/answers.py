@@ -9,8 +9,8 @@ from typing import Any
 BECAUSE = {
     "guard": "its guard was false",
     "unheard": "it was not heard",
-    "preempted": "something else was taken",
-    "no-event": "nothing brought it about",
+    "preempted": "another transition was taken",
+    "no-event": "no event triggered it",
     "inactive": "its state was not active",
 }
 LEADS = {"activity": "by", "event": "for", "timer": "for", "message": "from", "person": "from", "file": "from"}
@@ -38,7 +38,7 @@ def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
         if link["file"]:
             yield f"{INDENT}{' ' * 8 if number else '  '}{_place(link)}"
     if answer["needs"]:
-        yield f"{INDENT}It rests on what was before:"
+        yield f"{INDENT}It depends on earlier steps:"
     for link in answer["needs"][:MAX_NEEDS]:
         yield from _block(_time(link["at"]), f"  {link['text']}", "    ")
 
@@ -47,7 +47,7 @@ def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
     """What came nearest first: the way, what was against it, and what would have helped."""
     yield f"{_time(answer['at'])}  not {answer['what']}"
     if not answer["reasons"]:
-        yield f"{INDENT}nothing leads there: no transition has it as its target"
+        yield f"{INDENT}no transition leads there"
     shown: dict[str, int] = {}
     for reason in answer["reasons"]:
         because = reason["because"]
@@ -57,7 +57,7 @@ def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
         yield from _block("", f"{BECAUSE[because]}: {reason['text']}", "  ")
         if reason["false"]:
             yield from (f"{INDENT}    {line}" for line in _values(reason["false"]["values"]))
-        said = f"it would have, {_change(reason['change'])}" if reason["change"] else reason["note"]
+        said = f"it would have happened if {_change(reason['change'])}" if reason["change"] else reason["note"]
         if said:
             yield from _block("", f"  {said}", "    ")
         if reason["file"]:
@@ -75,15 +75,15 @@ def _block(time: str, text: str, deeper: str) -> Iterator[str]:
 
 
 def _change(change: Mapping[str, Any]) -> str:
-    """`had it been in offer and had heard come with event.data.result "dance"`."""
+    """`it had been in offer and heard had come with event.data.result "dance"`."""
     values = [(name, _json(value)) for name, value in change.items() if "." in name]
-    said = [f"had it been in {change['state']}"] if "state" in change else []
-    said += [f"had nothing else happened for {change['wait']:g} s"] if "wait" in change else []
+    said = [f"it had been in {change['state']}"] if "state" in change else []
+    said += [f"nothing else had happened for {change['wait']:g} s"] if "wait" in change else []
     if "event" in change:
         brought = ", ".join(f"{name} {value}" for name, value in values)
-        said.append(f"had {change['event']} come" + (f" with {brought}" if brought else ""))
+        said.append(f"{change['event']} had come" + (f" with {brought}" if brought else ""))
     else:
-        said += [f"had {name} been {value}" for name, value in values]
+        said += [f"{name} had been {value}" for name, value in values]
     return " and ".join(said)
 
 

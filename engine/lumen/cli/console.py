@@ -19,11 +19,16 @@ from lumen.upkeep.threads import WatchedThread
 def configure(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
     add = parser.add_argument
-    add("--port", type=int, metavar="PORT", help=f"where it listens (default: lumen.yaml's, else {CONSOLE_PORT})")
+    add(
+        "--port",
+        type=int,
+        metavar="PORT",
+        help=f"the port to listen on (default: that of lumen.yaml, else {CONSOLE_PORT})",
+    )
     add(
         "--host",
         metavar="HOST",
-        help=f"at which address (default: lumen.yaml's, else {CONSOLE_HOST})",
+        help=f"the address to listen on (default: that of lumen.yaml, else {CONSOLE_HOST})",
     )
     add("--beside", action="store_true", help=argparse.SUPPRESS)
 

@@ -21,14 +21,16 @@ COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    which = f"a folder, a revision of the project here (HEAD~1), or `{LIVE}`: what runs now"
+    which = f"a folder, a revision of this project (HEAD~1), or `{LIVE}`: the files that run now"
     parser.add_argument("old", metavar="OLD", help=which)
-    parser.add_argument("new", metavar="NEW", nargs="?", help="likewise; default: the project here or above")
+    parser.add_argument("new", metavar="NEW", nargs="?", help="the same (default: the project here or above)")
     parser.add_argument(
-        "--configurations", action="store_true", help="say of everywhere that the behaviour can be where it would go"
+        "--configurations", action="store_true", help="show the outcome of a reload in every configuration"
     )
-    parser.add_argument("--visits", action="store_true", help="play every visit that is kept with NEW")
-    parser.add_argument("--bound", type=int, metavar="N", default=BOUND, help=f"how many at most (default: {BOUND:,})")
+    parser.add_argument("--visits", action="store_true", help="play every recorded visit with NEW")
+    parser.add_argument(
+        "--bound", type=int, metavar="N", default=BOUND, help=f"explore at most N configurations (default: {BOUND:,})"
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -61,7 +63,7 @@ def _fates(old: Version, new: Version, bound: int) -> MigrationPreview:
     with progress(at_most=True) as tell:
         return preview(
             old.project, live(old.project, new.project), bound,
-            lambda walked, waiting: tell(walked, bound, f"configurations, {waiting:,} in sight"),
+            lambda walked, waiting: tell(walked, bound, f"configurations, {waiting:,} more to explore"),
         )  # fmt: skip
 
 
@@ -89,7 +91,9 @@ def _table(everywhere: MigrationPreview, colour: bool) -> list[str]:
     lines = [_row(fate, colour) for fate in everywhere.rows]
     counts = {outcome: sum(fate.count for fate in everywhere.rows if fate.outcome == outcome) for outcome in COLOURS}
     told = ", ".join(f"{number:,} {outcome}" for outcome, number in counts.items() if number)
-    more = f"; {everywhere.waiting:,} were not walked on from: say --bound N" if everywhere.waiting else ""
+    more = (
+        f"; {everywhere.waiting:,} were not explored further: pass a larger `--bound N`" if everywhere.waiting else ""
+    )
     return [*lines, paint(f"{everywhere.configurations:,} configurations: {told}{more}", "bold", on=colour)]
 
 

@@ -43,12 +43,14 @@ class Finding(NamedTuple):
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Look at the bus of an exhibition: whether the broker is there, new enough and lets us read and send, whether"
-        " the clocks agree, and which routes nobody serves."
+        "Check the bus of an exhibition: whether the broker runs, is new enough and lets Lumen read and send,"
+        " whether the clocks agree, and which routes no process serves."
     )
-    parser.add_argument("project", nargs="?", metavar="PROJECT", help="default: the one here or above")
-    parser.add_argument("--bus", metavar="URL", help="default: LUMEN_BUS, then lumen.yaml's, then this machine")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="default: text")
+    parser.add_argument("project", nargs="?", metavar="PROJECT", help="the project's folder (default: here or above)")
+    parser.add_argument(
+        "--bus", metavar="URL", help="the bus (default: LUMEN_BUS, then that of lumen.yaml, then this machine)"
+    )
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -71,7 +73,7 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
     with closing(BrokerProbe(url)) as probe:
         yield Finding("broker", "ok", f"{probe.product} {probe.version} at {probe.address}, as `{probe.address.user}`")
         if not url.startswith("amqps:") and not probe.address.place.startswith(("127.", "localhost", "[::1]")):
-            yield Finding("broker", "warning", "everybody on the network can read along: use amqps://")
+            yield Finding("broker", "warning", "the connection is not encrypted: use amqps://")
         if blocked := probe.taking():
             yield Finding("broker", "error", blocked)
             return
@@ -109,7 +111,7 @@ def _permissions(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
             refused = True
             yield Finding("permissions", "error", f"`{route.name}` can't be {'read' if reading else 'sent'}: {reason}")
     if not refused:
-        yield Finding("permissions", "ok", f"all {len(project.routes)} routes may be used as they go")
+        yield Finding("permissions", "ok", f"this user may use all {len(project.routes)} routes")
 
 
 def _life(bus: Bus, project: Project) -> Iterator[Finding]:
@@ -131,12 +133,12 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     complete.wait(LISTENING)
     silent = [route.name for key, route in senses.items() if key not in heard]
     if silent:
-        text = f"nothing came on {_names(silent)} in {LISTENING:g} s: does the robot run?"
+        text = f"no message came on {_names(silent)} in {LISTENING:g} s: check that the robot runs"
         yield Finding("senses", "warning", text)
     elif senses:
-        yield Finding("senses", "ok", f"{_names([route.name for route in senses.values()])} come")
+        yield Finding("senses", "ok", f"messages come on {_names([route.name for route in senses.values()])}")
     if not skews:
-        yield Finding("clocks", "note", "nobody sent a date to compare")
+        yield Finding("clocks", "note", "no message had a date to compare")
         return
     skew = min(skews, key=abs)
     text = f"this machine's clock and the robot's are {abs(skew):.1f} s apart"
@@ -149,10 +151,10 @@ def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) 
     if route is None or not probe.served(key_of(project, COMMAND_ROUTE), route).readers:
         return
     if attendance.robot():
-        yield Finding("robot", "ok", f"{project.robot} is there")
+        yield Finding("robot", "ok", f"{project.robot} is connected")
     else:
-        taken = f"somebody takes `{COMMAND_ROUTE}`"
-        text = f"{taken}, but {project.robot} does not say that it is there: end a process that hangs"
+        taken = f"a process receives `{COMMAND_ROUTE}`"
+        text = f"{taken}, but {project.robot} does not report its presence: end the process that hangs"
         yield Finding("robot", "warning", text)
 
 
@@ -166,12 +168,12 @@ def _served(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
         if served.readers:
             taken.append(route.name)
         elif route.name == MOTION:
-            yield Finding("routes", "note", "there is no motion module: the brain does its work")
+            yield Finding("routes", "note", "no motion module runs: the brain does its work")
         else:
             waiting = f", and {served.waiting} messages wait" if served.waiting else ""
-            yield Finding("routes", "warning", f"nobody serves `{route.name}` ({key}){waiting}")
+            yield Finding("routes", "warning", f"no process serves `{route.name}` ({key}){waiting}")
     if taken:
-        yield Finding("routes", "ok", f"{_names(taken)} served")
+        yield Finding("routes", "ok", f"served: {_names(taken)}")
 
 
 def _skew(body: Any) -> float | None:

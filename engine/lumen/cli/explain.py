@@ -15,7 +15,12 @@ from lumen.rules.selection import selected
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("code", nargs="?", metavar="CODE", help="as lint prints it, or its first words, or a family")
+    parser.add_argument(
+        "code",
+        nargs="?",
+        metavar="CODE",
+        help="a code as lint prints it, the first words of codes, or a family (default: all)",
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -45,7 +50,7 @@ def _list(wanted: Collection[str], on: bool) -> str:
             if code in wanted
         ]
         blocks += ["\n".join([paint(name, "bold", on=on), *rows])] if rows else []
-    return "\n\n".join([*blocks, "`lumen explain CODE` says more."])
+    return "\n\n".join([*blocks, "Run `lumen explain CODE` for details and an example."])
 
 
 def _json_list(wanted: Collection[str]) -> str:

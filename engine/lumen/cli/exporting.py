@@ -39,16 +39,23 @@ WRITERS: Mapping[str, Writer] = {
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; a fuzzy"
-        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. What the format can't say"
-        " is listed, with its line; then the exit code is 1, and the rest is written all the same."
+        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. Parts that the"
+        " format can't express are listed with their line; the rest is written all the same, and the exit code is 1."
     )
     targets = (*WRITERS, "fll", "asyncapi")
     parser.add_argument("target", metavar="FORMAT", choices=targets, help=" | ".join(targets))
-    which = "of a behaviour (default: the one that runs), or of a controller (default: the only one)"
+    which = "a behaviour (default: the one that runs) or a controller (default: the only one)"
     parser.add_argument("behavior", nargs="?", metavar="NAME", help=which)
-    parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
-    parser.add_argument("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
+    parser.add_argument(
+        "--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)"
+    )
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
+    parser.add_argument(
+        "--format",
+        choices=tuple(FORMATS),
+        default="text",
+        help="how to print the list of omissions (default: text)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -72,7 +79,7 @@ def _controller(root: Path, project: Project, options: argparse.Namespace) -> tu
     name = options.behavior or (next(iter(project.controllers)) if len(project.controllers) == 1 else "")
     if name not in project.controllers:
         hint = did_you_mean(name, project.controllers, "fuzzy/ has")
-        raise UsageError(f"no controller `{name}`: {hint}" if name else f"which controller? {hint}")
+        raise UsageError(f"no controller `{name}`: {hint}" if name else f"name a controller: {hint}")
     document = _document(root, f"fuzzy/{name}.yaml")
     return *write_fll(project.controllers[name], document.place), document
 

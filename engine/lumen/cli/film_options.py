@@ -20,9 +20,7 @@ def film_path(path: Path | None, robot: str) -> Path | None:
     if robot != "simulation":
         raise UsageError("--video films the simulation: leave out --robot")
     if path.suffix != ".mp4" or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise UsageError(
-            f"can't write a film to {path}: name an .mp4 file in a folder that is there and yours to write"
-        )
+        raise UsageError(f"can't write a film to {path}: name an .mp4 file in an existing folder that you may write to")
     return path
 
 
@@ -34,7 +32,9 @@ MIN_FILM_SIDE, MAX_FILM_SIDE = 64, 4096
 def configure_size(parser: argparse.ArgumentParser) -> None:
     """`--size`, for a verb that has `--video`."""
     usual = "x".join(map(str, FILM_SIZE))
-    parser.add_argument("--size", default=usual, metavar="WIDTHxHEIGHT", help=f"of the film [px] (default: {usual})")
+    parser.add_argument(
+        "--size", default=usual, metavar="WIDTHxHEIGHT", help=f"size of the film [px] (default: {usual})"
+    )
 
 
 def film_size(text: str) -> tuple[int, int]:
@@ -42,8 +42,8 @@ def film_size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
     sides = (int(match[1]), int(match[2])) if match else (0, 0)
     if any(side % 2 or not MIN_FILM_SIDE <= side <= MAX_FILM_SIDE for side in sides):
-        wanted = f"1280x720 for one: even numbers from {MIN_FILM_SIDE} to {MAX_FILM_SIDE}"
-        raise UsageError(f"--size: `{text}` is no size of a film; {wanted}")
+        wanted = f"write two even numbers from {MIN_FILM_SIDE} to {MAX_FILM_SIDE}, such as 1280x720"
+        raise UsageError(f"invalid `--size {text}`: {wanted}")
     return sides
 
 

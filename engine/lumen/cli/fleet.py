@@ -29,20 +29,20 @@ from lumen.rules import check_files
 
 WHATS: Mapping[str, str] = {
     "keygen": "make the key that bundles are signed with",
-    "init": "write what each RabbitMQ needs",
-    "check": "say whether a RabbitMQ has what it needs",
-    "serve": "be the centre",
+    "init": "write the settings that each RabbitMQ broker needs",
+    "check": "check that a RabbitMQ broker has these settings",
+    "serve": "run the centre",
     "publish": "send a project to the centre as a bundle",
-    "try": "have all robots try a bundle, which none of them takes",
-    "rollout": "let the robots have a bundle, step by step",
-    "log": "say what happened: incidents, and what was counted with each bundle",
-    "status": "say how houses, robots and the rollout are",
-    "pause": "let a rollout wait",
-    "go": "let it go on, or decide what nobody knew",
-    "abort": "let all robots go back",
+    "try": "let all robots try a bundle without switching to it",
+    "rollout": "roll a bundle out to the robots, step by step",
+    "log": "list incidents, and what was counted with each bundle",
+    "status": "show the houses, the robots and the rollout",
+    "pause": "pause the rollout",
+    "go": "continue a rollout that is paused, or that waits because its result is unknown",
+    "abort": "abort the rollout: all robots go back",
     "pin": "leave a robot out of rollouts",
-    "unpin": "let it take part again",
-    "diff": "say what a bundle would change",
+    "unpin": "let a robot join rollouts again",
+    "diff": "list what a bundle would change",
     "take-over": "replace a centre that is gone",
 }
 LINES = {"status": fleet_lines, "log": log_lines}
@@ -59,23 +59,35 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
     )
-    add("--project", metavar="DIR", help="the folder of fleet.yaml; default: this one")
-    add("--bus", metavar="URL", help="the broker; default: LUMEN_BUS, then the one in fleet.yaml")
-    add("--key", metavar="FILE", type=Path, help=f"the private key; default: {KEY_FILE} in that folder")
+    add("--project", metavar="DIR", help="the folder of fleet.yaml (default: this one)")
+    add("--bus", metavar="URL", help="the broker (default: LUMEN_BUS, then that of fleet.yaml)")
+    add("--key", metavar="FILE", type=Path, help=f"the private key (default: {KEY_FILE} in that folder)")
     add("--first", metavar="TO", help="rollout: the first step: a group, a share such as 10%%, or all")
-    add("--then", metavar="TO", action="append", default=[], help="rollout: the next step; may be said again")
+    add("--then", metavar="TO", action="append", default=[], help="rollout: the next step; may be repeated")
     add("--pause", metavar="30min", help="rollout: how long each step is watched")
-    add("--abort-if", metavar="TEXT", help="rollout: send all back where this holds, as in fleet.yaml")
-    add("--try", dest="try_first", action="store_true", help="rollout: all robots try it before the first one takes it")
-    add("--against", metavar="HASH", help="diff: the bundle to compare with; default: the one that was proved last")
-    add("-o", "--output", metavar="DIR", type=Path, default=Path("brokers"), help="init: where to (default: brokers)")
+    add("--abort-if", metavar="TEXT", help="rollout: send all robots back if this condition holds, as in fleet.yaml")
+    add(
+        "--try",
+        dest="try_first",
+        action="store_true",
+        help="rollout: let all robots try the bundle before the first step",
+    )
+    add("--against", metavar="HASH", help="diff: the bundle to compare with (default: the last proved one)")
+    add(
+        "-o",
+        "--output",
+        metavar="DIR",
+        type=Path,
+        default=Path("brokers"),
+        help="init: the folder to write to (default: brokers)",
+    )
     add(
         "--ca",
         metavar="FILE",
         default="",
-        help="init: the authority of the centre's certificate, on a house's broker; check: that of the broker",
+        help="init: the CA file for the centre's certificate, on a house's broker; check: that for the broker's",
     )
-    add("--rabbitmqctl", metavar="CMD", default=USUAL, help="check: how it is called, as in 'sudo rabbitmqctl'")
+    add("--rabbitmqctl", metavar="CMD", default=USUAL, help="check: the command to run, such as 'sudo rabbitmqctl'")
     configure_format(parser)
 
 
@@ -121,7 +133,9 @@ def _keygen(options: argparse.Namespace, root: Path) -> int:
     if options.format == "json":
         print_object({"file": str(file), "key": public})
     else:
-        print(f"{file} is the private key: keep it where only the centre reads it.\nInto fleet.yaml:\n\nkey: {public}")
+        print(
+            f"{file} is the private key: keep it where only the centre reads it.\nAdd to fleet.yaml:\n\nkey: {public}"
+        )
     return 0
 
 
@@ -131,14 +145,16 @@ def _init(options: argparse.Namespace, root: Path) -> int:
         print_object({"written": written})
     else:
         print("\n".join(written))
-        print("They hold passwords: copy each folder to its broker alone. docs/fleet.md says where each file belongs.")
+        print(
+            "They contain passwords: copy each folder only to its own broker. docs/fleet.md shows where each file goes."
+        )
     return 0
 
 
 def _check(options: argparse.Namespace, root: Path) -> int:
     fleet, name = fleet_in(root), options.name or CENTRE
     if name != CENTRE and name not in fleet.houses:
-        raise UsageError(f"the fleet has no house `{name}`: there are {', '.join(fleet.houses)}, and `{CENTRE}`")
+        raise UsageError(f"the fleet has no house `{name}`: choose {', '.join(fleet.houses)} or `{CENTRE}`")
     address = fleet.centre if name == CENTRE else fleet.houses[name].broker
     url = options.bus or os.environ.get("LUMEN_BUS") or address
     found = list(check_broker(fleet, name, url, RabbitMQControl(options.rabbitmqctl), ca=options.ca))
@@ -193,7 +209,7 @@ def _plan(options: argparse.Namespace) -> dict[str, Any]:
     if options.pause is not None:
         pause = seconds(options.pause)
         if pause is None:
-            raise UsageError(f"--pause takes a duration such as 30min or 90s, not `{options.pause}`")
+            raise UsageError(f"invalid `--pause {options.pause}`: write a duration such as 30min or 90s")
         plan["pause"] = pause
     plan |= {"try": True} if options.try_first else {}
     return plan | ({"abort-if": options.abort_if} if options.abort_if is not None else {})
@@ -203,7 +219,7 @@ def _diff(options: argparse.Namespace, root: Path) -> int:
     proved = [] if options.against else _asked(options, root, {}, "status")["proved"]
     base = options.against or next(reversed(proved), "")
     if not base:
-        raise UsageError("no bundle was proved yet: say with --against HASH what to compare with")
+        raise UsageError("no bundle is proved yet: pass `--against HASH` to choose the one to compare with")
     projects = []
     for name in (base, _named(options)):
         files = _asked(options, root, {"bundle": name}, "files")["files"]
@@ -217,7 +233,7 @@ def _diff(options: argparse.Namespace, root: Path) -> int:
             {"changes": [str(change) for change in found], "risk": str(risk(found)), "summary": summary(found)}
         )
     else:
-        print("\n".join(map(str, found)) or "nothing differs")
+        print("\n".join(map(str, found)) or "no differences")
     return 0
 
 
@@ -233,7 +249,7 @@ def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], wha
     finally:
         bus.close()
     if not isinstance(answer, dict) or not answer.pop("ok", False):
-        raise UsageError(str(answer.get("reason")) if isinstance(answer, dict) else "the centre's answer is none")
+        raise UsageError(str(answer.get("reason")) if isinstance(answer, dict) else "the centre's answer is not valid")
     return answer
 
 
@@ -242,13 +258,13 @@ def _connected(url: str, sender: str) -> Bus:
     try:
         return connect(url, sender=sender)
     except BusUnreachableError as error:
-        raise BusUnreachableError(f"{error} (the centre's broker: --bus, LUMEN_BUS or fleet.yaml says where)") from None
+        raise BusUnreachableError(f"{error} (set the centre's broker with --bus, LUMEN_BUS or fleet.yaml)") from None
 
 
 def _address(options: argparse.Namespace, root: Path) -> str:
     url = options.bus or os.environ.get("LUMEN_BUS") or fleet_in(root).centre
     if not url:
-        raise UsageError("which broker? say --bus URL, or write `centre: {broker: …}` into fleet.yaml")
+        raise UsageError("no broker is set: pass `--bus URL`, or write `centre: {broker: …}` in fleet.yaml")
     return str(url)
 
 

@@ -25,12 +25,12 @@ def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
     ]
     yield table(("robot", "bundle", "state", "since", ""), rows)
     here, houses = sum(row["here"] for row in found["robots"]), len(found["houses"])
-    yield f"{here} of {len(rows)} robots are there, in {houses} houses"
+    yield f"{here} of {len(rows)} robots are online, in {houses} houses"
     for name in ("trouble",):
         if found.get(name):
             yield f"!! {found[name]}"
     if found["centre"]["overruled"]:
-        yield f"!! this centre orders nothing: {found['centre']['overruled']}"
+        yield f"!! this centre gives no orders: {found['centre']['overruled']}"
 
 
 def _trial(trying: Mapping[str, Any] | None) -> Iterator[str]:
@@ -59,7 +59,7 @@ def _outcome(tried: Mapping[str, Any] | None, trying: Mapping[str, Any] | None) 
     if not tried or not trying or tried["bundle"] != trying["bundle"]:
         return ""
     why = f": {tried['why']}" if tried["why"] else ""
-    return f"tried: {tried['verdict']}, {tried['same']} of {tried['played']} visits as they were{why}"
+    return f"tried: {tried['verdict']}, {tried['same']} of {tried['played']} visits unchanged{why}"
 
 
 def _rollout(rollout: Mapping[str, Any] | None) -> Iterator[str]:

@@ -14,8 +14,8 @@ from lumen.errors import UsageError
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("state", metavar="STATE", help="by its id, or by its path such as guide.talking")
-    parser.add_argument("-y", "--yes", action="store_true", help="do not ask whether it shall")
+    parser.add_argument("state", metavar="STATE", help="a state's id, or its path such as guide.talking")
+    parser.add_argument("-y", "--yes", action="store_true", help="do not ask for confirmation")
     configure_reach(parser)
     configure_format(parser)
 
@@ -23,13 +23,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 once it is there, 1 where it could not or nobody wants it."""
     if options.format == "json" and not options.yes:
-        raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
+        raise UsageError("--format json can't ask for confirmation: add --yes")
     reached = reach(options)
     try:
         way = _ask(reached, options.state, only="check")
         if way["verdict"] != "refused":
             if not options.yes and not _sure(options.state, way):
-                print("it stays where it is")
+                print("nothing is changed")
                 return 1
             way = _ask(reached, options.state, by=person())
     finally:
@@ -55,5 +55,5 @@ def _ask(reached: Reached, state: str, **more: str) -> dict[str, Any]:
 def _sure(state: str, way: dict[str, Any]) -> bool:
     """Whether whoever is asked says yes; what it leaves and enters is said before."""
     left = f"leaves {', '.join(way['exited'])} and " if way["exited"] else ""
-    print(f"It {left}enters {', '.join(way['entered'])}, whatever any guard says.")
-    return agrees(f"Go to {state}?", "goto asks first, but this is not a terminal: say --yes")
+    print(f"It {left}enters {', '.join(way['entered'])}; guards are not checked.")
+    return agrees(f"Go to {state}?", "goto asks for confirmation, but this is not a terminal: add --yes")

@@ -23,13 +23,18 @@ DRAWING = 60.0
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("behavior", nargs="?", help="a behaviour's name; default: the one that runs")
+    add("behavior", nargs="?", help="a behaviour's name (default: the one that runs)")
     which = parser.add_mutually_exclusive_group()
-    which.add_argument("--region", metavar="NAME", help="only what is within this state, with what leads on")
-    which.add_argument("--state", metavar="NAME", help="only this state, what leads there, and where it leads")
-    add("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    which.add_argument("--region", metavar="NAME", help="only the states inside this one, and what they lead to")
+    which.add_argument("--state", metavar="NAME", help="only this state, with the transitions to it and from it")
+    add("--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)")
     add("-o", "--output", metavar="FILE", type=Path, help=".svg or .png: a picture; .dot: for Graphviz; else Mermaid")
-    add("--layout", choices=LAYOUTS, default="auto", help="who lays a picture out: Graphviz's dot where it is, or we")
+    add(
+        "--layout",
+        choices=LAYOUTS,
+        default="auto",
+        help="layout by Graphviz's dot or Lumen's own; auto uses dot if it is installed",
+    )
     configure_format(parser)
 
 
@@ -57,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
 def _content(options: argparse.Namespace, machine: MachineDefinition, ending: str) -> bytes:
     if ending not in (*PICTURES, ".dot"):
         if options.state or options.region:
-            raise UsageError("Mermaid shows the whole: write a part into a picture, with -o FILE.svg")
+            raise UsageError("Mermaid shows the whole behaviour: add `-o FILE.svg` for a picture of a part")
         return (mermaid(machine) + "\n").encode()
     diagram = _diagram(options, machine)
     if ending == ".dot":
@@ -66,11 +71,9 @@ def _content(options: argparse.Namespace, machine: MachineDefinition, ending: st
     if dot:
         return _by_graphviz(dot, diagram, ending)
     if options.layout == "dot":
-        raise UsageError("Graphviz's `dot` is not on this machine: leave out --layout dot")
+        raise UsageError("Graphviz's `dot` is not installed: install it, or leave out --layout dot")
     if ending == ".png":
-        raise UsageError(
-            "a PNG takes Graphviz's `dot`, which is not used here: write an .svg, which every browser shows"
-        )
+        raise UsageError("a PNG needs Graphviz's `dot`, which is not installed or left out: write an .svg instead")
     return svg(diagram).encode()
 
 
@@ -85,8 +88,8 @@ def _by_graphviz(dot: str, diagram: Diagram, ending: str) -> bytes:
     try:
         drawn = subprocess.run(command, input=dot_text(diagram).encode(), capture_output=True, timeout=DRAWING)
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise UsageError(f"{dot} does not draw: {error}; --layout own does without") from None
+        raise UsageError(f"{dot} failed: {error}; use --layout own") from None
     if drawn.returncode:
         said = drawn.stderr.decode(errors="replace").strip().splitlines()
-        raise UsageError(f"{dot} does not draw: {said[0] if said else 'it failed'}; --layout own does without")
+        raise UsageError(f"{dot} failed: {said[0] if said else 'no message'}; use --layout own")
     return drawn.stdout

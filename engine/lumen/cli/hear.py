@@ -27,16 +27,20 @@ HEAD = ("", "state", "row", "found", "words", "alone", "negated", "asked", "guar
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Explain which row of `hears` takes a sentence, and why the others don't: which phrase was found, how many of"
-        " its words count, whether it is a whole clause, negated or part of a question, and what the guard is for the"
-        " first values of the context."
+        "Explain which row of `hears` is taken for a sentence, and why the others are not: which phrase was found, how"
+        " many of its words count, whether it is a whole clause, negated or part of a question, and what the"
+        " guard is for the first values of the context."
     )
     add = parser.add_argument
     add("text", metavar="TEXT", help="what a visitor says")
-    add("--state", metavar="STATE", help="by its id, or by its path such as guide.talking; default: all that hear")
-    add("--behavior", metavar="BEHAVIOR", help="another one than the one that runs")
-    add("--language", metavar="LANG", help="the language that the robot speaks, in which answers are given")
-    add("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    add(
+        "--state",
+        metavar="STATE",
+        help="a state's id, or its path such as guide.talking (default: all states that hear)",
+    )
+    add("--behavior", metavar="BEHAVIOR", help="another behaviour than the one that runs")
+    add("--language", metavar="LANG", help="the language that the robot speaks (default: the project's first)")
+    add("--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)")
     configure_format(parser)
 
 
@@ -64,7 +68,7 @@ def _machine(project: Project, name: str | None) -> MachineDefinition:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
     machine = project.behaviors[name]
     if not hearing_states(machine):
-        raise UsageError(f"no state of `{name}` has `hears`: write it into one")
+        raise UsageError(f"no state of `{name}` has `hears`: add it to one")
     return machine
 
 
@@ -80,7 +84,7 @@ def _paths(machine: MachineDefinition, state: str | None) -> list[str]:
         known = [one.name for one in machine.states.values() if one.path]
         raise UsageError(f"no state `{state}`: {did_you_mean(state, known, 'there are')}") from None
     if not rows_around(machine, path):
-        raise UsageError(f"neither `{state}` nor a state around it hears: {did_you_mean('', names, 'these do:')}")
+        raise UsageError(f"neither `{state}` nor a state around it has `hears`: {did_you_mean('', names, 'choose')}")
     return [path]
 
 
@@ -93,9 +97,9 @@ def _lines(machine: MachineDefinition, path: str, sentence: ExplainedSentence, w
         yield from (f"  {line}" for line in cells.splitlines())
     taken = sentence.taken
     if taken is None:
-        yield "  no row takes it"
+        yield "  no row is taken"
         return
-    yield f"  `{taken.key}` takes it and leads to {_targets(machine, taken) or 'no other state'}"
+    yield f"  `{taken.key}` is taken and leads to {_targets(machine, taken) or 'no other state'}"
     for name, value in taken.slots.items():
         yield f"    {name}: {caught_text(value)}"
 

@@ -56,7 +56,7 @@ class HouseRun:
         url = options.bus or os.environ.get("LUMEN_BUS") or first.bus
         self._url = f"memory://house-{os.getpid()}" if url.startswith("memory:") else url
         if parts and url.startswith("memory:"):
-            raise UsageError("processes need a bus that they can all reach: say --bus amqp://USER:PASSWORD@HOST/")
+            raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
         self._setups = self._set_up()
         self._player: StoryPlayer | None = None
         self._clocks = {name: self._clock(name) for name in robots}
@@ -163,8 +163,8 @@ def _check(options: argparse.Namespace, parts: Sequence[str]) -> None:
     for name in ALONE:
         if getattr(options, name, None):
             flag = name.replace("_", "-")
-            raise UsageError(f"--{flag} is about one robot: say which with --robot-name NAME")
+            raise UsageError(f"--{flag} is for one robot: choose it with `--robot-name NAME`")
     if options.voice != "none":
-        raise UsageError("--voice is about one robot: say which with --robot-name NAME")
+        raise UsageError("--voice is for one robot: choose it with `--robot-name NAME`")
     if parts and options.speed == "max":
-        raise UsageError("processes live in one time, which is real: --speed max needs everything in one of them")
+        raise UsageError("several processes run in real time: leave out --speed max, or run everything in one process")

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 def configure_imperfections(parser: argparse.ArgumentParser) -> None:
     """`--imperfections`, for a verb that has a simulated robot."""
-    what = f"of the simulated robot: `none`, or a list of {', '.join(IMPERFECTIONS)} (default: lumen.yaml's, or all)"
+    names = ", ".join(IMPERFECTIONS)
+    what = f"imperfections of the simulated robot: `none`, or a list of {names} (default: as in lumen.yaml, else all)"
     parser.add_argument("--imperfections", metavar="LIST", help=what)
 
 
@@ -29,7 +30,7 @@ def imperfections_of(text: str | None) -> Imperfections | None:
     for name in names:
         if name not in IMPERFECTIONS:
             hint = did_you_mean(name, IMPERFECTIONS, "there are")
-            raise UsageError(f"--imperfections: there is no `{name}`: {hint}")
+            raise UsageError(f"--imperfections has no `{name}`: {hint}")
     return only(names)
 
 
@@ -39,5 +40,5 @@ def set_up_robot(options: argparse.Namespace, project: "Project", story: "Story 
 
     lacking = imperfections_of(options.imperfections)
     if lacking and options.robot != "simulation":
-        raise UsageError("--imperfections are those of a simulated robot: leave out --robot")
+        raise UsageError("--imperfections needs the simulated robot: leave out --robot")
     return set_up(options.robot, project, options.speed, story, options.robot_url, lacking)

@@ -54,9 +54,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
         " Python) into a motion file, a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
-        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. What can't be carried"
-        " over is listed, with its line; then the exit code is 1, and the rest is written all the same. A file that"
-        " we could not load ourselves is never written (2)."
+        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. Parts that can't be"
+        " converted are listed with their line; the rest is written all the same, and the exit code is 1. A result that"
+        " Lumen could not load is not written, and the exit code is 2."
     )
     add = parser.add_argument
     add(
@@ -65,16 +65,25 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="chart.scxml, machine.json, wave.motion, behavior.xar, keyframes.py, head.fll, robot.urdf, robot.xml",
     )
-    add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
+    add("-o", "--output", metavar="OUT.yaml", type=Path, help="write to this file instead of printing")
     add(
         "--timeline",
         metavar="NAME",
         default="",
-        help="which one of a .xar that has several, or which function of a .py",
+        help="the timeline of a .xar that has several, or the function of a .py",
     )
-    add("--retime", action="store_true", help="give a motion the time that its joints need, where they are too fast")
-    add("--project", metavar="DIR", help="whose robot a motion is for; default: here or above, else the shipped one")
-    add("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
+    add("--retime", action="store_true", help="lengthen a motion where its joints would move too fast")
+    add(
+        "--project",
+        metavar="DIR",
+        help="the project whose robot a motion is for (default: here or above, else the shipped one)",
+    )
+    add(
+        "--format",
+        choices=tuple(FORMATS),
+        default="text",
+        help="how to print the list of omissions (default: text)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -151,7 +160,7 @@ def _chart(path: Path, content: bytes) -> Reader:
     start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     if start not in (b"<", b"{"):
         endings = ", ".join((*GESTURE_ENDINGS, *CONTROLLERS))
-        raise UsageError(f"{path} is neither SCXML, the JSON of XState, nor a motion or a controller ({endings})")
+        raise UsageError(f"{path} is not SCXML, XState's JSON, a motion or a controller ({endings})")
     return read_scxml if start == b"<" else read_xstate
 
 
@@ -160,8 +169,8 @@ def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -
     line = lines_of(text)[fault.place.line - 1].strip() if fault.place.line else ""
     near = f" at `{line[:80]}`" if line else ""
     lost = next((d for d in said if d.severity is Severity.ERROR), None)
-    cause = f"; what is left out: {one_line(lost)}" if lost else ""
-    told = f"nothing is written: {file} would become a file that is refused{near}: {fault.message}{cause}"
+    cause = f"; left out: {one_line(lost)}" if lost else ""
+    told = f"nothing is written: {file} would become a file with an error{near}: {fault.message}{cause}"
     return " ".join(told.split())
 
 
@@ -189,5 +198,5 @@ def _too_fast(file: str, fast: list[Excess]) -> Diagnostic:
     others = len({excess.joint for excess in fast}) - 1
     joints = f"`{worst.joint}`" + (f" and {others} other joint{'s' if others > 1 else ''}" if others else "")
     message = f"{joints} would have to move up to {worst.value / worst.limit:.1f} times too fast"
-    hint = "--retime gives the motion the time that it needs"
+    hint = "use --retime to lengthen the motion"
     return Diagnostic(TOO_FAST, message, Place(file), hint, Severity.WARNING)

@@ -34,8 +34,8 @@ def robot_body(
     if not urdf:
         found += _refused(path)
     if output is not None and not urdf and path.resolve() != (output.parent / mjcf).resolve():
-        message = f"the body names {mjcf} beside it, and the model is {path}"
-        hint = f"put it there as {output.parent / mjcf}, with the files that it names"
+        message = f"the body file expects {mjcf} in its own folder, but the model is {path}"
+        hint = f"copy it to {output.parent / mjcf}, with the files that it names"
         found.append(Diagnostic(LOST, message, Place(str(path)), hint, Severity.WARNING))
     return text, found, beside
 
@@ -94,4 +94,4 @@ def _refused(path: Path) -> list[Diagnostic]:
 
 def _without(mesh: XmlElement, reason: str) -> Diagnostic:
     message = f"the mesh `{mesh.get('filename')[:80]}` is left out: {reason}"
-    return Diagnostic(LOST, message, mesh.place, "put it there as STL or OBJ, and import again")
+    return Diagnostic(LOST, message, mesh.place, "put it there as STL or OBJ, then import again")

@@ -32,7 +32,7 @@ def added(text: str, more: dict[str, Any]) -> str:
     if data is None:
         return added("{}\n", more) if not text.strip() else added(f"{text.rstrip()}\n{{}}\n", more)
     if not isinstance(data, dict):
-        raise ValueError("it holds no settings")
+        raise ValueError("its top level is not an object")
     for key, value in more.items():
         text = _put(text, len(plain(text)) - len(plain(text).lstrip()), key, value, 1)
     return text

@@ -19,9 +19,9 @@ from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language
 
 CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 VERBS = {
-    "list": "the languages of the project, and how much of each is there",
-    "add LANG": f"write a place for it beside each text and phrase, with {TO_DO}and the words to translate",
-    "check [LANG…]": "say what is missing in these languages, or in all: exit code 1 where anything is",
+    "list": "list the languages of the project, and how much each lacks",
+    "add LANG": f"add an entry for it to each text and phrase, with {TO_DO}and the words to translate",
+    "check [LANG…]": "list what these languages lack, or all of them; exit code 1 if anything is missing",
 }
 
 
@@ -29,11 +29,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = "\n".join(["what to do:", *(f"  {verb:15} {what}" for verb, what in VERBS.items())])
     parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in VERBS], help="see below")
-    parser.add_argument("languages", metavar="LANG", nargs="*", help="a code, as `de`")
+    parser.add_argument("languages", metavar="LANG", nargs="*", help="a language code such as `de`")
     parser.add_argument(
-        "--from", dest="source", metavar="LANG", help="add: which words stand there (default: the first)"
+        "--from", dest="source", metavar="LANG", help="add: the language to translate from (default: the first)"
     )
-    parser.add_argument("--project", metavar="DIR", help="default: the one here or above")
+    parser.add_argument("--project", metavar="DIR", help="the project's folder (default: here or above)")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     spoken = found.settings.languages if found.settings else ()
     for language in options.languages:
         if language not in spoken:
-            raise UsageError(f"the project does not speak `{language}`: {did_you_mean(language, spoken, 'it speaks')}")
+            raise UsageError(f"the project has no language `{language}`: {did_you_mean(language, spoken, 'it has')}")
     entries = language_entries(found)
     missing = {language: list(untranslated(entries, language)) for language in options.languages or spoken}
     if options.format == "json":
@@ -61,8 +61,8 @@ def run(options: argparse.Namespace) -> int:
     else:
         _tell(entries, missing)
         for language in sorted({*missing} - {*spoken[:1]} - switched_to(found)):
-            hint = f"write `language: {language}` where a visitor asks for it"
-            print(f"{language}: no action lets the robot speak it: {hint}")
+            hint = f"add the action `language: {language}` for visitors who ask for it"
+            print(f"{language}: no action switches the robot to it: {hint}")
     return int(options.what == "check" and any(missing.values()))
 
 
@@ -74,22 +74,22 @@ def _add(options: argparse.Namespace, root: Path, files: dict[str, bytes], found
     source = options.source or spoken[0]
     if language in spoken:
         raise UsageError(
-            f"the project speaks `{language}` already: `lumen language check {language}` says what is missing"
+            f"the project has `{language}` already: `lumen language check {language}` lists what is missing"
         )
     if not CODE.fullmatch(language):
-        raise UsageError(f"`{language}` is no language's code: write two or three small letters, as `de`")
+        raise UsageError(f"`{language}` is not a language code: write two or three lowercase letters, such as `de`")
     if source not in spoken:
-        raise UsageError(f"the project does not speak `{source}`: {did_you_mean(source, spoken, 'it speaks')}")
+        raise UsageError(f"the project has no language `{source}`: {did_you_mean(source, spoken, 'it has')}")
     changed = with_language(found, files, language, source)
     after = {**files, **changed}
     _, diagnostics = check_files(root, after)
     if has_errors(diagnostics):
         errors = [str(d) for d in diagnostics if d.severity.value == "error"]
-        raise UsageError(f"`{language}` can't be added, nothing was written: {errors[0]}")
+        raise UsageError(f"`{language}` can't be added, and nothing is written: {errors[0]}")
     write(root, files, changed)
     for file, content in sorted(changed.items()):
         print(f"{file}: {content.count(TO_DO.encode()) - files[file].count(TO_DO.encode())} to translate")
-    print(f"Translate what begins with {TO_DO.strip()}; `lumen language check {language}` says what is left.")
+    print(f"Translate the texts that begin with {TO_DO.strip()}; `lumen language check {language}` lists those left.")
     print(f"The robot speaks it after the action `language: {language}`, or with `lumen run --language {language}`.")
     return 0
 

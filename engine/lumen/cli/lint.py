@@ -19,25 +19,25 @@ from lumen.upkeep.garbage import gc_paused
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("paths", nargs="*", metavar="PATH", help="projects or files of them; default: the project here or above")
+    add("paths", nargs="*", metavar="PATH", help="projects, or files of a project (default: the project here or above)")
     add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
-    add("--select", metavar="CODES", action="append", help="show these only: codes, their first words, or families")
+    add("--select", metavar="CODES", action="append", help="show only these: codes, first words of codes, or families")
     add("--ignore", metavar="CODES", action="append", help="do not show these")
     add(
         "--against",
         metavar="OLD",
-        help="also say what a reload from there would refuse: a folder, a revision, or `live`",
+        help="also report what a reload from OLD would refuse: a folder, a revision, or `live`",
     )
-    add("--physics", action="store_true", help="also play every motion in simulation (minutes; what is known is kept)")
-    add("--robots", metavar="N", help="with --physics: how many robots that differ a little play it too (default: 20)")
+    add("--physics", action="store_true", help="also play every motion in simulation (takes minutes; results are kept)")
+    add("--robots", metavar="N", help="with --physics: play it also on N robots that differ slightly (default: 20)")
     configure_workers(parser, "with --physics: ")
     configure_imperfections(parser)
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="repair what can be repaired without asking")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
     add("--watch", action="store_true", help="lint again whenever a file is saved, until Ctrl-C")
-    add("--no-cache", action="store_true", help="judge files that were judged before, too, and keep nothing")
-    add("--whole", action="store_true", help="of files that are named, judge their whole projects")
+    add("--no-cache", action="store_true", help="check all files again, and keep no results")
+    add("--whole", action="store_true", help="check the whole projects of the files that are named")
     configure_model(parser)
     add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")
 
@@ -75,7 +75,10 @@ def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namesp
     with progress() as tell:
         both = [played(each, wanted, robots, tell, imperfections=lacking, workers=workers) for each in found]
     for _, rehearsals in both if options.format == "text" else ():
-        print(summary(rehearsals) or "no motion was played: there are none, or the files have errors", file=sys.stderr)
+        print(
+            summary(rehearsals) or "no motion was played: the project has none, or its files have errors",
+            file=sys.stderr,
+        )
     return [each for each, _ in both]
 
 
@@ -116,21 +119,21 @@ def _consistent(options: argparse.Namespace) -> None:
     if options.fix and options.diff:
         raise UsageError("--fix repairs and --diff only shows: choose one")
     if options.diff and options.against is not None:
-        raise UsageError("--diff shows what --fix would change, and no reload is repaired: leave out --against")
+        raise UsageError("--diff shows only what --fix would change: leave out --against")
     if options.robots is not None and not options.physics:
-        raise UsageError("--robots goes with --physics")
+        raise UsageError("--robots needs --physics")
     if options.workers is not None and not options.physics:
-        raise UsageError("--workers goes with --physics")
+        raise UsageError("--workers needs --physics")
     if options.imperfections is not None and not options.physics:
-        raise UsageError("--imperfections goes with --physics")
+        raise UsageError("--imperfections needs --physics")
     if options.physics and (options.watch or options.fix or options.diff or "-" in options.paths):
-        raise UsageError("--physics takes minutes: it can't stand beside --watch, --fix, --diff or `-`")
+        raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
     if options.watch and (options.fix or options.diff or "-" in options.paths):
-        raise UsageError("--watch goes on until Ctrl-C: it can't stand beside --fix, --diff or `-`")
+        raise UsageError("--watch can't be combined with --fix, --diff or `-`")
     if options.watch and options.format not in ("text", "concise"):
-        raise UsageError("--watch is for people: --format text or concise")
+        raise UsageError("--watch prints text for people: choose --format text or concise")
     if "-" in options.paths and options.fix:
-        raise UsageError("`-` has no file to repair: --diff shows what would change")
+        raise UsageError("`-` has no file to repair: use --diff to see what would change")
 
 
 def _diff(projects: Sequence[LintTarget], wanted: Wanted) -> int:

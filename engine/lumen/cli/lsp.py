@@ -4,7 +4,9 @@ import argparse
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--stdio", action="store_true", help="as every editor says; there is no other way")
+    parser.add_argument(
+        "--stdio", action="store_true", help="use standard input and output, as every editor does; this is the only way"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -31,39 +31,39 @@ def ready() -> float:
 VERBS = {
     "new": "start a project of your own",
     "run": "run an exhibition",
-    "say": "let the robot of a running exhibition say something",
-    "stop": "let the robot of a running exhibition rest, at once",
-    "resume": "let a robot that somebody stopped move again",
-    "status": "say what a running exhibition is doing",
-    "why": "say why something happened in an exhibition",
-    "why-not": "say why something did not happen in an exhibition, and what would have made it",
-    "goto": "let a running exhibition enter a state",
-    "model": "let the language model of a running exhibition answer visitors, or not",
-    "reload": "let a running exhibition read its files again, or say which files run",
-    "replay": "take the steps of a journal again, with the files that ran then or with others",
-    "story": "make a story of a recorded visit, to be kept as a test",
-    "diff": "say what differs between two versions of a project, and where a reload would lead",
+    "say": "make the robot of a running exhibition say something",
+    "stop": "make the robot of a running exhibition rest at once",
+    "resume": "let a stopped robot move again",
+    "status": "show what a running exhibition is doing",
+    "why": "explain why something happened in an exhibition",
+    "why-not": "explain why something did not happen, and what would have made it happen",
+    "goto": "make a running exhibition enter a state",
+    "model": "switch the language model of a running exhibition on or off",
+    "reload": "reload the files of a running exhibition, or show which files run",
+    "replay": "repeat the steps of a journal, with the files that ran then or with others",
+    "story": "turn a recorded visit into a story, to keep as a test",
+    "diff": "compare two versions of a project, and preview a reload",
     "topic": "list, print, measure and send the messages of a running exhibition",
     "record": "record the messages of a running exhibition, for Foxglove and Lichtblick",
-    "console": "show a running exhibition in a browser, and steer it from there",
-    "doctor": "check an exhibition's bus, and say what is missing on it",
-    "fleet": "let many houses take other files, step by step",
-    "alerts": "send a test alert to everybody who is told of trouble",
-    "lint": "say what is wrong in a project, and where",
-    "explain": "say what a code of lint means, and show an example",
+    "console": "show a running exhibition in a browser, and control it from there",
+    "doctor": "check an exhibition's bus, and report what is missing",
+    "fleet": "update the robots of many houses, step by step",
+    "alerts": "send a test alert to every recipient",
+    "lint": "report what is wrong in a project, and where",
+    "explain": "explain a code of lint, with an example",
     "completion": "print the completion script for bash, zsh or fish",
     "lsp": "answer an editor (Language Server Protocol)",
-    "language": "begin another language, and say what is missing in one",
+    "language": "add a language to a project, or list what one lacks",
     "schema": "print the JSON Schema of a kind of file, for editors",
-    "upgrade": "rewrite a project's files for the vocabulary that this Lumen reads",
+    "upgrade": "rewrite a project's files for the current vocabulary",
     "test": "play the stories, try the sayings, and list those that fail",
     "hear": "explain what a sentence does in a state, row by row",
     "play": "show a motion on the simulated robot",
-    "memory": "list the people and things that the robot remembers, and forget somebody",
-    "graph": "draw a behaviour (Mermaid)",
-    "plot": "draw a controller, its output for some inputs, or a motion",
-    "import": "turn a file of another tool into a file of Lumen: a statechart, a motion, a controller",
-    "export": "write a behaviour as SCXML, for XState, or as a diagram; the routes as AsyncAPI",
+    "memory": "list what the robot remembers, or forget a visitor",
+    "graph": "draw a behaviour as a diagram",
+    "plot": "draw a controller, its outputs for given inputs, or a motion",
+    "import": "convert another tool's statechart, motion, controller or robot",
+    "export": "write a behaviour as SCXML, for XState or as a diagram; the routes as AsyncAPI",
 }
 MODULES = {"import": "importing", "export": "exporting", "why-not": "why_not"}
 """Modules of verbs that are words of Python, or no words of it."""
@@ -74,7 +74,7 @@ def command_line(wanted: Collection[str]) -> Suggesting:
     parser = Suggesting(
         prog="lumen",
         description="Give a humanoid robot its behaviour in YAML.",
-        epilog="lumen VERB --help says more.",
+        epilog="Run `lumen VERB --help` for the options of a verb.",
         formatter_class=Help,
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
@@ -133,9 +133,9 @@ def _run(options: argparse.Namespace) -> int:
         elif error.errno == errno.ENAMETOOLONG:
             complain(f"lumen {options.verb}: a name is too long for this system: {str(error.filename)[:40]}…")
         elif "No usable temporary directory" in str(error):
-            complain(f"lumen {options.verb}: no folder for temporary files can be written: set TMPDIR to one that can")
+            complain(f"lumen {options.verb}: no folder for temporary files is writable: set TMPDIR to one that is")
         elif not _somewhere():
-            complain(f"lumen {options.verb}: the folder that you are in is gone: `cd` to another one")
+            complain(f"lumen {options.verb}: the current folder no longer exists: `cd` to another one")
         else:
             raise
         return 2

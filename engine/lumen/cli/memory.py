@@ -33,11 +33,16 @@ WHATS = ("visitors", "journal", "forget")
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("what", choices=WHATS, help="list the visitors or the journal, or forget a visitor for good")
-    add("name", nargs="?", metavar="NAME", help="forget: whom; journal: only what is about them")
-    add("--project", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
-    add("--bus", metavar="URL", help="forget: where the exhibition runs; default: LUMEN_BUS, then this machine")
+    add(
+        "name",
+        nargs="?",
+        metavar="NAME",
+        help="forget: the visitor to forget; journal: only the entries about this visitor",
+    )
+    add("--project", metavar="PROJECT", help="the project's folder (default: here or above, else the shipped project)")
+    add("--bus", metavar="URL", help="forget: the exhibition's bus (default: LUMEN_BUS, then this machine)")
     configure_robot_name(parser)
-    add("--limit", metavar="N", type=int, default=50, help="journal: the newest so many entries (default: 50)")
+    add("--limit", metavar="N", type=int, default=50, help="journal: the newest N entries (default: 50)")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -75,7 +80,7 @@ def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
 def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
     """0 where somebody was forgotten and nothing is left that is in reach; raises UsageError without a name."""
     if not name_key(options.name or ""):
-        raise UsageError("say whom: `lumen memory forget NAME`")
+        raise UsageError("name the visitor: `lumen memory forget NAME`")
     found, settings = Forgetting(), main_settings(root, one_robot(root, options.robot_name))
     broker, whole = _tell_running(options, settings, found), draft(read_files(root)).settings
     forget_in(folder, options.name, found)
@@ -95,7 +100,7 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
     except BusUnreachableError as error:
         url = options.bus or os.environ.get("LUMEN_BUS") or (settings.bus if settings else "")
         if url and not url.startswith("memory:"):
-            found.left.append(ForgottenPlace("the exhibition that runs", str(error)))
+            found.left.append(ForgottenPlace("the running exhibition", str(error)))
         return bool(url) and not url.startswith("memory:")
     try:
         _ask(reached.bus, settings or Settings(), options.name, found)
@@ -118,10 +123,10 @@ def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
             found.visitors, found.entries = visitors, entries
             if visitors or entries:
                 what = f"visitors: {visitors}, entries of the journal: {entries}"
-                found.deleted.append(ForgottenPlace("the memory that runs", what))
+                found.deleted.append(ForgottenPlace("the running memory", what))
         case _:
             reason = answer.get("reason") if isinstance(answer, dict) else answer
-            found.left.append(ForgottenPlace("the memory that runs", str(reason)[:500]))
+            found.left.append(ForgottenPlace("the running memory", str(reason)[:500]))
 
 
 def _key(settings: Settings, route: str) -> str:
@@ -139,11 +144,11 @@ def _told(found: Forgetting) -> dict[str, object]:
 
 def _lines(name: str, folder: Path, found: Forgetting) -> Iterator[str]:
     counts = f"{found.visitors} visitors, {found.entries} entries, {found.pictures} pictures"
-    yield f"forgot {name}: {counts}" if found.deleted else f"nothing of {name} is in {folder}"
+    yield f"forgot {name}: {counts}" if found.deleted else f"nothing about {name} is in {folder}"
     for title, places in (("deleted", found.deleted), ("STILL THERE", found.left), ("not here", found.elsewhere)):
         yield from (f"  {title}: {where}: {what}" for where, what in places)
     if found.others:
-        yield f"  others, who are remembered: {', '.join(found.others)}"
+        yield f"  still remembered, with the name in theirs: {', '.join(found.others)}"
 
 
 def _visitor(row: dict[str, object]) -> str:

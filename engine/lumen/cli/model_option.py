@@ -11,7 +11,7 @@ from lumen.loading.files import composed
 
 
 def configure_model(parser: argparse.ArgumentParser) -> None:
-    what = "another robot's body than lumen.yaml's: NAME of models/NAME.yaml"
+    what = "use the body models/NAME.yaml instead of that of lumen.yaml"
     parser.add_argument("--model", metavar="NAME", default="", help=what)
 
 

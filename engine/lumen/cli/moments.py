@@ -16,7 +16,7 @@ def moment(text: str, now: datetime) -> str:
             return datetime.fromisoformat(text).astimezone(UTC).isoformat()
         of_day = time.fromisoformat(text.zfill(5) if text.count(":") == 1 else text.zfill(8))
     except ValueError:
-        raise UsageError(f"`{text}` is no time: write 14:03, 14:03:20, or 2026-11-22T14:03:20") from None
+        raise UsageError(f"`{text}` is not a time: write 14:03, 14:03:20, or 2026-11-22T14:03:20") from None
     begin = datetime.combine(now.date(), of_day, now.tzinfo)
     if begin > now:
         begin -= timedelta(days=1)

@@ -15,23 +15,23 @@ ACTION = "OWNER/lumen@COMMIT"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", metavar="DIR", type=Path, help="where to put it; must not exist, or be empty")
+    parser.add_argument("folder", metavar="DIR", type=Path, help="the new folder; it must be empty or not exist yet")
     which = parser.add_mutually_exclusive_group()
     summary = "; ".join(f"{name}: {what}" for name, what in STARTERS.items())
     which.add_argument(
-        "--like", choices=STARTERS, default="tour", help=f"what to begin with (default: tour); {summary}"
+        "--like", choices=STARTERS, default="tour", help=f"the project to start from (default: tour); {summary}"
     )
     which.add_argument(
         "--minimal", dest="like", action="store_const", const="minimal", help="the same as --like minimal"
     )
     parser.add_argument(
-        "--robot", metavar="NAME", default="", help=f"whose body performs it: {', '.join(shipped_models())}"
+        "--robot", metavar="NAME", default="", help=f"the robot that performs it: {', '.join(shipped_models())}"
     )
     parser.add_argument(
         "--action",
         metavar=ACTION,
         default=ACTION,
-        help="where its file for GitHub finds Lumen's action: the repository, and the 40 digits of a commit",
+        help="Lumen's action for its GitHub workflow: the repository, and the 40 digits of a commit",
     )
     configure_format(parser)
 
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     folder: Path = options.folder
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise UsageError(f"{folder} is there already and not empty: name a new folder")
+            raise UsageError(f"{folder} already exists and is not empty: name a new folder")
         if options.robot and options.robot not in shipped_models():
             hint = did_you_mean(options.robot, shipped_models(), "there are")
             raise UsageError(f"no robot `{options.robot}` comes with Lumen: {hint}")
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     if options.format == "json":
         print_object({"folder": str(folder), "like": options.like, "behavior": behavior, "story": story})
         return 0
-    print(f"{folder} holds a whole exhibition now; its README.md says what is where. Next:")
+    print(f"{folder} now holds a complete exhibition; its README.md lists the files. Next:")
     print(f"  cd {folder}")
     print(f"  {f'lumen run --story {story}':<29}a scripted visitor meets the robot")
     print("  lumen lint                   after every change: what is wrong, and where")

@@ -36,7 +36,7 @@ class Performance:
         if Path(project.root) == shipped_root() != Path.cwd():
             print(f"There is no lumen.yaml here: this is the shipped project, {project.root}.")
         if run_directory.taken:
-            print("Another run of this project is going on: `lumen reload` and its like reach that one.")
+            print("This project already runs in another process: commands such as `lumen reload` reach that one.")
         if self._setup.blind:
             print(f"It runs without camera images: {self._setup.blind}.")
         if exhibition.node.story:
@@ -59,7 +59,7 @@ class Performance:
         troubles = [] if player else exhibition.node.troubles  # a story fails for those that it does not expect
         how = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
         how = INTERRUPTED if exhibition.node.interrupted and how != FAILED else how
-        ended = "The story failed" if failure else "Ended before the story did" if early else "All well"
+        ended = "The story failed" if failure else "Ended before the story was over" if early else "All well"
         ended = "Ended with trouble" if troubles else ended
         real = isinstance(self._setup.clock, RealClock)
         pace = "" if real else f" in {self._took:.0f} s ({self._lived / max(self._took, 0.01):.1f} × real time)"

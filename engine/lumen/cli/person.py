@@ -9,5 +9,5 @@ def person() -> str:
     try:
         user = getpass.getuser()
     except (OSError, KeyError):  # a user that the system has no name for
-        user = "somebody"
+        user = "an unknown user"
     return f"{user} on {platform.node() or 'a terminal'}"

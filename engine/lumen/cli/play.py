@@ -41,14 +41,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--timeline",
         metavar="NAME",
         default="",
-        help="which one of a .xar that has several, or which function of a .py",
+        help="the timeline of a .xar that has several, or the function of a .py",
     )
     parser.add_argument(
-        "--retime", action="store_true", help="give a .motion, .xar or .py the time that its joints need"
+        "--retime", action="store_true", help="lengthen a .motion, .xar or .py where its joints would move too fast"
     )
-    parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    parser.add_argument(
+        "--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)"
+    )
     configure_model(parser)
-    parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
+    parser.add_argument(
+        "--speed",
+        choices=SPEEDS,
+        default="max",
+        help="speed of simulated time, as a multiple of real time (default: max)",
+    )
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
     configure_size(parser)
     configure_imperfections(parser)
@@ -149,7 +156,7 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
     worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
     return [
         f"`{joint}` comes late: to get there by {excess.key.time:.2f} s it would have to move at {excess.value:.3g} "
-        f"{'' if joint in body.hands else 'rad'}/s, and {excess.limit:.3g} is its most"
+        f"{'' if joint in body.hands else 'rad'}/s, but its limit is {excess.limit:.3g}"
         for joint, excess in worst.items()
     ]
 
@@ -166,9 +173,8 @@ def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> Moti
             raise UsageError(f"no file {path}")
         return MotionFile.load(path)
     if path.is_file():
-        raise UsageError(
-            f"{path} is no motion: a file ends in .yaml, {', '.join(GESTURE_ENDINGS[:-1])} or {GESTURE_ENDINGS[-1]}"
-        )
+        endings = f"{', '.join(GESTURE_ENDINGS[:-1])} or {GESTURE_ENDINGS[-1]}"
+        raise UsageError(f"{path} is not a motion: its name must end in .yaml, {endings}")
     report = found.reports.get(f"motions/{name}.yaml")
     if report and has_errors(report.diagnostics):
         raise ProjectError(report.diagnostics)

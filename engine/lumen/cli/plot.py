@@ -18,11 +18,13 @@ from lumen.motion import Motion
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Draw a fuzzy controller: the memberships of its variables and what its outputs do over its inputs; with --at,"
-        " how its rules fire there and what comes of it. Or a motion: each joint by time, within its limits."
+        " how its rules fire for these inputs and the result. Or a motion: each joint over time, within its limits."
     )
     parser.add_argument("file", metavar="FILE", help="fuzzy/NAME.yaml or motions/NAME.yaml")
     parser.add_argument("--at", metavar="INPUT=VALUE", nargs="+", default=[], help="a value for each input")
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="a .png or .svg; default: NAME.png, here")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", type=Path, help="a .png or .svg (default: NAME.png in this folder)"
+    )
     configure_format(parser)
 
 
@@ -30,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
     path = _found(options.file)
     output = options.output or Path(f"{path.stem}.png")
     if (ending := output.suffix.lower()) not in PLOT_ENDINGS:
-        raise UsageError(f"can't draw {output}: the name has to end in {' or '.join(PLOT_ENDINGS)}")
+        raise UsageError(f"can't draw {output}: the name must end in {' or '.join(PLOT_ENDINGS)}")
     if not output.parent.is_dir():
         raise UsageError(f"can't write {output}: there is no folder {output.parent}")
     sheet = _motion(path, options.at) if path.absolute().parent.name == "motions" else _controller(path, options.at)
@@ -68,11 +70,11 @@ def _given(text: str) -> tuple[str, float]:
     try:
         return name, float(value)
     except ValueError:
-        raise UsageError(f"`--at {text}` is no input with a number: write it like FaceXLoc=80") from None
+        raise UsageError(f"invalid `--at {text}`: write an input and a number, such as FaceXLoc=80") from None
 
 
 def _motion(path: Path, at: list[str]) -> PlotSheet:
     if at:
-        raise UsageError(f"--at is for controllers, and {path} is a motion")
+        raise UsageError(f"--at is for controllers, but {path} is a motion: leave it out")
     home = path.absolute().parent.parent
     return motion_sheet(Motion.load(path), lumen.load(home if (home / "lumen.yaml").is_file() else None).body)

@@ -8,14 +8,14 @@ from lumen.app.reaching import Reached, reach_exhibition, robots_meant
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "project", nargs="?", metavar="PROJECT", help="whose exhibition; default: the one here or above"
+        "project", nargs="?", metavar="PROJECT", help="the exhibition's folder (default: here or above)"
     )
-    parser.add_argument("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
+    parser.add_argument("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
     configure_robot_name(parser)
 
 
 def configure_robot_name(parser: argparse.ArgumentParser) -> None:
-    what = "which of `robots:`; default: all for status, stop, resume and model, else the first that runs"
+    what = "a robot of `robots:` (default: all for status, stop, resume and model, else the first that runs)"
     parser.add_argument("--robot-name", metavar="NAME", default="", help=what)
 
 

@@ -38,14 +38,26 @@ LOOK = 0.1
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("file", nargs="?", metavar="FILE.mcap", type=Path, help="default: a new one in .lumen/recordings/")
-    add("--for", dest="span", metavar="TIME", help="end after so long (default: Ctrl-C ends it)")
+    add(
+        "file",
+        nargs="?",
+        metavar="FILE.mcap",
+        type=Path,
+        help="the file to write (default: a new one in .lumen/recordings/)",
+    )
+    add("--for", dest="span", metavar="TIME", help="stop after this time, such as 2min (default: at Ctrl-C)")
     add("--no-camera", action="store_true", help="leave out the camera's images")
-    add("--mark", nargs="?", const="", metavar="TEXT", help="have the last minutes kept, where they are at hand")
-    add("--recover", metavar="FILE.mcap", type=Path, help="make a recording that was cut whole again")
-    add("--project", metavar="DIR", help="whose exhibition; default: the one here or above")
-    add("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
-    add("--format", choices=("text", "json"), default="text", help="default: text")
+    add(
+        "--mark",
+        nargs="?",
+        const="",
+        metavar="TEXT",
+        help="keep the last minutes (needs `record: {ring: …}` in lumen.yaml)",
+    )
+    add("--recover", metavar="FILE.mcap", type=Path, help="repair a recording that was cut off")
+    add("--project", metavar="DIR", help="the exhibition's folder (default: here or above)")
+    add("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
+    add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -66,7 +78,9 @@ def _recover(options: argparse.Namespace) -> int:
     path = options.recover
     remove_drafts(path)
     count = recover(path)
-    said = f"{path} is whole: nothing to recover" if count is None else f"{path} is whole again: {count:,} messages"
+    said = (
+        f"{path} is complete: nothing to recover" if count is None else f"{path} is complete again: {count:,} messages"
+    )
     _say(options, said, file=str(path), messages=count)
     return 0
 
@@ -107,7 +121,7 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
         _wait(bus, tape, span)
     finally:
         recorder.close()
-    lost = f"; {recorder.dropped:,} messages were not: the disk was too slow" if recorder.dropped else ""
+    lost = f"; {recorder.dropped:,} messages were lost: the disk was too slow" if recorder.dropped else ""
     said = tape.trouble or f"recorded {tape.path}: {tape.messages:,} messages, {tape.bytes / 1e6:.1f} MB{lost}"
     _say(options, said, file=str(tape.path), messages=tape.messages, bytes=tape.bytes, dropped=recorder.dropped)
     return 1 if tape.trouble else 0
@@ -133,7 +147,7 @@ def _running_project(root: Path, reached: Reached) -> Project:
         kept = SnapshotStore(Home(home_of(root, reached.home))).files(str(status["bundle"]))
     project = check_files(root, as_robot(kept or read_files(root), reached.home))[0]
     if project is None:
-        raise UsageError(f"the files of {root} have errors, so it is not known what its messages are: `lumen lint`")
+        raise UsageError(f"the files of {root} have errors, so its messages are unknown: run `lumen lint`")
     return project
 
 

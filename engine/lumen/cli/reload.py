@@ -9,12 +9,12 @@ from lumen.app.reload.requests import command_key, status_key
 from lumen.cli.reach import configure_reach, reach
 
 REQUESTS = {
-    "status": "say which files run, what is staged, and what happened to the last ones",
-    "apply": "activate what is staged",
-    "try": "activate what is staged for one visitor, then go back",
-    "refuse": "drop what is staged",
+    "status": "show which files run, what is staged, and how the last reload ended",
+    "apply": "activate the staged files",
+    "try": "activate the staged files for one visitor, then go back",
+    "refuse": "drop the staged files",
     "rollback": "go back to the files that ran before",
-    "dry-run": "only say what the saved files would change",
+    "dry-run": "only show what the saved files would change",
 }
 
 

@@ -36,15 +36,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "what",
         nargs="?",
         metavar="FILE|DAY",
-        help="a .journal file, today, yesterday or 2026-11-23; default: the last run",
+        help="a .journal file, today, yesterday or 2026-11-23 (default: the last run)",
     )
-    add("--all", action="store_true", help="every visit that is kept")
+    add("--all", action="store_true", help="replay every recorded visit")
     add("--list", action="store_true", help="list the files of the journal")
-    add("--project", metavar="DIR", help="whose journal; default: that of the project here or above")
+    add("--project", metavar="DIR", help="the project whose journal is read (default: here or above)")
     add("--until", metavar="14:03", help="only up to that time of day")
-    add("--bundle", metavar="DIR", help="with these files: a folder, or a revision such as HEAD~1")
-    add("--robot", choices=("recording", "simulation"), help="show it again, by this robot")
-    add("--speed", choices=SPEEDS, default="1", help="with --robot: times real time (default: 1)")
+    add("--bundle", metavar="DIR", help="use these files: a folder, or a revision such as HEAD~1")
+    add("--robot", choices=("recording", "simulation"), help="perform it again on this robot")
+    add("--speed", choices=SPEEDS, default="1", help="with --robot: speed, as a multiple of real time (default: 1)")
     configure_robot_name(parser)
     configure_workers(parser)
     configure_format(parser)

@@ -17,7 +17,7 @@ def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
         if count:
             counts.append(f"{count} {_plural(how, count)}")
     if report.redacted:
-        counts.append(f"{report.redacted} redacted, for somebody was forgotten")
+        counts.append(f"{report.redacted} redacted, because a visitor was forgotten")
     yield f"{report.visits} visit{'s' * (report.visits != 1)}, {report.steps:,} steps: {', '.join(counts)}"
     for row in report.differ[:SHOWN]:
         when = datetime.fromtimestamp(row.at).strftime("%Y-%m-%d %H:%M:%S")
@@ -27,7 +27,7 @@ def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
     if len(report.differ) > SHOWN:
         yield f"  and {len(report.differ) - SHOWN} more"
     if report.lost:
-        yield f"  not in the journal: {report.lost:,} entries, which the disk refused or was too slow for"
+        yield f"  missing in the journal: {report.lost:,} entries, because the disk was full or too slow"
     for why, count in report.unknown.items():
         yield f"  not compared: {count:,} {why if other else f'entries: {why}'}"
 

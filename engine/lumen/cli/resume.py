@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 once it may move, 1 where it could not or nobody wants it."""
     if options.format == "json" and not options.yes:
-        raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
+        raise UsageError("--format json can't ask for confirmation: add --yes")
     return for_each_robot(options, _resume)
 
 
@@ -53,6 +53,6 @@ def _here(since: object) -> str:
 def _sure(stopped: Any, robot: str) -> bool:
     """Whether whoever is asked says yes; who stopped it is said before."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
-    print(f"{by} stopped {robot} at {_here(since)}." if by else f"Nobody has stopped {robot}.")
-    otherwise = "resume asks first, but this is not a terminal: say --yes if there is room around the robot"
+    print(f"{by} stopped {robot} at {_here(since)}." if by else f"{robot[0].upper()}{robot[1:]} is not stopped.")
+    otherwise = "resume asks for confirmation, but this is not a terminal: add --yes if there is room around the robot"
     return agrees("It may stand up at once. Is there room around it?", otherwise)

@@ -58,30 +58,49 @@ PRIORITY = -10
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
-    add("--story", metavar="STORY", help="a scripted visitor of behaviors/stories/; without one, you type what you say")
+    add(
+        "project",
+        nargs="?",
+        metavar="PROJECT",
+        help="the project's folder (default: here or above, else the shipped project)",
+    )
+    add(
+        "--story",
+        metavar="STORY",
+        help="play a story of behaviors/stories/ (default: you are the visitor and type what you say)",
+    )
     configure_model(parser)
-    add("--robot-name", metavar="NAMES", help="which of the robots of `robots:`, a list; default: all of them")
-    add("--robot", choices=ROBOTS, default="simulation", help="who performs it (default: simulation)")
+    add("--robot-name", metavar="NAMES", help="robots of `robots:`, separated by commas (default: all)")
+    add("--robot", choices=ROBOTS, default="simulation", help="the robot that performs it (default: simulation)")
     add(
         "--only",
         metavar="PARTS",
-        help="one process of several: robot, brain, motion, visitor, memory, eyes, ears, voice, social, show; a list",
+        help="run only these parts (a list): robot, brain, motion, visitor, memory, eyes, ears, voice, social, show",
     )
-    add("--robot-url", metavar="URL", help="where the real one is (--robot naoqi); default: tcp://nao.local:9559")
-    add("--speed", choices=SPEEDS, default="1", help="simulated time, times real time (default: 1)")
-    add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml's)")
-    add("--for", dest="period", metavar="60s", help="end after so much simulated time")
-    add("--language", metavar="LANG", help="which language it speaks first")
+    add("--robot-url", metavar="URL", help="with --robot naoqi: the robot's address (default: tcp://nao.local:9559)")
+    add("--speed", choices=SPEEDS, default="1", help="speed of simulated time, as a multiple of real time (default: 1)")
+    add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml)")
+    add("--for", dest="period", metavar="60s", help="end after this much simulated time")
+    add("--language", metavar="LANG", help="the language that the robot speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
     configure_size(parser)
     configure_imperfections(parser)
-    add("--record", metavar="FILE.mcap", type=Path, help="record what is said on the bus, for Foxglove and Lichtblick")
-    add("--voice", choices=VOICES, default="none", help="let espeak-ng say the simulated robot's texts (default: none)")
-    add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write what is said instead of playing it")
-    add("--reload", choices=MODES, default="auto", help="take saved files while it runs, or wait for `lumen reload`")
-    add("--last-good", action="store_true", help="where the files have errors, start with the last that had none")
-    add("--fresh", action="store_true", help="begin anew, even where the last run ended without notice")
+    add("--record", metavar="FILE.mcap", type=Path, help="record the messages on the bus, for Foxglove and Lichtblick")
+    add(
+        "--voice",
+        choices=VOICES,
+        default="none",
+        help="speak the simulated robot's texts with espeak-ng (default: none)",
+    )
+    add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write the speech to a file instead of playing it")
+    add(
+        "--reload",
+        choices=MODES,
+        default="auto",
+        help="use saved files at once, at `lumen reload`, or never (default: auto)",
+    )
+    add("--last-good", action="store_true", help="if the files have errors, start with the last ones that had none")
+    add("--fresh", action="store_true", help="start from the beginning, even if the last run ended without notice")
     configure_format(parser)
 
 
@@ -126,9 +145,9 @@ def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, p
     project = startup_project(root, run_directory, last_good=options.last_good, warn=complain)
     story = chosen_story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
-        raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
+        raise UsageError(f"the story `{story.name}` makes the robot fail with `robot:`: play it with --robot recording")
     if story and options.robot == "none":
-        raise UsageError("a story needs a robot in a hall: leave out --robot none")
+        raise UsageError("a story needs a robot: leave out --robot none")
     period, language = period_of(options.period), language_of(project, options.language)
     url = options.bus or os.environ.get("LUMEN_BUS") or project.bus
     if parts:
@@ -257,15 +276,17 @@ def _heed_signals(node: Node) -> None:
 
 def _check_processes(options: argparse.Namespace, story: Story | None, parts: Sequence[str], url: str) -> None:
     if url.startswith("memory:"):
-        raise UsageError("processes need a bus that they can all reach: say --bus amqp://USER:PASSWORD@HOST/")
+        raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
     if options.speed == "max":
-        raise UsageError("processes live in one time, which is real: --speed max needs everything in one of them")
+        raise UsageError("several processes run in real time: leave out --speed max, or run everything in one process")
     if options.video:
         raise UsageError("--video films an exhibition in one process: leave out --only")
     if options.robot == "none" and ROBOT_PART in parts:
         raise UsageError("`--only robot` needs a robot: leave out --robot none")
     if story and story.robot and ROBOT_PART not in parts:
-        raise UsageError(f"`{story.name}` says with `robot:` what fails: give it to the robot's process, too")
+        raise UsageError(
+            f"the story `{story.name}` makes the robot fail with `robot:`: pass it to the robot's process, too"
+        )
 
 
 def _sounding(

@@ -27,7 +27,9 @@ def chosen_story(project: Project, name: str | None) -> Story | None:
         return None
     found = list(stories_of(project, name))
     if len(found) > 1:
-        raise UsageError(f"one story at a time: `{name}` means `{found[0].name}`, `{found[1].name}` and more")
+        raise UsageError(
+            f"choose one story: `{name}` matches {len(found)}, such as `{found[0].name}` and `{found[1].name}`"
+        )
     return found[0]
 
 
@@ -36,12 +38,12 @@ def period_of(text: str | None) -> float | None:
         return None
     period = seconds(text)
     if period is None:
-        raise UsageError(f"--for takes a duration such as 60s or 2min, not `{text}`")
+        raise UsageError(f"invalid `--for {text}`: write a duration such as 60s or 2min")
     return period
 
 
 def language_of(project: Project, language: str | None) -> str:
     if language is not None and language not in project.languages:
-        hint = did_you_mean(language, project.languages, "it speaks")
-        raise UsageError(f"the project does not speak `{language}`: {hint}")
+        hint = did_you_mean(language, project.languages, "it has")
+        raise UsageError(f"the project has no language `{language}`: {hint}")
     return language or ""

@@ -30,7 +30,7 @@ class RunVerdict(NamedTuple):
     def listed(troubles: Sequence[str]) -> list[str]:
         """Return the troubles as lines of a summary."""
         more = len(troubles) - MAX_TROUBLES
-        return [*troubles[:MAX_TROUBLES], *([f"… and {more} more such troubles"] if more > 0 else [])]
+        return [*troubles[:MAX_TROUBLES], *([f"… and {more} more"] if more > 0 else [])]
 
     def to_json(self, project: str, story: str | None) -> dict[str, Any]:
         took = None if self.took is None else round(self.took, 3)

@@ -9,8 +9,13 @@ from lumen.errors import UsageError
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("text", metavar="TEXT", help="what it says")
-    parser.add_argument("--language", metavar="LANG", default="", help="in which language (default: the one it speaks)")
+    parser.add_argument("text", metavar="TEXT", help="the text to say")
+    parser.add_argument(
+        "--language",
+        metavar="LANG",
+        default="",
+        help="the language of the text (default: the one that the robot speaks)",
+    )
     configure_reach(parser)
     configure_format(parser)
 
@@ -18,6 +23,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 once it has said it, 1 where it could not."""
     if not options.text.strip():
-        raise UsageError("there is nothing to say: write the text in quotes")
+        raise UsageError("the text is empty: write it in quotes")
     parameter = {"text": options.text, "language": options.language}
     return command(options, {"type": "texttospeech", "method": "say", "parameter": parameter}, "said")

@@ -41,11 +41,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         choices=FILE_KINDS,
         metavar="KIND",
-        help=f"one of {', '.join(FILE_KINDS)}; default: list them",
+        help=f"one of {', '.join(FILE_KINDS)}; without it, list them",
     )
     add("--vscode", action="store_true", help="print the settings of VS Code that give each file its schema")
     configure_format(parser)
-    add("-o", "--output", metavar="FILE", type=Path, help="write it there; settings that stand there already stay")
+    add(
+        "-o",
+        "--output",
+        metavar="FILE",
+        type=Path,
+        help="write to this file; with --vscode, other settings in it are kept",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -99,8 +105,8 @@ def _added(file: Path, ours: dict[str, Any]) -> str:
     except FileNotFoundError:
         return _json(ours)
     except (OSError, ValueError, RecursionError) as error:
-        reason = getattr(error, "strerror", None) or f"it is no JSON, even with comments ({error})"
-        raise UsageError(f"can't add to {file}: {reason}; leave out -o and copy what is printed") from None
+        reason = getattr(error, "strerror", None) or f"it is not JSON with comments ({error})"
+        raise UsageError(f"can't add to {file}: {reason}; leave out -o, and copy what is printed") from None
 
 
 def _json(data: Any) -> str:

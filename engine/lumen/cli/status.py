@@ -21,9 +21,9 @@ QUESTION = {"ask": "status"}
 EARS = {
     "always": "listen",
     "face": "listen: a face is near and looks",
-    "touch": "listen: somebody touched the robot",
-    "speaks": "deaf but for what interrupts: the robot speaks",
-    "nobody": "deaf but for what interrupts: nobody is near and looks, or touches the robot",
+    "touch": "listen: a hand touched the robot",
+    "speaks": "hear only interruptions: the robot speaks",
+    "nobody": "hear only interruptions: no face is near and looks, and no hand touches the robot",
 }
 """How the ears are, by why (the route `listening`)."""
 
@@ -82,14 +82,14 @@ def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     """What a person reads of a robot that does not answer."""
     name = status["robot"] or "robot"
     if status["held"]:
-        yield name, "does not answer, though a process of this machine is it"
+        yield name, "does not answer, although its process on this machine is alive"
     elif status["ended"]:
-        how = "was told to end" if status["told"] else "ended without notice"
+        how = "was ended" if status["told"] else "ended without notice"
         yield name, f"does not run: it {how} at {_ago(status['ended'], now)}"
     else:
         yield name, "does not run"
     if status["stopped"]:
-        yield "stopped", f"by {status['stopped_by']}: so it is when it runs again, until `lumen resume`"
+        yield "stopped", f"by {status['stopped_by']}: it stays so when it runs again, until `lumen resume`"
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
@@ -104,9 +104,9 @@ def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     for timer in status["timers"]:
         yield "timer", f"{timer['event']}: due {_ahead(timer['due'], now)}"
     if status["stopped"]:
-        yield "stopped", f"by {status['stopped_by']}: nobody moves it until `lumen resume`"
+        yield "stopped", f"by {status['stopped_by']}: it does not move until `lumen resume`"
     if status["realtime"] < 1.0:
-        yield "time", f"{status['realtime']:.2f} of real time is kept"
+        yield "time", f"it runs at {status['realtime']:.2f} × real time"
     if reload := status["last_reload"]:
         yield "reload", f"{reload['verdict']} {_ago(reload['at'], now)}: {reload['text']}"
     yield "files", str(status["bundle"])[:16]

@@ -40,5 +40,7 @@ def _stop(options: argparse.Namespace) -> int:
     finally:
         reached.bus.close()
     return told(
-        options, answer, f"{options.robot_name or 'the robot'} rests; hold its head, or `lumen resume`, to let it go on"
+        options,
+        answer,
+        f"{options.robot_name or 'the robot'} rests; hold its head or run `lumen resume` to let it move again",
     )

@@ -23,14 +23,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "what",
         nargs="?",
         metavar="FILE|DAY",
-        help="a .journal file, today, yesterday or 2026-11-23; default: the last run",
+        help="a .journal file, today, yesterday or 2026-11-23 (default: the last run)",
     )
-    add("--at", metavar="14:03", help="the visit that was under way then; default: the last one")
-    add("-o", "--output", type=Path, metavar="FILE.yaml", help="where to write it; default: the terminal")
-    add("--name", action="append", default=[], metavar="OLD=NEW", help="write another name for somebody; several times")
-    add("--title", help="what the story is called")
-    add("--force", action="store_true", help="replace a file that is there")
-    add("--project", metavar="DIR", help="whose journal; default: that of the project here or above")
+    add("--at", metavar="14:03", help="the visit that was under way at this time (default: the last one)")
+    add("-o", "--output", type=Path, metavar="FILE.yaml", help="the file to write (default: print it)")
+    add("--name", action="append", default=[], metavar="OLD=NEW", help="replace a visitor's name; may be repeated")
+    add("--title", help="the title of the story")
+    add("--force", action="store_true", help="replace an existing file")
+    add("--project", metavar="DIR", help="the project whose journal is read (default: here or above)")
     configure_robot_name(parser)
     configure_format(parser)
 
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     """0 where the robot does in the story what it did then, 1 where it does something else with the files here."""
     output: Path | None = options.output
     if output and output.exists() and not options.force:
-        raise UsageError(f"{output} is there already: name another file, or add --force")
+        raise UsageError(f"{output} already exists: name another file, or add --force")
     names = dict(_name(pair) for pair in options.name)
     root = find_project(options.project)
     robot = one_robot(root, options.robot_name)
@@ -50,13 +50,13 @@ def run(options: argparse.Namespace) -> int:
     home = one.visit.home
     old = bundles.project(home.bundle, home.behavior) if home else None
     if old is None:
-        raise UsageError("that visit is not whole in the journal, or the files that ran then were not kept")
+        raise UsageError("the journal does not hold the whole visit, or the files that ran then were not kept")
     title = options.title or f"A visit on {one.began:%Y-%m-%d} at {one.began:%H:%M}"
     stem = output.stem if output else "visit"
     made = visit_story(project, old, one.visit, name=stem, title=title, renamed=renaming(names))
-    remarks = [f"Of the visit {one.when}, by `lumen story`. It holds what people said: mind their names."]
+    remarks = [f"Made by `lumen story` from the visit {one.when}. It contains what people said: check it for names."]
     if not made.same:
-        remarks.append(f"Then it was otherwise: {made.was}, where it is {made.now} now.")
+        remarks.append(f"The robot does something else with the files of today. Then: {made.was}. Now: {made.now}.")
     text = story_text(made.story, remarks)
     if options.format == "json":
         if output:
@@ -72,5 +72,5 @@ def run(options: argparse.Namespace) -> int:
 def _name(pair: str) -> tuple[str, str]:
     old, separator, new = pair.partition("=")
     if not (separator and old.strip() and new.strip()):
-        raise UsageError(f"`--name {pair}` says no two names: write it as --name Budi=Ani")
+        raise UsageError(f"invalid `--name {pair}`: write two names, such as `--name Budi=Ani`")
     return old.strip(), new.strip()

@@ -23,19 +23,22 @@ class Suggesting(argparse.ArgumentParser):
         """End with 2 and say of the first of these words, which nobody understood, what may have been meant."""
         word = next((word for word in words if word.startswith("-")), words[0])
         if not word.startswith("-"):
-            self.error(f"there is a word too much: `{word}`")
+            self.error(f"unexpected word `{word}`")
         name = word.partition("=")[0]
-        self.error(f"there is no option `{name}`{_meant(name, self.options)}")
+        self.error(f"no option `{name}`{_meant(name, self.options)}")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is None or value in action.choices:
             return
         if isinstance(action, argparse._SubParsersAction):
-            raise argparse.ArgumentError(None, f"there is no verb `{value}`{_meant(value, action.choices)}")
+            raise argparse.ArgumentError(None, f"no verb `{value}`{_meant(value, action.choices)}")
         from lumen.language.diagnostics import did_you_mean  # only who mistyped waits for it
 
-        hint = did_you_mean(value, map(str, action.choices), "one of")
-        raise argparse.ArgumentError(action, f"`{value}` can't stand here: {hint}")
+        hint = did_you_mean(value, map(str, action.choices), "choose one of")
+        name = action.option_strings[-1] if action.option_strings else action.metavar or action.dest
+        raise argparse.ArgumentError(
+            None, f"invalid `{name} {value}`: {hint}" if action.option_strings else f"invalid {name} `{value}`: {hint}"
+        )
 
 
 def parse(parser: Suggesting, arguments: Sequence[str]) -> argparse.Namespace:

@@ -36,24 +36,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         nargs="*",
         metavar="[PROJECT] STORY",
-        help="its folder, then stories or files of sayings: names, files or 'safety_*'; default: all",
+        help="the project's folder, then stories or files of sayings: names, files or 'safety_*' (default: all)",
     )
     add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
     configure_model(parser)
-    add("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
+    add("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
     add("-x", "--exitfirst", action="store_true", help="stop at the first story that fails")
-    add("-v", "--verbose", action="store_true", help="tell what happened in every story, from its beginning")
+    add("-v", "--verbose", action="store_true", help="print all that happened in each story")
     add("--coverage", action="store_true", help="list the states never entered and the transitions never taken")
-    add("--fail-under", metavar="N", type=float, help="with --coverage: fail where less than N %% is covered")
-    add("--explore", action="store_true", help="walk the behaviour for dead ends instead of playing the stories")
-    add("--behavior", metavar="NAME", help="with --explore: another one than the one that runs")
-    add("--home", metavar="STATE", help="with --explore: the state to come back to; default: those of the beginning")
+    add("--fail-under", metavar="N", type=float, help="fail if less than N %% is covered (implies --coverage)")
+    add("--explore", action="store_true", help="search the behaviour for dead ends instead of playing the stories")
+    add("--behavior", metavar="NAME", help="with --explore: another behaviour than the one that runs")
+    add(
+        "--home",
+        metavar="STATE",
+        help="with --explore: the state that must stay reachable (default: the initial states)",
+    )
     add(
         "--bound",
         metavar="N",
         type=int,
         default=MAX_CONFIGURATIONS,
-        help=f"configurations to explore (default: {MAX_CONFIGURATIONS:,})",
+        help=f"with --explore: explore at most N configurations (default: {MAX_CONFIGURATIONS:,})",
     )
 
 
@@ -104,17 +108,17 @@ def _words(words: list[str]) -> tuple[str | None, list[str]]:
 
 def _check(options: argparse.Namespace) -> None:
     if options.fail_under is not None and not 0 <= options.fail_under <= 100:
-        raise UsageError("--fail-under takes a number from 0 to 100")
+        raise UsageError("--fail-under must be a number from 0 to 100")
     if options.bound < 1:
-        raise UsageError("--bound takes a number of configurations, at least 1")
+        raise UsageError("--bound must be a number of configurations, at least 1")
     if not options.explore and (options.behavior or options.home):
-        raise UsageError("--behavior and --home are for --explore")
+        raise UsageError("--behavior and --home need --explore")
 
 
 def _chosen(project: Project, names: list[str]) -> tuple[list[Story], list[SayingSet]]:
     """The stories and the files of sayings of these names, each once."""
     if not (project.stories or project.sayings):
-        raise UsageError("there are no stories: write one into behaviors/stories/, as docs/stories.md shows")
+        raise UsageError("the project has no stories: write one in behaviors/stories/, as docs/stories.md shows")
     stories, sayings = zip(*(tests_of(project, name) for name in names or ["*"]), strict=True)
     return (
         list({story.name: story for each in stories for story in each}.values()),
@@ -151,7 +155,7 @@ def _explore(project: Project, options: argparse.Namespace) -> Explored:
     with progress(at_most=True) as tell:
         found = explored(
             project, behavior, bound=options.bound, home=home,
-            tell=lambda walked, waiting: tell(walked, options.bound, f"configurations explored, {waiting:,} in sight"),
+            tell=lambda walked, waiting: tell(walked, options.bound, f"configurations explored, {waiting:,} waiting"),
         )  # fmt: skip
     memory.keep(found, options.bound, home)
     return found

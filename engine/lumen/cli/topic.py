@@ -27,11 +27,11 @@ from lumen.ports import Bus, Message, ReturningBus
 from lumen.rules import check_files
 
 TOPIC_VERBS = {
-    "list": "the routes, and what comes on them meanwhile",
-    "echo PATTERN": "messages as they come",
-    "pub KEY BODY": "send a message, checked against its route's schema; a BODY that is no JSON is a text",
-    "hz PATTERN": "how often messages come, and the longest gap",
-    "bw PATTERN": "how many bytes messages have, and how many come in a second",
+    "list": "list the routes, and count the messages on them",
+    "echo PATTERN": "print messages as they come",
+    "pub KEY BODY": "send a message, checked against its route's schema; a BODY that is not JSON is sent as text",
+    "hz PATTERN": "measure how often messages come, and the longest gap",
+    "bw PATTERN": "measure the size of messages, and the bytes per second",
 }
 """A PATTERN is a key (`*` is one word, `#` any number of them) or a route's name."""
 LISTENING = 3.0
@@ -54,12 +54,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.epilog = "\n".join(["what to do:", *(f"  {verb:14} {what}" for verb, what in TOPIC_VERBS.items())])
     parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in TOPIC_VERBS], help="see below")
     parser.add_argument("words", metavar="WORD", nargs="*", help="a PATTERN, or a KEY and a BODY")
-    parser.add_argument("--count", metavar="N", type=int, default=0, help="echo: end after so many")
-    parser.add_argument("--for", dest="span", metavar="TIME", help="listen so long (default: 3s; echo: until Ctrl-C)")
-    parser.add_argument("--wait", metavar="TIME", help="pub: wait so long for an answer, and print it")
-    parser.add_argument("--project", metavar="DIR", help="whose exhibition; default: the one here or above")
-    parser.add_argument("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="default: text")
+    parser.add_argument("--count", metavar="N", type=int, default=0, help="echo: stop after N messages")
+    parser.add_argument(
+        "--for", dest="span", metavar="TIME", help="how long to listen (default: 3s; echo: until Ctrl-C)"
+    )
+    parser.add_argument("--wait", metavar="TIME", help="pub: wait this long for an answer, and print it")
+    parser.add_argument("--project", metavar="DIR", help="the exhibition's folder (default: here or above)")
+    parser.add_argument("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -88,7 +90,7 @@ def _check_right(broker: str, key: str) -> None:
 
     with closing(BrokerProbe(broker)) as probe:
         if reason := probe.writing(key):
-            raise BusRefusedError(f"the broker at {probe.address} refuses to let us send `{key}`: {reason}")
+            raise BusRefusedError(f"the broker at {probe.address} does not let this user send `{key}`: {reason}")
 
 
 def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
@@ -159,7 +161,7 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     came = _within(answers, patience) if patience else []
     reached.close()  # from then on it is known whether anybody took it
     if key in returned:
-        print(f"lumen topic: nobody listens to `{key}`: {_listeners(key, project)}", file=sys.stderr)
+        print(f"lumen topic: no process listens to `{key}`: {_listeners(key, project)}", file=sys.stderr)
         return 1
     if not patience:
         return 0
@@ -176,8 +178,8 @@ def _body(text: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
         if text.lstrip()[:1] in ("{", "[") and not isinstance(error, RecursionError):
-            hint = "write it as '{\"count\": 3}', the whole in single quotes"
-            raise UsageError(f"the BODY begins like JSON and is none ({error}): {hint}") from None
+            hint = "write it as '{\"count\": 3}', in single quotes"
+            raise UsageError(f"the BODY begins like JSON but is not valid ({error}): {hint}") from None
         return text
 
 
@@ -193,7 +195,7 @@ def _listeners(key: str, project: Project | None) -> str:
     """Where somebody might listen: what an exhibition hears, the nearest first."""
     routes = by_key(project) if project else {}
     heard = [each for each, route in routes.items() if route.direction is Direction.IN]
-    return "does an exhibition run there?" if key in heard else did_you_mean(key, heard, "an exhibition listens to")
+    return "check that the exhibition runs" if key in heard else did_you_mean(key, heard, "an exhibition listens to")
 
 
 def _hz(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
@@ -228,7 +230,7 @@ def _rows(options: argparse.Namespace, span: float, rows: list[dict[str, Any]], 
     elif rows:
         print(table(head, [["-" if v is None else str(v) for v in row.values()] for row in rows]))
     else:
-        print(f"nothing came on `{options.words[0]}` in {span:g} s")
+        print(f"no message came on `{options.words[0]}` in {span:g} s")
     return 0
 
 

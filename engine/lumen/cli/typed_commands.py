@@ -23,12 +23,12 @@ PLACES = {
 }
 """Where people touch a NAO, in their words."""
 HELP = """\
-What you type is what the visitor says. What begins with / is done:
-  /touch head       a hand on its head; also {places}
-  /touch head 3s    and it stays there for so long (else {tap})
-  /press Next       an operator presses the button of that label, in any of its languages
-  /go, /stay        the operator approves what waits for it, or does not
-  /help             this"""
+Type what the visitor says. A line that begins with / is a command:
+  /touch head       touch its head; also {places}
+  /touch head 3s    keep the hand there for 3 s (default: {tap})
+  /press Next       press a button as the operator, by its label in any language
+  /go, /stay        approve or refuse, as the operator, what waits for approval
+  /help             show this list"""
 
 
 class TypedCommands:
@@ -50,9 +50,7 @@ class TypedCommands:
         verb, *words = line.removeprefix("/").split() or [""]
         try:
             if verb not in self._verbs:
-                raise UsageError(
-                    f"`/{verb}` is nothing that can be done: {did_you_mean(verb, self._verbs, 'there are')}"
-                )
+                raise UsageError(f"no command `/{verb}`: {did_you_mean(verb, self._verbs, 'there are')}")
             self._verbs[verb](words, now)
         except UsageError as error:
             self._narrator.note(str(error))
@@ -68,7 +66,7 @@ class TypedCommands:
         known = self._sensors()
         sensor = known.get(place.casefold())
         if sensor is None:
-            what = f"the robot has no `{place}` to be touched" if place else "write where, as in `/touch head`"
+            what = f"the robot has no place `{place}` to touch" if place else "name a place, as in `/touch head`"
             raise UsageError(f"{what}: {did_you_mean(place, self._places(), 'there are')}")
         if sensor not in self._hands:
             self._feel(sensor, pressed=True)
@@ -77,7 +75,7 @@ class TypedCommands:
     def _press(self, words: list[str], _now: float) -> None:
         label = " ".join(words)
         if not label:
-            raise UsageError("write what stands on the button, as in `/press Next exhibit`")
+            raise UsageError("write the button's label, as in `/press Next exhibit`")
         if reason := self._exhibition.press(label, OPERATOR):
             raise UsageError(reason)
         self._narrator.visitor_action(Press(label))

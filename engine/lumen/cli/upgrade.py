@@ -19,10 +19,12 @@ from lumen.rules.upgrading import Rewriting, upgraded
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above")
+    parser.add_argument("project", nargs="?", metavar="PROJECT", help="the project's folder (default: here or above)")
     parser.add_argument("--diff", action="store_true", help="print what would be written, and write nothing")
-    parser.add_argument("--check", action="store_true", help="write nothing; 1 where something is to be rewritten")
-    parser.add_argument("--keys", action="store_true", help="also write {robot} into keys of 2015")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit code 1 if something must be rewritten"
+    )
+    parser.add_argument("--keys", action="store_true", help="also add {robot} to keys from 2015, which become aliases")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -48,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         print("\n".join(_text(done, left)))
         if old := old_keys(after):
-            print(f"{counted(len(old), 'key')} of 2015 would be heard by several robots: `lumen upgrade --keys`")
+            print(f"{counted(len(old), 'key')} from 2015 would reach several robots: run `lumen upgrade --keys`")
     return int(bool(done) if left is None else left)
 
 
@@ -58,6 +60,6 @@ def _text(done: Sequence[Rewriting], left: bool | None) -> Iterator[str]:
     if left is None:
         yield f"{counted(len(done), 'place')} to rewrite for vocabulary {VOCABULARY}"
         return
-    yield f"{counted(len(done), 'place')} rewritten; the files are written for vocabulary {VOCABULARY}"
+    yield f"{counted(len(done), 'place')} rewritten; the files now use vocabulary {VOCABULARY}"
     if left:
-        yield "there are errors in them: `lumen lint` shows these"
+        yield "the files have errors: run `lumen lint`"

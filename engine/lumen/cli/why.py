@@ -12,7 +12,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "what",
         nargs="?",
         metavar="WHAT",
-        help="words that were said, a state, a motion, or a command's id; default: the last thing that happened",
+        help="words that were said, a state, a motion, or a command's id (default: the last thing that happened)",
     )
     configure_question(parser)
 

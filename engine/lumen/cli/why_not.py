@@ -8,7 +8,7 @@ from lumen.cli.questions import configure_question, put
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("what", metavar="WHAT", help="a state, a motion, or words of a text that was not said")
+    parser.add_argument("what", metavar="WHAT", help="a state, a motion, or words that the robot did not say")
     configure_question(parser)
 
 

@@ -4,5 +4,5 @@ import argparse
 
 
 def configure_workers(parser: argparse.ArgumentParser, goes_with: str = "") -> None:
-    what = f"{goes_with}processes, or a cluster: dask://HOST:8786 (default: one for each core)"
+    what = f"{goes_with}number of processes, or a cluster: dask://HOST:8786 (default: one per core)"
     parser.add_argument("--workers", metavar="N", help=what)

@@ -139,7 +139,7 @@ def test_github_is_told_to_say_what_it_leaves_out() -> None:
     few, many = (render("github", [Findings([one] * number, FILES)]) for number in (10, 23))
     assert "::notice" not in few
     assert "::group::" not in few
-    shown = "GitHub shows the first 10 of a kind: 13 errors more stand in the log of this step only"
+    shown = "GitHub shows the first 10 of a kind: 13 errors more are only in the log of this step"
     assert f"::notice title=lumen lint::{shown}\n::group::All findings\n" in many
     listed = many.partition("::group::All findings\n")[2].partition("::endgroup::")[0].splitlines()
     assert len(listed) == 23

@@ -32,7 +32,7 @@ def _left_out(found: Sequence[Findings]) -> Iterator[str]:
     counts = [(sum(each.count(severity) for each in found), command) for severity, command in _COMMANDS.items()]
     more = [counted(number - SHOWN, command) for number, command in counts if number > SHOWN]
     if more:
-        said = f"GitHub shows the first {SHOWN} of a kind: {' and '.join(more)} more stand in the log of this step only"
+        said = f"GitHub shows the first {SHOWN} of a kind: {' and '.join(more)} more are only in the log of this step"
         yield f"::notice title=lumen lint::{_escape(said)}"
         yield "::group::All findings"
         yield from concise(found).splitlines()[:-1]

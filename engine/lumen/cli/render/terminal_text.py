@@ -27,7 +27,7 @@ def _looked_at(found: Sequence[Findings]) -> str:
     elif found and found[0].root and found[0].name("") not in (".", "./"):
         checked += f" in {clean(found[0].name('').rstrip('/') or '/')}"
     elsewhere = sum(each.elsewhere for each in found)
-    return f"{checked}, {counted(elsewhere, 'finding')} in others of them" if elsewhere else checked
+    return f"{checked}, {counted(elsewhere, 'finding')} in other files" if elsewhere else checked
 
 
 def counted(number: int, word: str) -> str:

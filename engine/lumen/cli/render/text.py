@@ -27,7 +27,7 @@ def _more(found: Sequence[Findings]) -> str:
     codes = [d.code for each in found for d in each.diagnostics]
     if not codes:
         return ""
-    return f"\n`lumen explain {codes[0]}` says more{', and so for every word in brackets' if codes[1:] else ''}"
+    return f"\nFor more: `lumen explain {codes[0]}`{', and likewise for every code in brackets' if codes[1:] else ''}"
 
 
 def _finding(diagnostic: Diagnostic, excerpts: "_Excerpts") -> Iterator[str]:

@@ -33,7 +33,7 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
     lines = [title]
     if failed:
         lines += [f"  {paint(str(rehearsal.place), 'bold', on=coloured)}: step {failed.step}: {failed.what}"]
-        lines += ["  What happened last:"] if rehearsal.trace else []
+        lines += ["  The last events:"] if rehearsal.trace else []
     return "\n".join([*lines, *(_line(*row, coloured) for row in rehearsal.trace)])
 
 
@@ -74,11 +74,11 @@ def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
     asked = paint(f"{count(trial.asked, 'question', 'questions')} in `{trial.language}`", "bold", on=coloured)
     yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, {trial.rates.wrong:.0%} wrongly;"
     yield (
-        f"  each tried by what the others tell: {trial.others.recall:.0%}, {trial.others.wrong:.0%} wrongly;"
-        f" an answer has to be {trial.least:.0%} probable"
+        f"  each tested with the others as examples: {trial.others.recall:.0%}, {trial.others.wrong:.0%} wrongly;"
+        f" an answer needs a probability of {trial.least:.0%}"
     )
     for each in trial.wrong:
-        yield f"  “{each.question}” is answered by {each.passage}, and {_wanted(each)}"
+        yield f"  “{each.question}” is answered by {each.passage}, but {_wanted(each)}"
 
 
 def _wanted(each: WrongAnswer) -> str:
@@ -123,11 +123,13 @@ def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
         on=coloured,
     )
     if explored.unseen:
-        yield "\nNot come upon, by the data that was tried:"
+        yield "\nNot reached with the data that was tried:"
         yield from (f"  {gap.place}: {gap.what}" for gap in explored.unseen)
-    reach = "wherever it came" if explored.complete else f"in the {explored.configurations:,} configurations explored"
+    reach = (
+        "in every configuration" if explored.complete else f"in the {explored.configurations:,} configurations explored"
+    )
     yield from (f"\n`{name}` holds {reach}" for name in explored.kept)
-    when = " (known: these files were explored before)" if explored.known else ""
+    when = " (kept from an earlier run of the same files)" if explored.known else ""
     yield f"\nExplored `{explored.behavior}`: {size}, {steps} in {explored.took:.1f} s{when}: {sum_of}" + (
-        "" if explored.complete else f"; --bound ended it with {explored.waiting:,} more in sight"
+        "" if explored.complete else f"; stopped at --bound with {explored.waiting:,} more to explore"
     )
