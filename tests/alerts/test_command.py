@@ -39,7 +39,7 @@ def test_tells_everybody_whatever_the_hour_and_kind(
         "ok d@e.f by 127.0.0.1",
         "ok the command sh",
     ]
-    assert here.of("test")[0]["text"] == "TINY: this is a test: whoever reads it is told of troubles"
+    assert here.of("test")[0]["text"] == "TINY: this is a test: you will receive this robot's alerts"
     assert json.loads((folder / "got").read_text())["kind"] == "test"
     assert len(post.mails) == 1
     post.close()

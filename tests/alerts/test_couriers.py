@@ -21,7 +21,7 @@ from lumen.language.alerts import Alerts, Program, QuietHours, Recipient, Webhoo
 from tests.alerts.servers import Web
 from tests.waiting import HANG, finished, until
 
-FELL, STOPPED = Alert("fallen", "it fell"), Alert("stopped", "somebody stopped it")
+FELL, STOPPED = Alert("fallen", "it fell"), Alert("stopped", "a person stopped it")
 NIGHT = QuietHours(TimeOfDay(22), TimeOfDay(7))
 
 

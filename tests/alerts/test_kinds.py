@@ -55,7 +55,7 @@ def test_of_a_fall_that_it_gets_up_from_nobody_is_told(hall: Hall) -> None:
 
 def test_a_stop(hall: Hall) -> None:
     hall.whole().stop()
-    assert hall.told("stopped") == "somebody stopped it"
+    assert hall.told("stopped") == "a person stopped it"
 
 
 def test_a_robot_whose_connection_is_lost(hall: Hall) -> None:
@@ -92,7 +92,7 @@ def test_files_that_are_refused(hall: Hall) -> None:
     tour = hall.folder / "behaviors/tour.yaml"
     tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
     assert hall.told("refused") == (
-        "the saved files were refused: behaviors/tour.yaml:8:13 unknown-state; the exhibition goes on as it was"
+        "the saved files were refused: behaviors/tour.yaml:8:13 unknown-state; the exhibition continues unchanged"
     )
 
 
@@ -112,14 +112,14 @@ def test_a_run_that_ended_without_notice(hall: Hall) -> None:
     hall.close()
     hall.closing, hall.nodes = [], []
     hall.whole()
-    assert hall.told("crashed").startswith("it ended without notice, and goes on after ")
+    assert hall.told("crashed").startswith("it ended without notice, and continues after ")
 
 
 def test_a_part_that_gave_up(hall: Hall) -> None:
     shown = hall.whole()
     for part in shown.node.parts:
         part.helpless("the thread `lumen-x` failed 5 times, at last on what Ani said")
-    assert hall.told("crashed") == "a part of it gave up, and nobody can reach it: the robot rests"
+    assert hall.told("crashed") == "a part of it failed, and it can't be reached: the robot rests"
 
 
 def test_a_disk_that_is_full(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,7 +133,7 @@ def test_a_disk_that_is_full(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_disk_that_takes_nothing(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Home, "write", lambda *_: "no space left on device")
     hall.whole()
-    assert hall.told("disk") == "where the behaviour stands can't be written: no space left on device"
+    assert hall.told("disk") == "the snapshot of the behaviour can't be written: no space left on device"
 
 
 def test_room_is_looked_for_where_there_is_no_folder_yet(tmp_path: Path) -> None:
@@ -184,10 +184,10 @@ def test_the_robots_process_tells_of_the_brain_and_of_what_it_notices_alone(hall
     assert hall.told("lost") == "the brain is gone, and the robot rests"
     hall.happen("fallen")
     hall.happen("motors.hot", joint="LKneePitch", temperature=90.0)
-    assert hall.told("fallen") == "it fell, and there is no brain to get it up"
+    assert hall.told("fallen") == "it fell, and no brain is there to get it up"
     assert hall.told("hot") == "a motor is at 90 degrees"
     hall.nodes[0].interrupt()
-    assert hall.told("stopped") == "somebody stopped it"
+    assert hall.told("stopped") == "a person stopped it"
     assert {tuple(body["parts"]) for body in hall.web.bodies} == {("robot",)}
 
 
@@ -215,7 +215,7 @@ def test_the_processes_tell_of_the_broker_the_disk_and_the_files(hall: Hall, mon
     hall.bus.publish("lumen.config.command", {"command": "reload"})
     assert "unknown-state" in hall.told("refused")
     hall.bus.publish("lumen.config.command", {"command": "stop"})
-    assert hall.told("stopped") == "somebody stopped it"
+    assert hall.told("stopped") == "a person stopped it"
     assert origins(hall, "refused") == origins(hall, "stopped") == [["brain"]]
     assert brain.project.alerts.to
 
@@ -254,7 +254,7 @@ def test_a_start_without_a_broker_and_with_a_main_file_that_can_not_be_read(
         url = "amqp://lumen:secret@127.0.0.1:1"
         assert main(["run", str(hall.folder), "--robot", "recording", "--bus", url]) == 2
     [body] = hall.web.told("start")
-    assert body["text"].endswith("it could not start, or go on: no broker listens at 127.0.0.1:1")
+    assert body["text"].endswith("it could not start or continue: no broker listens at 127.0.0.1:1")
     (hall.folder / "lumen.yaml").write_text("alerts: [")
     assert main(["run", str(hall.folder), "--robot", "recording"]) == 1
     assert hall.web.told("start", 2)[1]["text"].endswith("first lumen.yaml:1:9 yaml-syntax")
@@ -268,7 +268,7 @@ def test_a_fault_of_our_own_is_told_without_what_it_says(hall: Hall, monkeypatch
     monkeypatch.setattr("lumen.cli.run.set_up_robot", fail)
     with pytest.raises(ZeroDivisionError):
         main(["run", str(hall.folder), "--robot", "recording"])
-    assert hall.web.told("crashed")[0]["text"].endswith("it was ended by a fault of its own, ZeroDivisionError")
+    assert hall.web.told("crashed")[0]["text"].endswith("it ended because of a fault in Lumen, ZeroDivisionError")
 
 
 def test_a_story_is_no_trouble_and_nobody_is_told_of_what_was_typed_wrong(

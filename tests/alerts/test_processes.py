@@ -56,7 +56,7 @@ def test_an_exhibition_that_is_stopped_killed_and_begun_again(
     second.send_signal(signal.SIGTERM)
     second.wait()
     assert {body["text"].partition(": ")[2].partition(" after")[0] for body in web.bodies} == {
-        "somebody stopped it",
+        "a person stopped it",
         "it ended without notice, and goes on",
     }
 

@@ -226,7 +226,7 @@ def test_a_crash_keeps_autonomy_and_says_what_is_lost(tmp_path: Path) -> None:
     Decisions(after, narrator, told.append, Mock()).recover({**kept, "waiting": ["dance"]}, resumed=True)
     assert after.autonomy == "alone"
     assert told[-1] == {"approval": "lost", "event": "dance"}
-    narrator.line.assert_called_with("operator", "dance waited for GO, and is lost: the engine was away")
+    narrator.line.assert_called_with("operator", "dance waited for GO, and is lost because the engine ended")
     fresh = Approvals()
     Decisions(fresh, narrator, told.append, Mock()).recover(kept, resumed=False)
     assert fresh.autonomy == "ask"

@@ -106,7 +106,7 @@ def test_a_moment_says_where_too(ask: Asker) -> None:
         ({}, "say where"),
         ({"at": "noon"}, "`noon` is no time"),
         ({"position": 100_000}, "nothing happened"),
-        ({"position": 1, "event": "left"}, "`event` is one as in"),
+        ({"position": 1, "event": "left"}, "`event` must look like"),
     ],
 )
 def test_what_can_not_be_asked_is_said(ask: Asker, body: dict[str, Any], reason: str) -> None:

@@ -138,7 +138,7 @@ def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path
         until(lambda: ask("now")["position"] > before["position"])  # it is kept on another thread
         assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": False}
         assert ask("event", event="back") == {"verdict": "done", "taken": True}
-        assert exhibition.why("waiting")["chain"][-1]["text"] == "somebody"
+        assert exhibition.why("waiting")["chain"][-1]["text"] == "an operator"
         closed = next(way for way in ask("now")["ways"] if way["event"] == "next")
         assert (closed["open"], closed["why"]) == (False, "context.n < 1 is false: context.n is 1")
         assert ask("event", event="named", data={"name": "Budi"}, by="Aisyah")["taken"]
@@ -181,7 +181,7 @@ def test_what_can_be_no_event_is_refused(mine: Path) -> None:
     with lumen.open(mine, bus=bus) as exhibition:
         ask = asker(exhibition, bus)
         for event in ("", 3, None, "x" * 101):
-            assert ask("event", event=event) == {"verdict": "refused", "reason": "`event` is the name of an event"}
+            assert ask("event", event=event) == {"verdict": "refused", "reason": "`event` must be the name of an event"}
         for event in ("done.command.d1", "shared.changed"):
             refused = ask("event", event=event)
             assert refused["verdict"] == "refused"

@@ -181,7 +181,7 @@ def test_a_robot_that_nobody_could_stop_any_more_rests(capsys: pytest.CaptureFix
         assert bool(rested) == thread.vital
     said = capsys.readouterr().out
     assert "trouble  the thread `eyes` failed 5 times" in said
-    assert "robot    rests, for nobody could stop it any more: the thread `ears` failed 5 times" in said
+    assert "robot    rests, because no person could stop it any more: the thread `ears` failed 5 times" in said
     exhibition.close()
 
 

@@ -65,7 +65,7 @@ def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str
     for words, says in (
         (["tomorrow"], "is no file and no day"),
         ([date.today().isoformat()], "nothing of"),
-        (["nothing.journal"], "there is no file"),
+        (["nothing.journal"], "no file nothing.journal"),
         (["--all"], "nothing is in"),
         (["--until", "25:00"], "is no time of day"),
     ):

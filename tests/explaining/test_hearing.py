@@ -287,14 +287,14 @@ def test_an_invoked_behaviour_that_listens_keeps_else_from_going() -> None:
 @for_each(
     ("hears", "context", "text", "line"),
     [
-        ({"sing": "sing"}, {}, "hm", "“hm” while offer hears nothing of it"),
+        ({"sing": "sing"}, {}, "hm", "no row of “hm” while offer matches"),
         ({"sing": "sing"}, {}, "sing", ""),
         ({"dance": "dance", "sing": "sing"}, {}, "don't dance",
          "“don't dance” while hears dance is false in offer (“dance” is negated in “don't dance”)"),
         ({"dance": {"target": "dance", "guard": "context.n < 3"}}, {"n": 5}, "dance",
          "“dance” while context.n < 3 is false in offer (context.n is 5)"),
         ({"dance": {"target": "dance", "guard": "context.n < 3"}}, {"n": 0}, "hm",
-         "“hm” while offer hears nothing of it"),
+         "no row of “hm” while offer matches"),
         ({"named": {"target": "named", "guard": "heard.name == 'Ani'"}}, {}, "my name is Budi",
          "“my name is Budi” while heard.name == 'Ani' is false in offer (heard.name is 'Budi')"),
         ({"else": {"target": "lost", "guard": "context.n > 0"}}, {}, "hm",

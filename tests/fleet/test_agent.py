@@ -167,8 +167,8 @@ def test_orders_of_strangers_other_houses_other_centres_and_older_ones_are_refus
         (ordered(house.signer, other, 9, centre="two"), "two centres"),
         (ordered(house.signer, other, 5), "was another one"),
         (ordered(house.signer, other, 9, term=0), "is over"),
-        ({"order": 3}, "an order came that is none"),
-        ("x", "an order came that is none"),
+        ({"order": 3}, "an order is not valid"),
+        ("x", "an order is not valid"),
     ]:
         house.agent.order(body)
         house.agent.tick()

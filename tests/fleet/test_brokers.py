@@ -174,7 +174,7 @@ def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
     ctl(own_broker, "itb", "delete_shovel", UP)
     found = checked(own_broker, museums.root, "itb", capsys)
     assert wrong(found) == {
-        "what the user robots may do": r'its configure is ".*", not "^(?!lumen\\.fleet).*"',
+        "the permissions of the user robots": r'its configure is ".*", not "^(?!lumen\\.fleet).*"',
         f"the shovel {UP}": "it is not there",
         f"the policy {EXCHANGE}": "it is not there",
         "the line up to the centre": "there is none",
@@ -209,7 +209,7 @@ def test_what_the_centre_lacks_is_told(
     ctl(own_broker, CENTRE, "clear_topic_permissions", "itb", EXCHANGE)
     monkeypatch.setattr("lumen.app.fleet.broker_certificate.NOTICE", 100)
     found = checked(own_broker, museums.root, CENTRE, capsys)
-    assert wrong(found).keys() == {"the certificate", f"the keys of the user itb on {EXCHANGE}"}
+    assert wrong(found).keys() == {"the certificate", f"the topic permissions of the user itb on {EXCHANGE}"}
     assert re.fullmatch(r"it ends on \d{4}-\d\d-\d\d, in \d+ days", found["the certificate"]["wrong"])
     del found["the certificate"]
     mended(own_broker, CENTRE, found)
@@ -224,7 +224,7 @@ def test_what_was_not_looked_at_is_not_well(
     assert main(["fleet", "check", "itb", *where, "--rabbitmqctl", "no-such-tool"]) == 1
     told = capsys.readouterr().out
     assert f"ok the queue {UP}: " in told
-    assert "!! users, rights, policies and lines: they were not looked at: `no-such-tool` can't be run" in told
+    assert "!! users, rights, policies and lines: they were not checked: `no-such-tool` can't be run" in told
     where = ["--project", str(museums.root), "--bus", own_broker.url(CENTRE)]
     assert main(["fleet", "check", "itb", *where, "--rabbitmqctl", "false"]) == 1
     assert f"!! the queue {UP}: it is not there\n   rabbitmqctl import_definitions" in capsys.readouterr().out

@@ -190,12 +190,12 @@ def test_a_pinned_robot_takes_no_part(hall: Hall) -> None:
 @pytest.mark.parametrize(
     ("body", "said"),
     [
-        ({"ask": "rollout", "bundle": "ff"}, "no bundle was published whose hash begins with `ff`"),
+        ({"ask": "rollout", "bundle": "ff"}, "no published bundle has a hash that begins with `ff`"),
         ({"ask": "pause"}, "no rollout is under way"),
         ({"ask": "abort"}, "no rollout is under way"),
         ({"ask": "pin", "robot": "itb/nao9"}, "the fleet has no robot `itb/nao9`: did you mean"),
-        ({"ask": "statsu"}, "a centre can't `statsu`: did you mean `status`"),
-        ({"ask": "publish", "bundle": {"hash": "a" * 64}}, "what came is no bundle"),
+        ({"ask": "statsu"}, "the centre has no request `statsu`: did you mean `status`"),
+        ({"ask": "publish", "bundle": {"hash": "a" * 64}}, "a message is not a valid bundle"),
         ("x", "is expected"),
     ],
 )

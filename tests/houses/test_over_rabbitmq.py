@@ -89,7 +89,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
         patient.setattr(claiming, "CLAIM_DURATION", HANG)
         patient.setattr(node, "CLAIM_DURATION", HANG)
         code, said = hall.call("run", "--robot", "recording", "--robot-name", "ana")
-    assert (code, "is the robot of ana on this bus already: end it first" in said) == (2, True)
+    assert (code, "is already the robot of ana on this bus: end it first" in said) == (2, True)
     assert hall.call("stop", "--robot-name", "ana")[0] == 0
     found = hall.status()
     by = found["ana"]["stopped_by"]
@@ -105,9 +105,9 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     assert hall.status()["ana"]["stopped_by"] == by
     hall.end(process, signal.SIGTERM)
     assert told.read_text("utf-8").count("The last run ended without notice") == 2
-    assert "ana       does not run: it was told to end at " in hall.call("status", "--robot-name", "ana")[1]
+    assert "ana       does not run: it was ended at " in hall.call("status", "--robot-name", "ana")[1]
     said = hall.call("run", "--robot", "recording", "--for", "0.1s")[1]
-    assert said.count("The last run was told to end") == 2
+    assert said.count("The last run was ended") == 2
     assert "without notice" not in said
 
 

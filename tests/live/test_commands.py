@@ -106,7 +106,7 @@ def test_what_is_staged_can_be_refused(manual: Live) -> None:
     manual.edit(SORRY, PARDON)
     manual.until_told("staged: ")
     answer = manual.ask("refuse")
-    assert (answer["verdict"], answer["reason"]) == ("refused", "somebody refused them")
+    assert (answer["verdict"], answer["reason"]) == ("refused", "a person refused them")
     assert manual.show.loop.project is before
     assert not manual.ask("status")["staged"]
     assert "nothing staged" in manual.ask("apply")["reason"]
@@ -134,7 +134,7 @@ def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
     manual.until_told("staged: ")
     answer = manual.ask("dry-run")
     assert answer["verdict"] == "dry run"
-    assert "it would be active at once" in answer["lines"][0]
+    assert "they would be active at once" in answer["lines"][0]
     assert manual.show.loop.project is before
 
 
@@ -226,7 +226,7 @@ def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live:
     refusal = 'no|done: "#offer"'
     live.edit(refusal, refusal.replace("offer", "how_are_you"))
     live.until_told("are active")
-    live.until_told("the story `refuses` does not hold with these files")
+    live.until_told("the story `refuses` fails with these files")
 
 
 @pytest.mark.process

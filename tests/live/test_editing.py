@@ -56,7 +56,7 @@ def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
 ) -> None:
     before = live.show.loop.project
     live.edit(old, new)
-    live.until_told("refused: the exhibition goes on as it was")
+    live.until_told("refused: the exhibition continues unchanged")
     assert told in live.transcript
     assert "behaviors/tour.yaml:" in live.transcript
     assert live.show.loop.project is before

@@ -61,7 +61,7 @@ def test_how_the_reader_ended_is_told(copy: Path, reader: None, how: str) -> Non
     worker = ValidationWorker(copy, timeout=2.0 if "more than 2 s" in how else 60.0)
     worker.begin()
     fatal(copy)
-    with pytest.raises(FatalFilesError, match=f"these files end the process that reads them: {how}"):
+    with pytest.raises(FatalFilesError, match=f"the process that reads these files failed: {how}"):
         worker.load(read_files(copy))
     worker.close()
 
@@ -83,7 +83,7 @@ def test_an_exhibition_refuses_them_and_goes_on(copy: Path, reader: None) -> Non
     one = Live(copy, apart=True)
     try:
         one.edit(SORRY, FATAL)
-        one.until_told("refused: these files end the process that reads them: it was ended by SIGSEGV; the exhibition")
+        one.until_told("refused: the process that reads these files failed: it was ended by SIGSEGV; the exhibition")
         one.edit(FATAL, PARDON)
         one.until_told("the saved files are active")
         assert one.verdicts == ["refused", "applied"]
@@ -112,7 +112,7 @@ def test_where_no_process_can_be_begun_nothing_is_read_here(
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(validation_worker, "COMMAND", ["/nowhere/python"])
-    with pytest.raises(FatalFilesError, match="no process can be begun that reads the files: No such file"):
+    with pytest.raises(FatalFilesError, match="the process that reads the files can't start: No such file"):
         load_apart(copy, read_files(copy))
 
 

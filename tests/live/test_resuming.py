@@ -124,7 +124,7 @@ def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
     data = json.loads(home.read(SNAPSHOT_FILE) or b"")
     home.write(SNAPSHOT_FILE, json.dumps({**data, "time": time.time() - LATELY - 60.0}).encode())
     home.remove(ALIVE_FILE)
-    assert "begins anew" in str(resumed(copy))
+    assert "starts from the beginning" in str(resumed(copy))
     alive = time.time() - 1.0
     home.write(ALIVE_FILE, json.dumps({"time": alive}).encode())  # nothing happened before the crash
     assert isinstance(found := resumed(copy), Resumption)

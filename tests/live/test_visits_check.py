@@ -93,7 +93,7 @@ def test_the_newest_visits_come_first_and_the_rest_is_said_to_be_missing(
     assert first == sorted(first, reverse=True)
     found = check(folder, budget=0.0)
     assert (found.report.visits, found.complete) == (0, False)
-    assert list(found.lines()) == ["not one recorded visit could be played within 0 s (`budget` in lumen.yaml)"]
+    assert list(found.lines()) == ["no recorded visit could be played within 0 s (`budget` in lumen.yaml)"]
     asked = [0.0]
 
     def clock() -> float:
@@ -173,8 +173,8 @@ def test_refuse_keeps_the_files_until_a_person_takes_them(folder: Path) -> None:
     live = begin(folder, "refuse")
     before = live.show.loop.project
     live.edit("en: Goodbye!", "en: So long!", HELLO)
-    live.until_told("refused: recorded visits would be others with these files")
-    assert "(`lumen reload --apply` takes them all the same)" in live.transcript
+    live.until_told("refused: recorded visits would go differently with these files")
+    assert "(`lumen reload --apply` activates them all the same)" in live.transcript
     assert live.show.loop.project is before
     answer = live.ask("dry-run")
     assert answer["verdict"] == "judging"
@@ -192,7 +192,7 @@ def test_refuse_keeps_the_files_until_a_person_takes_them(folder: Path) -> None:
 def test_by_hand_it_is_staged_with_what_it_would_change(folder: Path) -> None:
     live = begin(folder, "refuse", how="manual")
     live.edit("en: Goodbye!", "en: So long!", HELLO)
-    live.until_told("`lumen reload --apply` makes it active")
+    live.until_told("`lumen reload --apply` activates it")
     assert "of 3 visits: 3 say something else" in live.transcript
     live.show.close()
 
@@ -236,6 +236,6 @@ def test_a_check_that_crashes_costs_the_check_only(
 def test_in_the_process_that_judges_it_is_the_same(folder: Path) -> None:
     live = begin(folder, "refuse", apart=True)
     live.edit("en: Goodbye!", "en: So long!", HELLO)
-    live.until_told("refused: recorded visits would be others with these files")
+    live.until_told("refused: recorded visits would go differently with these files")
     assert "of 3 visits: 3 say something else" in live.transcript
     live.show.close()

@@ -94,7 +94,7 @@ def test_a_module_is_announced_does_its_work_is_one_and_is_missed(
     assert second.returncode == 2
     assert second.stdout
     assert f"process {first.pid} on " in (said := second.stdout.read())
-    assert "is the memory of NAO on this bus already" in said
+    assert "is already the memory of NAO on this bus" in said
     first.kill()
     lost: list[str] = []
     until(lambda: (lost.extend(event.name for event in brain.tick()), lost)[1])

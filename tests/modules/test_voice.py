@@ -150,7 +150,7 @@ def test_a_language_that_espeak_lacks_is_spoken_in_the_first(tmp_path: Path) -> 
     [
         (["--sound", "a.wav"], "say --voice espeak, too"),
         (["--voice", "espeak", "--robot", "recording"], "leave out --robot"),
-        (["--voice", "espeak", "--sound", "nowhere/a.wav"], "name a .wav file in a folder that is there"),
+        (["--voice", "espeak", "--sound", "nowhere/a.wav"], "name a .wav file in an existing folder"),
         (["--voice", "espeak", "--sound", "a.mp3"], "name a .wav file"),
     ],
 )

@@ -91,7 +91,7 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
     assert motions(robot) == ["dance", "goodbye"]
     again.send_signal(signal.SIGTERM)
     said = again.communicate(timeout=HANG)[0]
-    assert "this one goes on from there, in dance" in said
+    assert "this one continues from there, in dance" in said
     assert again.returncode == 0
     assert "Traceback" not in said
 
@@ -150,7 +150,7 @@ def test_a_robot_that_hangs_is_lost_and_does_nothing_late_when_it_goes_on(
     troupe.until(lambda: "idle" in brain.states)
     robot.send_signal(signal.SIGTERM)
     said = robot.communicate(timeout=HANG)[0]
-    assert "rests: it stood still for " in said
+    assert "rests: its process was paused for " in said
     assert "goodbye" not in said
     dead.close()
 

@@ -178,11 +178,11 @@ def test_a_robot_that_stood_still_rests_first_and_then_follows_its_brain_on(hall
     hall.live(8.0, brain)
     live(1.0)
     assert [command for _, command in robot.performed] == [Rest()]
-    assert told[-1] == "rests: it stood still for 8.1 s"
+    assert told[-1] == "rests: its process was paused for 8.1 s"
     assert (guard.follows, noticed) == (brain.session, [])
     other = hall.presence("robot")
     other.settle()
-    with pytest.raises(BusError, match=r"stood still, and by now process \d+ on .* is it: this one ends"):
+    with pytest.raises(BusError, match=r"was paused, and process \d+ on .* now runs in its place: it ends"):
         live(1.0, other)
 
 

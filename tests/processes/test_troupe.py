@@ -114,7 +114,7 @@ def test_a_second_one_of_the_same_kind_is_refused(troupe: Troupe, part: str, mon
     troupe.until(lambda: "idle" in brain.states)
     monkeypatch.setattr(node, "CLAIM_DURATION", HANG)  # the first may announce itself late
     troupe.join(part)
-    with pytest.raises(UsageError, match=f"is the {part} of NAO on this bus already: end it first"):
+    with pytest.raises(UsageError, match=f"is already the {part} of NAO on this bus: end it first"):
         troupe.until(lambda: False)
     assert robot.process.over is False
 

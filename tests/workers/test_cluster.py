@@ -46,7 +46,7 @@ def test_a_cluster_of_which_one_worker_dies_plays_what_this_process_plays(cluste
 def test_where_nobody_listens_that_is_said() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-    with pytest.raises(WorkersError, match=f"^no scheduler of Dask answers at dask://127.0.0.1:{port}: start one"):
+    with pytest.raises(WorkersError, match=f"^no Dask scheduler answers at dask://127.0.0.1:{port}: start one"):
         list(workers_of(f"dask://127.0.0.1:{port}").results(play_case, WorkKit({}, {}), [()]))
 
 

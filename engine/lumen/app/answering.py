@@ -37,7 +37,7 @@ def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | No
     if question == WHY:
         return why(steps, what, until).to_json()
     if not what:
-        raise UsageError("why not what? Say a state, a motion or a text: `lumen why-not dance`")
+        raise UsageError("name a state, a motion or a text, as in `lumen why-not dance`")
     return why_not(steps, what, until).to_json()
 
 
@@ -46,13 +46,13 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
     try:
         moment = datetime.fromisoformat(at).timestamp()
     except (ValueError, OverflowError, OSError):
-        raise UsageError(f"`{at[:40]}` is no time: it is written as in 2026-11-22T14:03:00Z") from None
+        raise UsageError(f"`{at[:40]}` is not a time: write it as in 2026-11-22T14:03:00Z") from None
     if not steps:
-        raise TooLongAgoError("nothing of that time is remembered")
+        raise TooLongAgoError("no steps of that time are in memory")
     until = _on_its_day(moment - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)
     if until < steps[0].at:
         first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)
-        raise TooLongAgoError(f"what is kept begins at {first:%H:%M:%S}: ask about a later time")
+        raise TooLongAgoError(f"the steps in memory begin at {first:%H:%M:%S}: ask about a later time")
     return until
 
 
@@ -91,7 +91,7 @@ class AnsweringThread:
         try:
             self._waiting.put_nowait((message, make))
         except queue.Full:
-            self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} others wait for their answers")
+            self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} others already wait for an answer")
 
     def close(self) -> None:
         """End the thread."""
@@ -125,11 +125,11 @@ def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: Journ
     if body.get("ask") == JOURNAL:
         position = body.get("from", 0)
         if type(position) is not int:
-            return {"verdict": "refused", "reason": "`from` is the position of an entry: a whole number"}
+            return {"verdict": "refused", "reason": "`from` must be a whole number: the position of an entry"}
         return journal_page(journal, position)
     what, at = body.get("what", ""), body.get("at")
     if not isinstance(what, str) or not (at is None or isinstance(at, str)):
-        return {"verdict": "refused", "reason": "`what` and `at` are texts"}
+        return {"verdict": "refused", "reason": "`what` and `at` must be texts"}
     try:
         return answer(steps, str(body["ask"]), what[:MAX_QUESTION], at)
     except TooLongAgoError as error:

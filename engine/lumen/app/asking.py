@@ -44,6 +44,6 @@ def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_AN
     except queue.Empty:
         if isinstance(bus, BlockableBus) and bus.blocked:
             raise BusUnreachableError(f"the broker is short of {bus.blocked} and accepts no messages") from None
-        raise BusUnreachableError(f"nobody answers on `{key}`: is an exhibition running on that bus?") from None
+        raise BusUnreachableError(f"no answer came on `{key}`: check that an exhibition runs on that bus") from None
     finally:
         undo()

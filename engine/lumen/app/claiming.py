@@ -28,7 +28,7 @@ def refuse_rivals(presence: Presence) -> None:
     for part in ALONE:
         if part in presence.parts and (rival := presence.rival(part)):
             raise UsageError(
-                f"{where_it_runs(rival)} is the {part} of {presence.robot} on this bus already:"
+                f"{where_it_runs(rival)} is already the {part} of {presence.robot} on this bus:"
                 " end it first, or give this project's robot another name"
             )
 
@@ -38,6 +38,7 @@ def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
     if bus.blocked:
         parts = " or ".join(part for part in ALONE if part in presence.parts)
         raise BusUnreachableError(
-            f"the broker is short of {bus.blocked} and accepts no messages: can't check whether another process is the"
-            f" {parts} of {presence.robot}; start again when the broker has enough (see `rabbitmqctl status`)"
+            f"the broker is short of {bus.blocked} and accepts no messages, so Lumen can't check whether another"
+            f" process is the {parts} of {presence.robot}: start again when the broker has"
+            " enough (see `rabbitmqctl status`)"
         )

@@ -36,7 +36,7 @@ class Decisions:
                 if level == "alone":
                     self._narrator.line("operator", "autonomy: alone, as before")
                 for event in waiting:
-                    self._narrator.line("operator", f"{event} waited for GO, and is lost: the engine was away")
+                    self._narrator.line("operator", f"{event} waited for GO, and is lost because the engine ended")
                     self._record({"approval": "lost", "event": str(event)})
         if kept:
             self._write()
@@ -46,7 +46,7 @@ class Decisions:
         if self._approvals.decide(id, by, go=go):
             return {"verdict": "done"}
         waiting = ", ".join(f"`{held.id}` ({held.event.name})" for held in self._approvals.waiting)
-        return {"verdict": "refused", "reason": f"nothing waits under `{id[:20]}`: {waiting or 'nothing waits at all'}"}
+        return {"verdict": "refused", "reason": f"no event with the id `{id[:20]}` waits: {waiting or 'none waits'}"}
 
     def autonomy(self, level: Autonomy, by: str) -> dict[str, Any]:
         """Whether marked transitions wait for GO from now on."""

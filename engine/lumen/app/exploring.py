@@ -98,7 +98,7 @@ def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
     stimuli = [step.stimulus for step in finding.path if step.stimulus]
     worked = {_verb(s.command) for s in stimuli if s.kind is StimulusKind.DONE} & robot.keys()
     lines += [
-        f"# On this way `{verb}` works at first; a story can only let it fail from the beginning."
+        f"# Here `{verb}` works at first and fails later; in a story it can only fail from the beginning."
         for verb in sorted(worked)
     ]
     steps = [*_steps(project, finding.path), *([f"wait: {finding.patience:g}s"] if finding.patience else [])]

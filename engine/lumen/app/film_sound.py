@@ -24,6 +24,6 @@ def add_sound(film: Path, track: AudioTrack, length: float) -> None:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
         if done.returncode:
             raise RobotFailedError(
-                f"{film} has no sound: ffmpeg said {(done.stderr.strip().splitlines() or ['nothing'])[-1]}"
+                f"{film} has no sound; ffmpeg's error: {(done.stderr.strip().splitlines() or ['nothing'])[-1]}"
             )
         os.replace(whole, film)

@@ -59,7 +59,7 @@ def _event(said: Any) -> Event | None:
             return None
         case {"name": str(name), **more} if name and len(name) <= MAX_NAME:
             return Event(name, more.get("data"))
-    raise UsageError('`event` is one as in `{"name": "heard", "data": {…}}`')
+    raise UsageError('`event` must look like `{"name": "heard", "data": {…}}`')
 
 
 def _saved(running: Project) -> Project:
@@ -75,7 +75,7 @@ def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[
     """The entries around where it is to fork, and the position of the first that may be otherwise."""
     position, at = body.get("position"), body.get("at")
     if type(position) is not int and not isinstance(at, str):
-        raise UsageError("say where: `position` is the position of an entry, `at` a time as in 2026-11-22T14:03:00Z")
+        raise UsageError("add `position`, the position of an entry, or `at`, a time such as 2026-11-22T14:03:00Z")
     remembered = _remembered(journal)
     if type(position) is int:
         return (remembered if _knows(remembered, position) else _kept(journal, position)), position
@@ -86,7 +86,7 @@ def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[
     for file, header in sorted(_files(journal), key=lambda row: row[1].first, reverse=True):
         if header.began <= moment and (found := _after(entries := _read(file), moment)) is not None:
             return entries, found
-    raise UsageError("nothing of that time is in the journal")
+    raise UsageError("the journal has nothing from that time")
 
 
 def _remembered(journal: JournalWriter) -> list[RecordedEntry]:
@@ -108,7 +108,7 @@ def _kept(journal: JournalWriter, position: int) -> Sequence[RecordedEntry]:
     """Those of the file in which that position is."""
     files = sorted((header.first, file) for file, header in _files(journal) if header.first <= position)
     if not files:
-        raise UsageError(f"{position} is not in the journal any more")
+        raise UsageError(f"entry {position} is no longer in the journal")
     return _read(files[-1][1])
 
 
@@ -125,7 +125,7 @@ def _moment(text: str) -> float:
     try:
         return datetime.fromisoformat(text).timestamp()
     except (ValueError, OverflowError, OSError):
-        raise UsageError(f"`{text[:40]}` is no time: it is written as in 2026-11-22T14:03:00Z") from None
+        raise UsageError(f"`{text[:40]}` is not a time: write it as in 2026-11-22T14:03:00Z") from None
 
 
 def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:

@@ -23,7 +23,7 @@ def set_up_house(
     `imperfections` are other than the project's. Raises UsageError where there can't be several.
     """
     if kind == "naoqi":
-        raise UsageError("each real robot has a process of its own: say --robot-name NAME, and --robot-url for it")
+        raise UsageError("each real robot needs its own process: pass `--robot-name NAME` and `--robot-url URL`")
     if kind == "simulation":
         return _simulated(projects, None if speed == "max" else float(speed), imperfections)
     return {name: set_up(kind, project, speed, stories[name]) for name, project in projects.items()}

@@ -58,8 +58,8 @@ def _words(found: IgnoredEvent) -> str:
         return f"{what} while {' and '.join(found.deaf)} {'does' if len(found.deaf) == 1 else 'do'} not listen"
     false = [_false(guard, found.event) for guard in found.refused[:MAX_GUARDS]]
     more = len(found.refused) - len(false)
-    nothing = [f"{state} hears nothing of it" for state in found.unheard]
-    return f"{what} while {', and '.join([*nothing, *false])}" + (f", and {more} more guards are" if more else "")
+    nothing = [f"no row of {state} matches" for state in found.unheard]
+    return f"{what} while {', and '.join([*nothing, *false])}" + (f", and {more} more guards are false" if more else "")
 
 
 def _false(guard: FalseGuard, event: Event) -> str:

@@ -31,7 +31,7 @@ class ModelSwitch:
         self._home = Home(folder)
         if (folder / SILENCED_FILE).exists():  # also where nobody can read who it was
             found = self._home.read_json(SILENCED_FILE)
-            self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or "somebody"))
+            self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or "an operator"))
 
     @property
     def state(self) -> str | None:
@@ -44,7 +44,7 @@ class ModelSwitch:
         """Let it speak, or not; the answer for who asked."""
         if self.state is None:
             return refusal("this exhibition has no language model: lumen.yaml has no module `answers`")
-        self._questions.silence("" if on else by or "somebody")
+        self._questions.silence("" if on else by or "an operator")
         self._record({"model": self.state, "by": by})
         why = ""
         if self._home and on:

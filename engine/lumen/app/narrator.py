@@ -71,7 +71,7 @@ class Narrator(Observer):
                 self.line("state", f"{', '.join(entered)}  ({why(part)})")
         if step.entered and finished(self._machine(), step.snapshot):
             output = step.snapshot.output
-            self.line("state", "the behaviour is over" + ("" if output is None else f", and gives {output}"))
+            self.line("state", "the behaviour is over" + ("" if output is None else f", with the output {output}"))
         if self.explains and (ignored := self._ignored.line(self._machine(), step)):
             self.line("ignored", ignored)
 

@@ -40,20 +40,20 @@ def write_passage(root: Path, question: str, answer: str, language: str) -> Path
                 return file.relative_to(root)
     except OSError as error:
         raise UsageError(f"{KNOWLEDGE_FOLDER}/ can't be written: {error.strerror}") from None
-    raise UsageError(f"{MAX_SAME} passages are called like this one: rename some of them")
+    raise UsageError(f"{MAX_SAME} passages already have this name: rename some of them")
 
 
 def check_language(language: str) -> None:
     """Raise UsageError if that can't be the name of a language."""
     if not _LANGUAGE.fullmatch(language):
-        raise UsageError("`language` is one such as `en`")
+        raise UsageError("`language` must be a code such as `en`")
 
 
 def one_line(text: str, what: str) -> str:
     """Return a text without line breaks and invisible signs. Raises UsageError if nothing is left, or too much."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
     if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
-        raise UsageError(f"`{what}` is a text of 1 to {MAX_TEXT} characters")
+        raise UsageError(f"`{what}` must be a text of 1 to {MAX_TEXT} characters")
     return line
 
 

@@ -62,7 +62,7 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
         return ended + f"\n{_block(keys, saying.text, 0)}\n".encode()
     document, _ = parse(DAY_FILE, content)
     if document is None or not isinstance(document.data, Mapping) or not document.data:
-        raise UsageError(f"{DAY_FILE} holds no sayings: write one into it by hand, or delete it")
+        raise UsageError(f"{DAY_FILE} holds no sayings: add one by hand, or delete the file")
     depth = next((n for n in range(len(keys)) if keys[n] not in _at(document.data, keys[:n])), len(keys))
     if depth == len(keys) and saying.text in _at(document.data, keys):
         return content
@@ -70,7 +70,7 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
     read, found = parse(DAY_FILE, after)
     if found or read is None or read.data != _expected(document.data, keys, saying.text):
         entry = _flow(keys, saying.text)
-        raise UsageError(f"there is no place for it in {DAY_FILE} as that is written: add `{entry}` by hand")
+        raise UsageError(f"{DAY_FILE} has no place for it in its present form: add `{entry}` by hand")
     return after
 
 

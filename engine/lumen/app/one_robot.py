@@ -31,5 +31,5 @@ def robots_of(root: Path, names: str | None) -> Sequence[str]:
         return tuple(settings.robots) if settings.told_apart else ()
     wanted = tuple(dict.fromkeys(name.strip() for name in names.split(",") if name.strip()))
     if not wanted:
-        raise UsageError(f"--robot-name takes one or more of {', '.join(settings.robots)}")
+        raise UsageError(f"--robot-name must be one or more of {', '.join(settings.robots)}")
     return tuple(name for name in (one_robot(root, name) for name in wanted) if name)

@@ -57,7 +57,7 @@ def _setup(project: Project, robot: str | Robot, clock: Clock | None, speed: str
     try:
         pace = None if speed == "max" else float(speed)
     except ValueError:
-        raise UsageError(f'`speed` is how many times real time, or "max", not `{speed}`') from None
+        raise UsageError(f'`speed` must be a multiple of real time or "max", not `{speed}`') from None
     if not isinstance(robot, str):
         return set_up_with(robot, clock, pace)
     real = robot in ("naoqi", "none")

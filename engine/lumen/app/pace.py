@@ -34,12 +34,12 @@ class PaceWatch:
         self.worst = min(self.worst, now)
         if not self.slow and now < SLOW:
             self.slow = True
-            return f"only {now:.2f} of real time is kept: this machine is too slow or too busy, and everything is late"
+            return f"it runs at only {now:.2f} × real time: this machine is too slow or too busy, so everything is late"
         if self.slow and now > WELL:
             self.slow = False
-            return "real time is kept again"
+            return "it runs in real time again"
         return ""
 
     def summary(self) -> list[str]:
         """What is said of it at the end."""
-        return [f"at worst {self.worst:.2f} of real time was kept"] if self.worst < SLOW else []
+        return [f"at worst it ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []

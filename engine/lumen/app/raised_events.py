@@ -12,7 +12,7 @@ from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Message
 from lumen.runtime.loop import BehaviorLoop, Observer
 
-SOMEBODY = "somebody"
+SOMEBODY = "an operator"
 MAX_NAME = 100
 """Characters of the name of an event, and of a person."""
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
@@ -60,15 +60,15 @@ class RaisedEvents(Observer):
                     self._let(message, found)
             case {"ask": "event", "event": str(name), **more} if name and len(name) <= MAX_NAME:
                 if name.startswith(_INTERNAL):
-                    self._reply(message, refusal(f"`{name}` is not for people: only robots say that"))
+                    self._reply(message, refusal(f"`{name}` is an internal event: only robots send it"))
                     return
                 cause = Cause("person", message.id, sender=person_in(message.body))
                 data = more.get("data")
                 self._let(message, Event(name, {} if data is None else data, now, cause=cause))
             case {"ask": "press"}:
-                self._reply(message, refusal("`button` is what stands on it"))
+                self._reply(message, refusal("`button` must be the label of a button"))
             case _:
-                self._reply(message, refusal("`event` is the name of an event"))
+                self._reply(message, refusal("`event` must be the name of an event"))
 
     def _let(self, message: Message, event: Event) -> None:
         assert event.cause
@@ -89,7 +89,7 @@ class RaisedEvents(Observer):
                 self._reply(one.message, {"verdict": "done", "taken": False, "waiting": id})
         if self._open and not self._loop.waiting:
             for one in self._open:
-                self._reply(one.message, refusal("the behaviour could not take it: its log says why"))
+                self._reply(one.message, refusal("the behaviour could not process it: the reason is in its log"))
             self._open.clear()
 
     def stepped(self, step: Step) -> None:

@@ -52,7 +52,7 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
             keys = _keys(root, None, home)
             return Reached(connect(settings.bus, sender=TERMINAL), settings.robot, *keys, settings.bus, home)
         raise BusUnreachableError(
-            f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or say --bus URL"
+            f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or pass --bus URL"
         )
     opened = LocalBusClient(LocalAddress.of(found), TERMINAL)
     return Reached(opened, _robot(root, found, home), *_keys(root, found, home), home=home)

@@ -35,9 +35,7 @@ def answer_from_journal(
     robot = one_robot(root, robot)
     steps = list(recalled(root, datetime.fromisoformat(at).timestamp() if at else None, robot))
     if not steps:
-        raise UsageError(
-            f"{why}; and its journal in {home_of(root, robot) / JOURNAL_FOLDER} holds nothing of that time"
-        )
+        raise UsageError(f"{why}; its journal in {home_of(root, robot) / JOURNAL_FOLDER} has nothing from that time")
     return answer(steps, question, what, at)
 
 

@@ -53,7 +53,7 @@ def set_up(
     `url` is where a real one is, `imperfections` are other than the project's.
     """
     if url and kind != "naoqi":
-        raise UsageError("--robot-url is where a real robot is: say --robot naoqi with it")
+        raise UsageError("--robot-url needs --robot naoqi")
     pace = None if speed == "max" else float(speed)
     if kind == "simulation":
         from lumen.robots.simulation import SimulatedRobot, available
@@ -70,9 +70,9 @@ def set_up(
         from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
 
         if speed != "1":
-            raise UsageError("a real robot lives in real time: leave out --speed")
+            raise UsageError("a real robot runs in real time: leave out --speed")
         if story:
-            raise UsageError("a story needs a visitor of ours in a simulated hall: leave out --robot naoqi")
+            raise UsageError("a story needs a simulated visitor: leave out --robot naoqi")
         clock = RealClock()
         return Setup(NaoqiRobot(project.body, url or NAO, clock.now, stage=project.stage), clock, PhysicalHall())
     if kind == "none":

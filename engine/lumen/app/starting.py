@@ -9,7 +9,7 @@ from lumen.loading.packaged import MAIN_FILE, shipped_root
 from lumen.loading.project import main_settings
 
 STARTERS = {
-    "tour": "the shipped one, with everything",
+    "tour": "the shipped exhibition, with everything",
     "museum": "a guide for five exhibits",
     "minimal": "a greeting, a gesture and a story, in 40 lines",
 }
@@ -20,16 +20,16 @@ _SCHEMA = re.compile(r"(?m)^(# yaml-language-server: \$schema=)\S*?([\w.]+\.sche
 _ROBOT = re.compile(r"(?m)^(robot: \{name: )\S+(, model: )\w+(\}).*$")
 
 IGNORED = """\
-# Where a run keeps what it needs after a crash, and names of visitors: nobody else's.
+# Data of runs, with the names of visitors. Do not share it.
 .lumen/
-# What `lumen run` was asked to write.
+# Films that `lumen run --video` wrote.
 *.mp4
 """
 
 README = """\
 # {name}
 
-What the robot does and says stands in these files, and in no program:
+These files define what the robot does and says:
 
 | file | holds |
 | --- | --- |
@@ -40,21 +40,21 @@ What the robot does and says stands in these files, and in no program:
     lumen lint                     # what is wrong, and where
     lumen test                     # all stories, in seconds
 
-Change a text while `lumen run` is running, and save: the robot says the new one. `lumen language add de` begins another
+Change a text while `lumen run` is running, and save: the robot says the new one. `lumen language add de` adds a
 language. `.github/workflows/exhibition.yml` lints and tests what is pushed to GitHub.
 """
 MEANINGS = {
-    MAIN_FILE: "who performs, which languages, which messages come and go",
-    "behaviors": "what it does: states; below `stories` visitors that follow a script, and what must happen",
+    MAIN_FILE: "the robot, its languages, and the messages that come and go",
+    "behaviors": "what it does: states; `stories` has scripted visitors, and what must happen",
     "behaviors/words": "what it says and listens for, by language",
-    "behaviors/sayings": "what visitors say, and what should come of it: `lumen test` prints how much does",
-    "knowledge": "what visitors ask, and what is answered: a passage a file",
-    "knowledge/questions": "how visitors ask, to try the passages with: `lumen test` says how many are answered",
-    "fuzzy": "controllers, as that which lets the head follow a face",
+    "behaviors/sayings": "what visitors say, and what must follow: `lumen test` tries each of them",
+    "knowledge": "questions of visitors and their answers: one passage per file",
+    "knowledge/questions": "other wordings of these questions: `lumen test` prints how many are answered",
+    "fuzzy": "controllers, such as the one that turns the head to a face",
     "motions": "gestures",
     "sounds": "what it plays",
     "models": "the robot's body, and the hall of the simulation",
-    "schemas": "what may stand in the files and the messages: your editor completes with them",
+    "schemas": "the schemas of the files and messages: your editor completes with them",
 }
 
 WORKFLOW = """\

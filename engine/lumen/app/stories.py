@@ -74,7 +74,7 @@ def _nothing(project: Project, word: str, known: Iterable[str], what: str) -> Us
     """Why a word means nothing of a project."""
     if Path(word).is_file():
         folder = Path(os.path.abspath(project.root)) / FOLDER
-        return UsageError(f"{word} is not in {folder}: put it there, so that it is checked with the project")
+        return UsageError(f"{word} is not in {folder}: move it there, so that it is checked with the project")
     name = Path(word).stem if _is_file(word) else word
     hint = did_you_mean(name, known, what)
     return UsageError(f"no {'story' if _is_file(word) else 'project or story'} `{word}`: {hint}")

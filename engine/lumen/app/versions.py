@@ -60,14 +60,14 @@ def _running(root: Path, robot: str) -> tuple[StoredSnapshot, Mapping[str, bytes
         raise UsageError(f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`")
     files = keeper.files(kept.bundle)
     if files is None:
-        raise UsageError(f"the files that run are not in {home.folder} any more")
+        raise UsageError(f"the files that run are no longer in {home.folder}")
     return kept, files
 
 
 def _revision(root: Path, name: str) -> Mapping[str, bytes]:
     files = files_at(root, name)
     if files is None:
-        raise UsageError(f"`{name}` is no folder, no revision of {root}, and not `{LIVE}`")
+        raise UsageError(f"`{name}` is not a folder, a revision of {root}, or `{LIVE}`")
     if not files:
         raise UsageError(f"there is no project in {root} at `{name}`")
     return files

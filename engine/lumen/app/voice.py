@@ -116,15 +116,16 @@ def speaker(
     """The voice that was asked for; None for none. Raises UsageError or ModuleError where it can't be had."""
     if voice == "none":
         if file:
-            raise UsageError("--sound writes what --voice says: say --voice espeak, too")
+            raise UsageError("--sound needs a voice: add --voice espeak")
         return None
     if not hasattr(robot, "speak_with"):
-        raise UsageError("--voice gives the simulated robot a voice: leave out --robot")
+        raise UsageError("--voice needs the simulated robot: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
-        raise UsageError(f"can't write a sound to {file}: name a .wav file in a folder that is there")
+        raise UsageError(f"can't write a sound to {file}: name a .wav file in an existing folder")
     found = Speaker(language, file, track)
     if found.mute:
         print(
-            "There is no sound player here: texts take their time, and `--sound FILE.wav` keeps them.", file=sys.stderr
+            "No sound player is installed: texts are not heard; `--sound FILE.wav` writes them to a file.",
+            file=sys.stderr,
         )
     return found

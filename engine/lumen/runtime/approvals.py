@@ -20,8 +20,8 @@ from lumen.language.machines import Approval, MachineDefinition, Transition
 
 MAX_WAITING = 20
 """Events that may wait for GO at once; the oldest gives way."""
-LEFT, REPLACED, LATE = "its state was left", "too many others wait", "nobody said anything"
-RELOADED, FORGOTTEN = "the files changed", "somebody is forgotten"
+LEFT, REPLACED, LATE = "its state was left", "too many others wait", "no answer came"
+RELOADED, FORGOTTEN = "the files changed", "a visitor is forgotten"
 
 
 class MarkedTransition(NamedTuple):

@@ -59,7 +59,7 @@ class MotionCues:
         except (OSError, ValueError) as error:
             if file not in self._lacking:
                 self._lacking.add(file)
-                _log.warning("`%s` sounds `%s`, and stays silent: %s", motion, file, error)
+                _log.warning("the motion `%s` can't play the sound `%s`: %s", motion, file, error)
             return []
         self._number += 1
         id = f"cue{self._number}"

@@ -68,7 +68,7 @@ class Inbox:
                 cause = Cause("message", message.id, message.key, robot, time())
                 self._push(event, data, cause)
             case _:
-                _log.warning("what came on %s is no event that this robot waits for", message.key)
+                _log.warning("a message on %s is not an event that this robot waits for", message.key)
 
     def drain(self, now: float) -> list[Event]:
         """Everything that has arrived, as events at `now` [s]; each is caused by its message."""

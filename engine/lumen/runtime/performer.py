@@ -121,7 +121,7 @@ class Performer:
                 else:
                     self.navigator.start(id, place, now)
             case Ask():
-                raise TypeError("a question is asked of no robot")
+                raise TypeError("a robot can't perform a question")
             case _:
                 self._begin(id, self._within_limits(wanted, body), now)
 

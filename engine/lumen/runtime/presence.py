@@ -155,7 +155,7 @@ class Presence:
         try:
             self._bus.publish(self._key, body, ttl=PRESENCE_TTL)
         except BusError as error:
-            _log.debug("our presence was not published: %s", error)
+            _log.debug("the presence of this process was not published: %s", error)
 
     def _hear(self, body: Any, now: float) -> None:
         match body:

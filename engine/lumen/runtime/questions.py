@@ -34,7 +34,7 @@ FILLER_AFTER = 1.5
 """When the filler is said where the project does not say [s]."""
 SAID = ("text", "language", "source", "confidence", "passage", "more")
 """What is taken of an answer."""
-NOBODY = "nobody here knows the answer"
+NOBODY = "no answer was found"
 
 _log = logging.getLogger(__name__)
 
@@ -135,7 +135,7 @@ class Questions:
             body = message.body if isinstance(message.body, dict) else {}
             id = body.get("id")
             if not isinstance(id, str) or id not in self._open:
-                _log.info("an answer on %s is ignored: nobody waits for it", message.key)
+                _log.info("an answer on %s is ignored: no question waits for it", message.key)
                 continue
             cause = Cause("message", message.id, message.key, message.sender, at)
             events.append(self._heard(id, body, now)._replace(cause=cause))
@@ -170,8 +170,8 @@ class Questions:
             case {"event": str(event), "data": dict(data)} if event in offers:
                 if JsonSchema({"type": "object", **(offers[event] or {})}).fits(data):
                     return Event(f"answer.command.{id}", {"raise": {"event": event, "data": data}}, now)
-        _log.warning("an answer wants an event that was not offered, or with other data: it is ignored")
-        return _unanswered(id, now, "an event was answered that is not offered")
+        _log.warning("an answer names an event that was not offered, or has other data: it is ignored")
+        return _unanswered(id, now, "the answer is an event that was not offered")
 
     def _take(self, message: Message) -> None:
         self._came.append((message, time()))

@@ -71,7 +71,9 @@ def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
     first = initial(project.machine, now, kept, language, epoch=snapshot.epoch, timezone=snapshot.timezone)
     counted = first.snapshot._replace(generator=snapshot.generator)
     leaving = tuple(Cancel(id) for id in _awaited(snapshot))
-    return MigrationPlan(counted, leaving, first.commands, entered=first.entered, notes=("the behaviour begins anew",))
+    return MigrationPlan(
+        counted, leaving, first.commands, entered=first.entered, notes=("the behaviour starts from the beginning",)
+    )
 
 
 def _awaited(snapshot: Snapshot) -> Iterator[str]:

@@ -85,7 +85,7 @@ class SharedBoard:
             body = {"from": project.robot, "values": own, "asks": first}
             self._bus.publish(self._key, body, ttl=RETELL_PERIOD)
         except BusError as error:
-            _log.warning("what the house has in common can't be told: %s", error)
+            _log.warning("the shared values of the house can't be sent: %s", error)
 
     def _hear(self, message: Message) -> None:
         """Only values of the type that they are to have, from the robot whose they are."""
@@ -94,7 +94,7 @@ class SharedBoard:
             case {"from": str(robot), "values": dict(values), "asks": bool(asks)} if project:
                 pass
             case _:
-                _log.warning("what came on %s tells no values", message.key)
+                _log.warning("a message on %s has no values", message.key)
                 return
         if robot == project.robot:
             return
@@ -102,7 +102,7 @@ class SharedBoard:
         owned = {name: key for name, key in project.shared.items() if key.owner == robot}
         news = {name: value for name, value in values.items() if name in owned}
         if wrong := [name for name in values if name not in owned or not _fits(owned[name].type, values[name])]:
-            _log.warning("%s tells `%s`, which is not its own, or of another type", robot[:60], wrong[0][:60])
+            _log.warning("%s sends `%s`, which is not its own or has another type", robot[:60], wrong[0][:60])
             return
         if news:
             self._waiting.append((news, Cause("message", message.id, message.key, robot, time())))

@@ -249,7 +249,7 @@ class StoryPlayer(Observer):
             before = self._moment(self._since) - 1
             self._awaited = next_moment(schedule, before, self._exhibition.project.timezone)
         if self._awaited is None:
-            self.fail(UnmetExpectation("", f"it is past `{schedule.text}`, and does not come again"))
+            self.fail(UnmetExpectation("", f"`{schedule.text}` is past, and does not come again"))
             return False
         return self._moment(now) >= self._awaited
 

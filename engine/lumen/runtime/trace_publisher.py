@@ -126,7 +126,7 @@ class TracePublisher(Observer):
         try:
             self._bus.publish(key, {"robot": project.robot, "time": round(self._now(), 3), **what}, ttl=ttl)
         except BusError as error:
-            _log.debug("what the behaviour does was not published: %s", error)
+            _log.debug("the trace of the behaviour was not published: %s", error)
 
 
 def _transitions(project: Project, step: Step) -> Iterator[dict[str, Any]]:

@@ -60,7 +60,7 @@ class VisitorActor:
         self._hall.sound()
         body = {"name": "visitor", "result": text, "date": "", "language": language}
         if reason := send(self._bus, self._project, SPEECH_ROUTE, body, MessageOrigin(sender=VISITOR)):
-            _log.warning("nobody hears the visitor: %s", reason)
+            _log.warning("the visitor's words were not sent: %s", reason)
 
     def touch(self, sensor: str, pressed: bool) -> None:
         """Lay a hand on a tactile sensor, or take it away. Raises UsageError where that can't be."""

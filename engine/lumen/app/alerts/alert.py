@@ -41,7 +41,7 @@ class Origin(NamedTuple):
         return {
             "kind": alert.kind,
             "text": self.line(alert),
-            "meaning": KINDS.get(alert.kind, "somebody tries whether alerts arrive"),
+            "meaning": KINDS.get(alert.kind, "an operator tests whether alerts arrive"),
             "about": alert.about,
             "exhibition": self.exhibition,
             "robot": self.robot,

@@ -49,7 +49,7 @@ class AlertDesk:
     def test(self) -> Iterator[tuple[str, str]]:
         """Tell each of them something, whatever the hour, and wait: whom, and why it did not arrive, else empty."""
         now = time.time()
-        alert = Alert(TEST, "this is a test: whoever reads it is told of troubles", "", now, now)
+        alert = Alert(TEST, "this is a test: you will receive this robot's alerts", "", now, now)
         for recipient in self._alerts.to:
             try:
                 self._deliver(recipient, alert)
@@ -71,4 +71,4 @@ class AlertDesk:
         deliver(recipient.channel, alert, self._origin, self._root)
 
     def _failed(self, recipient: Recipient, why: str) -> None:
-        self._tell(f"{address(recipient.channel)} is not told: {one_line(why)}")
+        self._tell(f"{address(recipient.channel)} did not get the alert: {one_line(why)}")

@@ -41,5 +41,5 @@ def room(folder: Path) -> str:
     try:
         free = shutil.disk_usage(folder).free
     except OSError as error:
-        return f"the disk can't be looked at: {error.strerror}"
+        return f"the free space of the disk can't be read: {error.strerror}"
     return f"the disk is nearly full: {free / 1e6:.0f} MB are left" if free < LEAST_ROOM else ""

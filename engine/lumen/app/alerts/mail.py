@@ -37,14 +37,14 @@ def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
     except (smtplib.SMTPException, OSError) as error:
         raise UndeliveredError(f"it can't be used: {error}") from None
     if refused:
-        raise UndeliveredError(f"it refuses {', '.join(refused)}, and has taken it for the others", final=True)
+        raise UndeliveredError(f"it refuses {', '.join(refused)}, and accepted the mail for the others", final=True)
 
 
 def _connected(mail: Mail) -> smtplib.SMTP:
     """The server, encrypted as is wanted and logged in to where there is a name; raises what smtplib raises."""
     name = os.environ.get(USER, "")
     if name and mail.security == "none":
-        raise ValueError(f"the password in {PASSWORD} is not sent unencrypted: say `security: starttls` or `tls`")
+        raise ValueError(f"the password in {PASSWORD} is not sent unencrypted: write `security: starttls` or `tls`")
     if mail.security == "tls":
         server: smtplib.SMTP = smtplib.SMTP_SSL(
             mail.host, mail.port, timeout=MAIL_TIMEOUT, context=ssl.create_default_context()

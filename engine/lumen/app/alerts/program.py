@@ -39,7 +39,7 @@ def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> Non
         _end(process)
     if process.returncode:
         last = said.decode("utf-8", "replace").strip().splitlines()[-1:]
-        raise UndeliveredError(f"it ends with {process.returncode}{': ' * bool(last)}{''.join(last)[:200]}")
+        raise UndeliveredError(f"it ended with exit code {process.returncode}{': ' * bool(last)}{''.join(last)[:200]}")
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:

@@ -52,6 +52,6 @@ def _of_variable(name: str) -> str:
     if not url:
         raise UndeliveredError(f"the environment variable {name} is not set", final=True)
     if not url.startswith(("https://", "http://")):
-        why = f"what the environment variable {name} holds begins with neither https:// nor http://"
+        why = f"the environment variable {name} must begin with https:// or http://"
         raise UndeliveredError(why, final=True)
     return url

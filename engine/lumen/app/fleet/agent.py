@@ -95,12 +95,12 @@ class FleetAgent:
             case {"order": str(text), "signature": str(signature)}:
                 pass
             case _:
-                return self._refuse("an order came that is none")
+                return self._refuse("an order is not valid")
         if not verified(self._key, ORDER, text.encode(), signature):
             return self._refuse("an order is not signed with the key of fleet.yaml")
         desired = desired_from(text)
         if desired is None or desired.house != self._house:
-            return self._refuse("a signed order is none for this house")
+            return self._refuse("a signed order is not for this house")
         followed, why = heed(self.memory.followed, desired, self._robot)
         if why:
             return self._refuse(why)
@@ -122,7 +122,7 @@ class FleetAgent:
         if files is None:
             return
         if why := self._folder.keep(files):
-            self._refuse(f"bundle {wants[:12]} can't be kept: {why}")
+            self._refuse(f"bundle {wants[:12]} can't be stored: {why}")
             return
         self.wants = self.trial.wants = ""
 
@@ -130,7 +130,7 @@ class FleetAgent:
         """Go on towards what is wanted."""
         memory, wanted = self.memory, self.memory.followed.wanted
         if self.state == PROBATION and self._taker.running != self._offered:
-            self._fail(ROLLED_BACK, "it did not stand its probation; the house's journal says why")
+            self._fail(ROLLED_BACK, "it failed its probation; the reason is in the house's journal")
         elif self.state == PROBATION and not self._taker.on_probation:
             self._proved()
         if self.state in (CHECKING, WAITING, PROBATION):
@@ -141,7 +141,7 @@ class FleetAgent:
         self._goal = goal
         if back and not goal:
             self._asked = memory.order
-            self._fail(REFUSED, "there are no files from before it to go back to", wanted)
+            self._fail(REFUSED, "there are no earlier files to go back to", wanted)
         elif not goal or goal == self.running:
             self.state, self.wants = PROVED, ""
             if goal and not self._taker.on_probation and memory.done != memory.order:
@@ -150,7 +150,7 @@ class FleetAgent:
         elif (failed := memory.failed.get(goal)) and failed[0] == memory.order:
             self.state, self.trouble = str(failed[1]), str(failed[2])
         elif memory.done == memory.order and self._taker.running != memory.before:
-            self.state, self.trouble = BROKEN, "its files were changed here after it had the bundle"
+            self.state, self.trouble = BROKEN, "its files were changed here after the bundle arrived"
         else:
             self._go(goal, own=back)
 
@@ -179,7 +179,7 @@ class FleetAgent:
         self._asked = self.memory.order
         self.trouble = ""
         if self.memory.trying == goal and self.memory.tries >= MOST_TRIES:
-            self._fail(ROLLED_BACK, f"the exhibition ended {self.memory.tries} times before it had proved itself")
+            self._fail(ROLLED_BACK, f"the exhibition ended {self.memory.tries} times before the bundle was proved")
             return
         kept = (own and self._taker.files(goal)) or self._folder.files(goal)
         if not kept:
@@ -192,7 +192,7 @@ class FleetAgent:
             self._fail(REFUSED, str(error))
             return
         if here is not None and (why := self._folder.keep(here)):
-            self._fail(REFUSED, f"the files that run can't be kept: {why}")
+            self._fail(REFUSED, f"the files that run can't be stored: {why}")
             return
         self._offered = fingerprint(files)
         if not own:
@@ -200,7 +200,7 @@ class FleetAgent:
         if self._offered == self._taker.running:
             return
         self.state, self.wants = CHECKING, ""
-        self._tell(f"bundle {goal[:12]} is checked")
+        self._tell(f"bundle {goal[:12]} is being checked")
         self._taker.offer(files, self._answer)
 
     def _answer(self, verdict: Any) -> None:
@@ -234,7 +234,7 @@ class FleetAgent:
         self._install()
         ordered = memory.followed.wanted.removeprefix(NOT), memory.followed.trying
         self._folder.prune({memory.before, self._offered, self._goal, *memory.names.values(), *ordered})
-        self._tell(f"bundle {self._goal[:12]} has proved itself")
+        self._tell(f"bundle {self._goal[:12]} is proved")
 
     def _install(self) -> None:
         """Have proved files brought into the project's folder, until that is done."""

@@ -34,5 +34,5 @@ def check_certificate(address: BrokerAddress) -> BrokerFinding:
     ends = ssl.cert_time_to_seconds(shown["notAfter"])
     left, day = (ends - time.time()) / DAY, datetime.fromtimestamp(ends, UTC).date().isoformat()
     if left < NOTICE:
-        return BrokerFinding(what, f"it ends on {day}, in {left:.0f} days", mend=RENEW)
-    return BrokerFinding(what, note=f"it is good until {day}")
+        return BrokerFinding(what, f"it expires on {day}, in {left:.0f} days", mend=RENEW)
+    return BrokerFinding(what, note=f"it is valid until {day}")

@@ -17,9 +17,7 @@ from lumen.buses.probe import BrokerProbe
 from lumen.errors import BusError
 from lumen.language.fleet import Fleet
 
-CALLED = (
-    "say how rabbitmqctl is called for this broker: --rabbitmqctl 'sudo rabbitmqctl', or 'ssh HOST sudo rabbitmqctl'"
-)
+CALLED = "pass the command for this broker: --rabbitmqctl 'sudo rabbitmqctl', or 'ssh HOST sudo rabbitmqctl'"
 
 
 def check_broker(
@@ -36,7 +34,7 @@ def check_broker(
     except BusError as error:
         yield BrokerFinding("the broker", str(error))
         return
-    yield BrokerFinding("the broker", note=f"it answers, {'by TLS' if url.startswith('amqps:') else 'in clear'}")
+    yield BrokerFinding("the broker", note=f"it answers, {'with TLS' if url.startswith('amqps:') else 'without TLS'}")
     for told in (fleet.centre if name == CENTRE else fleet.houses[name].broker, url):
         if told.startswith("amqps:"):
             yield check_certificate(BrokerAddress(trusting(told, ca)))
@@ -45,7 +43,7 @@ def check_broker(
         found = control.definitions()
     except BusError as error:
         yield from seen
-        yield BrokerFinding("users, rights, policies and lines", f"they were not looked at: {error}", mend=CALLED)
+        yield BrokerFinding("users, rights, policies and lines", f"they were not checked: {error}", mend=CALLED)
         return
     yield from (row for row in seen if row.note)
     yield from compare(_wanted(fleet, name), found)
@@ -77,7 +75,7 @@ def _passive(probe: BrokerProbe, kind: str, name: str) -> BrokerFinding:
             waiting = channel.queue_declare(name, passive=True).method.message_count
     except ChannelClosedByBroker as error:
         if error.reply_code == 404:
-            return BrokerFinding(what, "it is not there", mend=IMPORT)
-        return BrokerFinding(what, f"the broker refuses: {error.reply_text}")
+            return BrokerFinding(what, "it is missing", mend=IMPORT)
+        return BrokerFinding(what, f"the broker refuses this: {error.reply_text}")
     note = f"{waiting:,} messages wait for the line to the centre" if waiting else "nothing waits for the centre"
     return BrokerFinding(what, note=note)

@@ -29,14 +29,14 @@ def check_links(control: RabbitMQControl) -> Iterator[BrokerFinding]:
 
 def _judged(what: str, rows: list[dict[str, Any]], state: str, again: str) -> BrokerFinding:
     if not rows:
-        return BrokerFinding(what, "there is none", mend=IMPORT)
+        return BrokerFinding(what, "it is missing", mend=IMPORT)
     row = rows[0]
     if row.get(state) == RUNNING:
-        return BrokerFinding(what, note=f"it runs since {row.get('last_changed')}")
+        return BrokerFinding(what, note=f"it has run since {row.get('last_changed')}")
     return BrokerFinding(
         what,
-        f"it is {row.get(state)}{_why(row)}: the centre, its port or its certificate can't be reached from here, or it "
-        "refuses this house's password",
+        f"it is {row.get(state)}{_why(row)}: check that this machine reaches the centre, that the certificate is "
+        "valid, and that the centre accepts this house's password",
         mend=again,
     )
 

@@ -35,13 +35,13 @@ KINDS = (
     _Kind(
         "permissions",
         ("user",),
-        lambda row: f"what the user {row['user']} may do",
+        lambda row: f"the permissions of the user {row['user']}",
         lambda row: _words("set_permissions", row["user"], row["configure"], row["write"], row["read"]),
     ),
     _Kind(
         "topic_permissions",
         ("user", "exchange"),
-        lambda row: f"the keys of the user {row['user']} on {row['exchange']}",
+        lambda row: f"the topic permissions of the user {row['user']} on {row['exchange']}",
         lambda row: _words("set_topic_permissions", row["user"], row["exchange"], row["write"], row["read"]),
     ),
     _Kind("exchanges", ("name",), lambda row: f"the exchange {row['name']}"),
@@ -78,10 +78,10 @@ def _name(kind: _Kind, row: DefinitionRow) -> tuple[Any, ...]:
 
 def _judged(kind: _Kind, want: DefinitionRow, found: DefinitionRow | None) -> BrokerFinding | None:
     if found is None:
-        return BrokerFinding(kind.is_(want), "it is not there", mend=kind.mend(want))
+        return BrokerFinding(kind.is_(want), "it is missing", mend=kind.mend(want))
     want = {key: value for key, value in want.items() if key not in NOT_COMPARED}
     for key, there, wanted in _differing(want, found):
-        anew = f"rabbitmqctl delete_queue {want.get('name')}, which loses what waits in it; then {IMPORT}"
+        anew = f"rabbitmqctl delete_queue {want.get('name')}, which deletes its messages; then {IMPORT}"
         mend = anew if kind.rows == "queues" else kind.mend(want)
         return BrokerFinding(kind.is_(want), f"its {key} is {json.dumps(there)}, not {json.dumps(wanted)}", mend=mend)
     return None
@@ -106,8 +106,8 @@ def _leaks(wanted: BrokerDefinitions, there: Any) -> Iterator[BrokerFinding]:
         if row["destination"] == UP and (row["source"], UP, row["routing_key"]) not in known:
             yield BrokerFinding(
                 f"the binding of {row['routing_key']} from {row['source']} to {UP}",
-                "it is not of Lumen, and lets more cross to the centre",
-                mend=f"rabbitmqctl delete_queue {UP}, which loses what waits in it; then {IMPORT}",
+                "Lumen did not make it, and it sends more messages to the centre",
+                mend=f"rabbitmqctl delete_queue {UP}, which deletes its messages; then {IMPORT}",
             )
 
 

@@ -143,7 +143,7 @@ def write_settings(fleet: Fleet, folder: Path, *, ca: str = "") -> list[Path]:
     Passwords that stand there stay. Raises UsageError.
     """
     if not fleet.centre:
-        raise UsageError("fleet.yaml says no `centre: {broker: …}`: houses would not know where to call")
+        raise UsageError("fleet.yaml has no `centre: {broker: …}`: add it, so that houses can connect")
     try:
         private_folder(folder)
         centre = _passwords(folder / CENTRE, (OPERATORS, *fleet.houses))
@@ -231,7 +231,7 @@ def _topic(user: str, exchange: str, write: str, read: str) -> dict[str, str]:
 
 
 def _conf() -> str:
-    return """# Written by `lumen fleet init`. It belongs into /etc/rabbitmq/, with its neighbours and the certificates.
+    return """# Written by `lumen fleet init`. Put it into /etc/rabbitmq/, with the files beside it and the certificates.
 load_definitions = /etc/rabbitmq/definitions.json
 listeners.tcp.1 = 127.0.0.1:5672
 listeners.ssl.1 = 5671

@@ -42,7 +42,7 @@ def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, An
     """The bundle that these files are, signed, in messages that a bus takes. Raises UsageError if it is too large."""
     hash, data = fingerprint(files), packed(files)
     if len(data) > MAX_BYTES:
-        raise UsageError(f"the bundle takes {len(data) / 1e6:.1f} MB packed, and may take {MAX_BYTES / 1e6:g}")
+        raise UsageError(f"the packed bundle has {len(data) / 1e6:.1f} MB: at most {MAX_BYTES / 1e6:g} MB are allowed")
     signature = signer.sign(BUNDLE, hash.encode())
     pieces = [data[at : at + PIECE] for at in range(0, len(data), PIECE)]
     common = {"hash": hash, "signature": signature, "parts": len(pieces)}
@@ -78,11 +78,11 @@ class BundleParts:
             }:
                 pass
             case _:
-                raise BadBundleError("what came is no bundle")
+                raise BadBundleError("a message is not a valid bundle")
         if hash != wanted:
             raise BadBundleError(f"bundle {hash[:12]} came in place of {wanted[:12]}")
         if not 0 <= part < parts <= MAX_BYTES // PIECE + 1:
-            raise BadBundleError(f"bundle {hash[:12]} came in {parts} parts, which no bundle has")
+            raise BadBundleError(f"bundle {hash[:12]} came in {parts} parts, which is not possible")
         if not verified(key, BUNDLE, hash.encode(), signature):
             raise BadBundleError(f"bundle {hash[:12]} is not signed with the key of fleet.yaml")
         if self._of != (hash, parts):
@@ -90,7 +90,7 @@ class BundleParts:
         try:
             self._parts[part] = base64.b64decode(text, validate=True)
         except (ValueError, binascii.Error):
-            raise BadBundleError(f"bundle {hash[:12]} came damaged") from None
+            raise BadBundleError(f"bundle {hash[:12]} is damaged") from None
         if len(self._parts) < parts:
             return None
         data, self._parts = b"".join(self._parts[i] for i in range(parts)), {}
@@ -102,15 +102,15 @@ def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             if sum(entry.file_size for entry in archive.infolist()) > MAX_PROJECT_BYTES:
-                raise BadBundleError(f"bundle {wanted[:12]} holds more than a project may")
+                raise BadBundleError(f"bundle {wanted[:12]} is larger than a project may be")
             names = archive.namelist()
             if bad := next((name for name in names if name == FLEET_FILE or not _inside(name)), None):
-                raise BadBundleError(f"bundle {wanted[:12]} holds `{bad[:80]}`, which is no file of a project")
+                raise BadBundleError(f"bundle {wanted[:12]} holds `{bad[:80]}`, which is not a file of a project")
             files = {name: archive.read(name) for name in names}
     except DAMAGED_BUNDLE:
-        raise BadBundleError(f"bundle {wanted[:12]} came damaged, or only half of it") from None
+        raise BadBundleError(f"bundle {wanted[:12]} is damaged or incomplete") from None
     if fingerprint(files) != wanted:
-        raise BadBundleError(f"what came as bundle {wanted[:12]} are other files")
+        raise BadBundleError(f"bundle {wanted[:12]} holds other files than its hash promises")
     return files
 
 

@@ -171,7 +171,7 @@ def _said(state: CentreState) -> str:
     if state.overruled:
         return state.overruled
     if rollout is None:
-        return "the centre goes on"
+        return "the centre continues"
     at = f"step {rollout.at + 1} of {len(rollout.plan.steps)} ({rollout.plan.steps[rollout.at]})"
     reason = f": {rollout.reason}" if rollout.reason else ""
     return f"bundle {rollout.bundle[:12]}: {rollout.state}, {at}, {len(rollout.assigned)} robots{reason}"

@@ -47,14 +47,14 @@ class CentreDesk:
     def answer(self, body: Any, now: float) -> dict[str, Any]:
         """What is told of a request. Raises UsageError or ValueError, saying why not."""
         centre, state = self._centre, self._centre.state
-        by = str(body.get("by", "somebody"))[:80] if isinstance(body, Mapping) else ""
+        by = str(body.get("by", "an operator"))[:80] if isinstance(body, Mapping) else ""
         match body:
             case {"ask": "status"}:
                 return centre.overview()
             case {"ask": "publish", "bundle": {"hash": str(hash)} as bundle}:
                 files = self._parts.take(bundle, hash, centre.fleet.key)
                 if files is not None and (why := centre.bundles.keep(files)):
-                    raise UsageError(f"the bundle can't be kept: {why}")
+                    raise UsageError(f"the bundle can't be stored: {why}")
                 return {"bundle": hash}
             case {"ask": "rollout", "bundle": str(name)}:
                 hash = self._named(name)
@@ -65,16 +65,16 @@ class CentreDesk:
                 if state.rollout and state.rollout.under_way:
                     raise UsageError("a rollout is under way: abort it, or let it end")
                 hash = self._named(name)
-                centre.change(state.attempt(hash), f"{by} has all robots try {hash[:12]}")
+                centre.change(state.attempt(hash), f"{by} lets all robots try {hash[:12]}")
                 return {"bundle": hash}
             case {"ask": "pause"}:
                 centre.change(decide(state, PAUSED, f"by {by}"), f"{by} pauses the rollout")
             case {"ask": "go"}:
-                centre.change(decide(state, GOING, f"by {by}"), f"{by} lets the rollout go on")
+                centre.change(decide(state, GOING, f"by {by}"), f"{by} continues the rollout")
             case {"ask": "abort"}:
                 if state.rollout is None or not state.rollout.under_way:
                     raise UsageError("no rollout is under way")
-                centre.change(abort(state, f"by {by}"), f"{by} aborts the rollout: all go back")
+                centre.change(abort(state, f"by {by}"), f"{by} aborts the rollout: all robots go back")
             case {"ask": "pin" | "unpin" as verb, "robot": str(robot)}:
                 self._pin(robot, by, on=verb == "pin")
             case {"ask": "take-over"}:
@@ -83,7 +83,9 @@ class CentreDesk:
                 found = centre.bundles.files(self._named(name)) or {}
                 return {"files": {path: text.decode("utf-8", "replace") for path, text in found.items()}}
             case {"ask": str(verb)}:
-                raise UsageError(f"a centre can't `{verb[:40]}`: {did_you_mean(verb[:40], ASKED, 'there are')}")
+                raise UsageError(
+                    f"the centre has no request `{verb[:40]}`: {did_you_mean(verb[:40], ASKED, 'there are')}"
+                )
             case _:
                 raise UsageError('a body such as {"ask": "status"} is expected')
         return {}
@@ -92,9 +94,9 @@ class CentreDesk:
         """The published bundle whose hash begins so."""
         found = [hash for hash in self._centre.bundles.hashes() if name and hash.startswith(name)]
         if len(found) != 1:
-            what = "more than one bundle" if found else "no bundle"
+            what = "more than one published bundle has" if found else "no published bundle has"
             raise UsageError(
-                f"{what} was published whose hash begins with `{name[:64]}`: `lumen fleet publish` prints it"
+                f"{what} a hash that begins with `{name[:64]}`: copy the hash that `lumen fleet publish` printed"
             )
         return found[0]
 

@@ -169,7 +169,7 @@ def fleet_part(
     if found is None or home is None:
         return None
     if reloader.mode == "off":
-        tell("no bundle of the fleet is taken: files are left alone (--reload off)")
+        tell("bundles of the fleet are ignored because of --reload off")
         return None
     return FleetPart(*found, bus, behavior, reloader, home, root, tell, needs)
 

@@ -32,7 +32,7 @@ def fleet_in(root: Path) -> Fleet:
     """The fleet of that folder. Raises UsageError where there is none that can be used."""
     read, found = read_fleet(root)
     if read is None and not found:
-        raise UsageError(f"there is no fleet.yaml in {root.absolute()}: docs/fleet.md says what stands in it")
+        raise UsageError(f"there is no fleet.yaml in {root.absolute()}: docs/fleet.md describes it")
     if read is None or read.built is None or has_errors([*found, *read.report.diagnostics]):
         first = next(iter([*found, *(read.report.diagnostics if read else ())]), "")
         raise UsageError(f"fleet.yaml has errors: {first}")
@@ -49,11 +49,11 @@ class ServedCentre:
         self._bus = bus
         fleet = fleet_in(root)
         if fleet.key != signer.public:
-            raise UsageError(f"this key is not the one that robots trust: fleet.yaml says `key: {fleet.key}`")
+            raise UsageError(f"this key is not the one that robots trust: fleet.yaml has `key: {fleet.key}`")
         private_folder(home := home_of(root))
         self._home = Home(home / FOLDER)
         if not self._home.hold():
-            raise UsageError(f"another process is the centre of {root.absolute()} already")
+            raise UsageError(f"another process is already the centre of {root.absolute()}")
         journal = CentreJournal(self._home.folder)
         state = journal.last() or CentreState(uuid.uuid4().hex)
         log = FleetLog(self._home)

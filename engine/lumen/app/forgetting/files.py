@@ -105,7 +105,7 @@ def _recordings(home: Home, person: PersonName, found: Forgetting) -> None:
         if begun.get(file) or (held and file.parent == recordings.ring):
             _await(lambda file=file: not _named_in_recording(file, person))  # type: ignore[misc]
             if _named_in_recording(file, person):
-                found.left.append(ForgottenPlace(str(file), "it is being written, and still says the name"))
+                found.left.append(ForgottenPlace(str(file), "it is being written, and still contains the name"))
         else:
             _attempt(found, file, lambda file=file: _recording(file, person, found))  # type: ignore[misc]
 
@@ -149,11 +149,11 @@ def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
         scrubbed = b""
     if not scrubbed or line_names(scrubbed, person):
         home.remove(SNAPSHOT_FILE)
-        found.deleted.append(ForgottenPlace(SNAPSHOT_FILE, "the file: nothing is gone on with"))
+        found.deleted.append(ForgottenPlace(SNAPSHOT_FILE, "the file: the next run starts from the beginning"))
     elif why := home.write(SNAPSHOT_FILE, scrubbed):
         found.left.append(ForgottenPlace(SNAPSHOT_FILE, f"it can't be written: {why}"))
     else:
-        found.deleted.append(ForgottenPlace(SNAPSHOT_FILE, "the name, in what the behaviour remembers"))
+        found.deleted.append(ForgottenPlace(SNAPSHOT_FILE, "the name, in the context of the behaviour"))
 
 
 def _drafts(folder: Path) -> None:
@@ -169,17 +169,17 @@ def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
     for file in sorted(folder.rglob("*.json*")):
         if _names(file, person):
             held = file.name == SNAPSHOT_FILE and Home(folder).held()
-            why = "the exhibition that runs has not forgotten the name" if held else "it still says the name"
+            why = "the running exhibition has not forgotten the name" if held else "it still contains the name"
             yield ForgottenPlace(str(file.relative_to(folder)), why)
     if Home(folder).held() and _names_in_journal(folder, person):
-        yield ForgottenPlace(JOURNAL_FOLDER, "the exhibition that runs has not forgotten the name")
+        yield ForgottenPlace(JOURNAL_FOLDER, "the running exhibition has not forgotten the name")
 
 
 def _own_files(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
     """Files of the exhibition itself, as they are kept for a start after a crash, that say the name."""
     for file in sorted(folder.glob("*.zip")):
         for member in _members(file, person):
-            yield ForgottenPlace(file.name, f"the exhibition's own file {member} says the name")
+            yield ForgottenPlace(file.name, f"the exhibition's own file {member} contains the name")
 
 
 def _names(file: Path, person: PersonName) -> bool:

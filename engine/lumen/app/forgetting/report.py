@@ -32,7 +32,7 @@ class Forgetting:
     others: tuple[str, ...] = ()
 
 
-FILES_ELSEWHERE = "where a part of the exhibition runs, its files hold what it knows: say it there, too"
+FILES_ELSEWHERE = "each machine that runs a part has files of its own: run the command there, too"
 COPIES = "films, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
 
@@ -41,9 +41,13 @@ def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPla
     if broker:
         for route in (route for route in routes if route.carried is Carried.JOURNAL):
             if route.direction is Direction.OUT:
-                yield ForgottenPlace(f"the broker's stream of `{route.name}`", "what was sent, for up to 30 days")
+                yield ForgottenPlace(f"the broker's stream of `{route.name}`", "sent messages, for up to 30 days")
             else:
-                yield ForgottenPlace(f"the broker's queue of `{route.name}`", "what nobody has taken yet")
-        yield ForgottenPlace(f"the broker's {SIDE_QUEUES}", "what nobody could use, for up to 7 days and an hour")
+                yield ForgottenPlace(
+                    f"the broker's queue of `{route.name}`", "messages that no process has received yet"
+                )
+        yield ForgottenPlace(
+            f"the broker's {SIDE_QUEUES}", "messages that no process could use, for up to 7 days and an hour"
+        )
     yield ForgottenPlace("other machines", FILES_ELSEWHERE)
     yield ForgottenPlace("other files", COPIES)

@@ -123,5 +123,5 @@ def number_of_robots(text: str) -> int:
     """What --robots says; raises UsageError for what is no such number."""
     number = int(text) if text.isdecimal() and text.isascii() and len(text) < 10 else inf
     if number > 1000:
-        raise UsageError(f"--robots is a number from 0 to 1000, not `{text[:40]}`")
+        raise UsageError(f"--robots must be a number from 0 to 1000, not `{text[:40]}`")
     return int(number)

@@ -52,7 +52,7 @@ def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: 
     if STDIN in paths:
         return [_typed(paths, stdin_name)]
     if stdin_name:
-        raise UsageError("--stdin-filename names what is read with `-`: write `lumen lint - --stdin-filename FILE`")
+        raise UsageError("--stdin-filename needs `-`: write `lumen lint - --stdin-filename FILE`")
     if not paths:
         return [LintTarget(own_project())]
     projects: dict[Path, set[str] | None] = {}
@@ -95,7 +95,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
         return own_project(here), set()
     root = _root(here)
     if root is None:
-        raise UsageError(f"{path} belongs to no project: there is no {MAIN_FILE} beside it or above")
+        raise UsageError(f"{path} belongs to no project: there is no {MAIN_FILE} in its folder or above")
     if whole:
         return root, set()
     name = composed(here.absolute().relative_to(root).as_posix())
@@ -115,11 +115,13 @@ def _typed(paths: Sequence[str], name: str | None) -> LintTarget:
         raise UsageError("`-` reads one file: write `lumen lint - --stdin-filename behaviors/NAME.yaml`")
     root = _root(Path(name))
     if root is None:
-        raise UsageError(f"{name} belongs to no project: there is no {MAIN_FILE} beside it or above")
+        raise UsageError(f"{name} belongs to no project: there is no {MAIN_FILE} in its folder or above")
     file = composed(Path(name).absolute().relative_to(root).as_posix())
     if not counts(file):
-        raise UsageError(f"{name} is no file that lint reads: docs/yaml.md lists the files of a project")
+        raise UsageError(f"{name} is not a file that lint reads: docs/yaml.md lists the files of a project")
     content = sys.stdin.buffer.read(MAX_FILE_BYTES + 1)
     if len(content) > MAX_FILE_BYTES:
-        raise UsageError(f"standard input holds more than {MAX_FILE_BYTES // 1_000_000} MB: no file of a project does")
+        raise UsageError(
+            f"standard input holds more than {MAX_FILE_BYTES // 1_000_000} MB, more than a file of a project may have"
+        )
     return LintTarget(root, frozenset((file,)), ((file, content),))

@@ -63,14 +63,14 @@ class AlertPart(Part, Observer):
         """How this run begins, which tells how the last one ended; the same again."""
         if isinstance(found, Resumption):
             if not found.told:
-                self._desk("crashed", f"it ended without notice, and goes on after {found.away:.0f} s")
+                self._desk("crashed", f"it ended without notice, and continues after {found.away:.0f} s")
         elif found.crashed:
-            self._desk("crashed", "it ended without notice, and begins anew")
+            self._desk("crashed", "it ended without notice, and starts from the beginning")
         return found
 
     def stepped(self, step: Step) -> None:
         if step.event and step.event.name == "stop" and _by_person(step.event):
-            self._desk("stopped", "somebody stopped it")
+            self._desk("stopped", "a person stopped it")
 
     def performing(self, command: Command, now: float) -> None:
         self._falls.performing(command)
@@ -84,7 +84,7 @@ class AlertPart(Part, Observer):
         if self._presence and self._presence.find(BRAIN) is None:
             self._notice(event)
             if event.name == "fallen":
-                self._desk("fallen", "it fell, and there is no brain to get it up")
+                self._desk("fallen", "it fell, and no brain is there to get it up")
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._now = now
@@ -103,7 +103,7 @@ class AlertPart(Part, Observer):
         self._desk.use(project.alerts)
 
     def helpless(self, reason: str) -> None:
-        self._desk("crashed", "a part of it gave up, and nobody can reach it: the robot rests")
+        self._desk("crashed", "a part of it failed, and it can't be reached: the robot rests")
 
     def close(self) -> None:
         self._disk.close()
@@ -147,7 +147,7 @@ class AlertPart(Part, Observer):
         """A robot that is stopped without a brain, which else tells of it."""
         before, self._stopped = self._stopped, self.stopped()
         if self._stopped and before is False and self._presence and self._presence.find(BRAIN) is None:
-            self._desk("stopped", "somebody stopped it")
+            self._desk("stopped", "a person stopped it")
 
     def _left(self, part: str) -> bool:
         """Whether who was that part has ended as it should."""
@@ -184,6 +184,6 @@ def _number(event: Event, key: str) -> str:
 
 
 def _by_person(stop: Event) -> bool:
-    """Whether somebody stopped it; what else does is told as what it is."""
+    """Whether a person stopped it; what else does is told as what it is."""
     by = stop.data.get("by") if isinstance(stop.data, dict) else None
     return by not in (ENGINE, RUN_BEFORE)

@@ -78,12 +78,12 @@ class BrainPart(Part):
             return False
         self._interrupted = True
         self.rest("Ctrl-C")
-        self._narrator.line("operator", "Ctrl-C: the robot rests; again to end")
+        self._narrator.line("operator", "Ctrl-C: the robot rests; press it again to end")
         return True
 
     def helpless(self, reason: str) -> None:
         self.rest(ENGINE)
-        self._narrator.line("robot", f"rests, for nobody could stop it any more: {reason}")
+        self._narrator.line("robot", f"rests, because no person could stop it any more: {reason}")
 
     def rest(self, by: str) -> None:
         """Let the robot rest, as somebody wants it, and tell the behaviour to stop."""
@@ -100,9 +100,9 @@ class BrainPart(Part):
         """Go on where the run before ended."""
         states = ", ".join(sorted(innermost(self.project.machine, found.snapshot.configuration)))
         self._narrator.note(
-            f"The last run {'was told to end' if found.told else 'ended without notice'} {found.away:.0f} s ago: "
-            f"this one goes on from there, in {states}.\n"
-            f"`lumen run --fresh` begins anew.{''.join(f' {note}.' for note in found.notes)}"
+            f"The last run {'was ended' if found.told else 'ended without notice'} {found.away:.0f} s ago: "
+            f"this one continues from there, in {states}.\n"
+            f"`lumen run --fresh` starts from the beginning.{''.join(f' {note}.' for note in found.notes)}"
         )
         self.behavior.loop.resume(self._regained(found))
 

@@ -52,7 +52,7 @@ class ConsolePart(Part):
             self._process = None
             self._pause = FIRST_PAUSE if here - self._began > STABLE else min(2 * self._pause, LONGEST_PAUSE)
             self._next = here + self._pause
-            self._tell(f"the console has ended ({code}); it is begun again in {self._pause:g} s")
+            self._tell(f"the console has ended ({code}); it restarts in {self._pause:g} s")
         if self._process is None and here >= self._next:
             self._begin(here)
 
@@ -86,7 +86,7 @@ class ConsolePart(Part):
         except OSError as error:
             self._pause = min(2 * self._pause, LONGEST_PAUSE)
             self._next = now + self._pause
-            self._tell(f"the console can't be begun: {error.strerror or error}")
+            self._tell(f"the console can't start: {error.strerror or error}")
             return
         self._began = now
         process = self._process

@@ -43,7 +43,9 @@ class BrainGuard:
             self._wake(at)
         self._ticked = at
         if self._woke and (other := self._presence.find(ROBOT_PART)):
-            raise BusRefusedError(f"this robot stood still, and by now {where_it_runs(other)} is it: this one ends")
+            raise BusRefusedError(
+                f"this robot's process was paused, and {where_it_runs(other)} now runs in its place: it ends"
+            )
         followed = self._presence.get(self.follows) if self.follows else None
         if followed and not self._resting:
             self._last = followed.heard
@@ -55,14 +57,14 @@ class BrainGuard:
             self._follow(brain, now)
         elif self._last is not None and not self._resting and at - self._last > BRAIN_TIMEOUT:
             self._resting = True
-            self._tell(f"rests: its brain is gone for {BRAIN_TIMEOUT:g} s")
+            self._tell(f"rests: its brain has been gone for {BRAIN_TIMEOUT:g} s")
             self._robot.start("guard", Rest())
 
     def _wake(self, at: float) -> None:
         """What it was doing is nobody's wish any more."""
         self._woke = at
         if self.follows:
-            self._tell(f"rests: it stood still for {at - self._ticked:.1f} s")
+            self._tell(f"rests: its process was paused for {at - self._ticked:.1f} s")
             self._robot.start("guard", Rest())
 
     def _follow(self, brain: Peer, now: float) -> None:

@@ -96,12 +96,12 @@ class HostedRobotPart(RobotPart):
         self._interrupted = True
         self.server.hold.stop("Ctrl-C")
         self.robot.start("operator", Rest())
-        self._say("rests: Ctrl-C; again to end")
+        self._say("rests: Ctrl-C; press it again to end")
         return True
 
     def helpless(self, reason: str) -> None:
         self.robot.start("guard", Rest())
-        self._say(f"rests, for nobody could stop it any more: {reason}")
+        self._say(f"rests, because no person could stop it any more: {reason}")
 
     def close(self) -> None:
         if self._interrupted:

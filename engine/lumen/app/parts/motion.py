@@ -92,7 +92,7 @@ class MotionPart(Part):
         match message.body:
             case {"id": str(id), "play": str(name)} if name in self._project.motions:
                 if message.body.get("bundle") != self._project.hash:
-                    self._narrator.line("motion", f"does not play {name}: its files are not the brain's")
+                    self._narrator.line("motion", f"does not play {name}: its files differ from the brain's")
                     return
                 self._played += 1
                 self._narrator.line("motion", f"plays {name}")
@@ -101,4 +101,4 @@ class MotionPart(Part):
                 self._narrator.line("motion", f"{'follows what is seen with' if on else 'lets go of'} {name}")
                 self._tracking.switch(Track(name, on))
             case _:
-                self._narrator.line("trouble", f"nobody here knows what {str(message.body)[:80]} asks for")
+                self._narrator.line("trouble", f"unknown request: {str(message.body)[:80]}")

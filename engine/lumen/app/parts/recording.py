@@ -64,8 +64,8 @@ class RecordingPart(Part):
         """What becomes of a mark; empty where nothing is recorded."""
         if self._ring:
             minutes = self._project.record.ring / 60
-            return f"the last {minutes:g} min are kept, and the next minute, in {self._folder.path}"
-        return f"all is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
+            return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
+        return f"everything is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
 
     def use(self, project: Project) -> None:
         self._project = project
@@ -74,7 +74,7 @@ class RecordingPart(Part):
 
     def summary(self) -> Iterator[str]:
         if self._file:
-            yield self._file.trouble or f"recorded: {self._file.path}, {self._file.messages:,} messages until now"
+            yield self._file.trouble or f"recorded: {self._file.path}, {self._file.messages:,} messages so far"
 
     def close(self) -> None:
         if self.recorder:

@@ -158,4 +158,4 @@ class RemoteBrainPart(BrainPart):
         self._session = robot.session
         other = self._others.get(str(robot.said.get("follows", "")))
         if other and self._others.alive(other) and BRAIN in other.parts and other.state == HERE:
-            raise BusRefusedError(f"the robot follows another brain by now, {where_it_runs(other)}: this one ends")
+            raise BusRefusedError(f"the robot now follows another brain, {where_it_runs(other)}: this one ends")

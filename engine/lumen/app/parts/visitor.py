@@ -117,7 +117,7 @@ class RemoteVisitorPart(VisitorPart):
 
     def summary(self) -> Iterator[str]:
         if self.player:
-            early = "ended before the story did" if not self.player.finished else "all well"
+            early = "ended before the story was over" if not self.player.finished else "all well"
             yield f"the story: {self.player.failure or early}"
         if self._telling:
             yield self._narrator.counted()

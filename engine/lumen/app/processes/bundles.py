@@ -42,7 +42,7 @@ class BundleFollower:
             if isinstance(found, str):
                 self._tell(found)
             else:
-                self._tell("the files that the brain has made active are active here, too")
+                self._tell("the brain's new files are active here, too")
                 self._use(found)
 
     def close(self) -> None:
@@ -73,7 +73,7 @@ class BundleFollower:
                 missed = ""
                 self._loaded.put(project)
             elif not missed:
-                missed = "the files here are not those that the brain runs on now: it goes on alone"
+                missed = "the files here differ from the brain's new files: only the brain uses those"
                 self._loaded.put(missed)
 
     def _files(self, wanted: str) -> Mapping[str, bytes] | None:

@@ -17,7 +17,7 @@ def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
         if part not in ALL:
             raise UsageError(f"there is no part `{part}`: {did_you_mean(part, ALL, 'there are')}")
     if not parts:
-        raise UsageError(f"--only takes one or more of {', '.join(ALL)}")
+        raise UsageError(f"--only must be one or more of {', '.join(ALL)}")
     if robot == "remote" and ROBOT_PART in parts:
         raise UsageError("the robot can't be here and remote: leave out --robot remote, or `robot` of --only")
     return parts

@@ -85,7 +85,7 @@ class RingTape:
                     if found:
                         rewrite([file], file, changed)
                 except LumenError as error:
-                    _log.warning("a recording still names somebody who was to be forgotten: %s", error)
+                    _log.warning("a recording still names a person who should be forgotten: %s", error)
 
     def close(self) -> None:
         """Keep what is marked; what is left of the ring is nobody's."""

@@ -40,9 +40,9 @@ def _tell(
     settings = main_settings(root, run_directory.robot)
     desk = AlertDesk(_alerts(settings, run_directory), _origin(settings, root, parts), root, tell)
     if isinstance(error, LumenError):
-        desk("start", f"it could not start, or go on: {_why(error)}")
+        desk("start", f"it could not start or continue: {_why(error)}")
     else:  # what a fault of ours says may hold anything
-        desk("crashed", f"it was ended by a fault of its own, {type(error).__name__}")
+        desk("crashed", f"it ended because of a fault in Lumen, {type(error).__name__}")
     desk.close()
 
 

@@ -21,7 +21,7 @@ from lumen.runtime.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, Stored
 LATELY = 600.0
 """How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""
 
-AT_REST = "The robot was at rest: so it is until a hand is on its head, or until you say `lumen resume`."
+AT_REST = "The robot was at rest, and stays at rest until you hold its head or run `lumen resume`."
 
 _UNKNOWN = Refusal("its files were not kept")
 
@@ -41,24 +41,26 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
         return Recovery(_after_another(keeper) if keeper else FreshStart())
     away, began = time.time() - kept.ended, time.perf_counter()
     if not 0.0 <= away <= LATELY:
-        return _anew(kept, f"The last run {how_ended(kept)}, but {_ago(away)}: this one begins anew.")
+        return _anew(kept, f"The last run {how_ended(kept)} {_ago(away)}: this one starts from the beginning.")
     if records.died(project.hash) >= MAX_CRASHES:
-        return _anew(kept, "The last runs ended without notice soon after their start: this one begins anew.")
+        return _anew(
+            kept, "The last runs ended without notice soon after their start: this one starts from the beginning."
+        )
     try:
         old = _before(root, keeper, kept, project)
         how = _resumed(old, project, kept, away) if old else _UNKNOWN
     except LumenError as error:
-        return _anew(kept, f"The last run {how_ended(kept)} and can't be gone on with: {error}")
+        return _anew(kept, f"The last run {how_ended(kept)} and can't be continued: {error}")
     news = () if old is None or old.hash == project.hash else (_news(old, project, how, time.perf_counter() - began),)
     if isinstance(how, Refusal):
-        why = f"The last run {how_ended(kept)}, and these files can't go on from there: {how.reason}"
+        why = f"The last run {how_ended(kept)}, and these files can't continue it: {how.reason}"
         return _anew(kept, why, news)
     return Recovery(how._replace(told=kept.told), news)
 
 
 def how_ended(kept: StoredSnapshot) -> str:
     """`ended without notice`, for a line to a person."""
-    return "was told to end" if kept.told else "ended without notice"
+    return "was ended" if kept.told else "ended without notice"
 
 
 def rested(records: RunRecords) -> FreshStart:
@@ -72,8 +74,9 @@ def _after_another(keeper: SnapshotStore) -> FreshStart:
     """How to begin where another Lumen may have written down where the behaviour stood."""
     version, rests = keeper.of_another_version()
     why = (
-        f"The last run ended without notice, under another Lumen (its snapshot is of version {version}, this one reads "
-        f"{SNAPSHOT_VERSION}): this one begins anew. To go on from there, start that Lumen instead, next time."
+        f"The last run ended without notice, under another version of Lumen (its snapshot has version {version}, "
+        f"this one reads {SNAPSHOT_VERSION}): this run starts from the beginning. "
+        "Next time, start that version to continue."
     )
     return FreshStart(f"{why}\n{AT_REST}" if rests else why, rests, crashed=True) if version else FreshStart()
 
@@ -102,7 +105,7 @@ def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Pr
 
 
 def _news(old: Project, new: Project, how: Resumption | Refusal, took: float) -> ReloadReport:
-    notes = (f"the behaviour begins anew: {how.reason}",) if isinstance(how, Refusal) else how.notes
+    notes = (f"the behaviour starts from the beginning: {how.reason}",) if isinstance(how, Refusal) else how.notes
     found = changes(old, new)
     return ReloadReport("applied", START, old.hash, new.hash, changes=found, notes=notes, took={"loading": took})
 

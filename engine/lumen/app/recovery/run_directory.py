@@ -45,7 +45,7 @@ class RunDirectory:
             else:
                 self.taken = True
         except UsageError as error:
-            _log.warning("the exhibition can't be resumed nor reached from other terminals: %s", error)
+            _log.warning("the exhibition can't be resumed or reached from other terminals: %s", error)
         self.records = RunRecords(self.home)
         self._ended = False
         self.news: list[ReloadReport] = []

@@ -40,7 +40,7 @@ def startup_project(
         good = run_directory.last_good()
         if good and good.hash != project.hash:
             why = f"these files ended the exhibition {died} times within {PERIOD:.0f} s of their start"
-            warn(_instead_of_yours(why.upper(), "Save them again, or `lumen reload`, to have them tried again.\n"))
+            warn(_instead_of_yours(why.upper(), "Save them again or run `lumen reload` to try them again.\n"))
             return _instead(run_directory, good, project.hash, why)
     run_directory.begin(project, files)
     return project

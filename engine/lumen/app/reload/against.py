@@ -43,8 +43,8 @@ def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator
             if (where := _says(old.machine, new.machine, identity, names[name])) is not None:
                 place = _place(new, new.behavior, where)
                 goals = ", ".join(f"`{state}`" for state in fate.after if state not in fate.states)
-                message = f"a reload would lead from `{name}`, which is gone, to {goals}"
-                hint = "where it has another name, say so under `renamed`"
+                message = f"a reload would move from `{name}`, which is gone, to {goals}"
+                hint = "if it has a new name, write it under `renamed`"
                 yield _finding(RELOAD_MOVES, message, place, hint)
 
 
@@ -64,16 +64,21 @@ def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, pa
 def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
     """Keys whose values a reload would lose."""
     before, after = old.machine, new.machine
-    was, checks, hint = Identity(before, after).keys(), type_checks(after), "say under `renamed` what it is called now"
+    was, checks, hint = (
+        Identity(before, after).keys(),
+        type_checks(after),
+        "if it has a new name, write it under `renamed`",
+    )
     for key in before.context:
         if key not in was.values():
-            message = f"a reload would forget what `{key}` holds"
+            message = f"a reload would lose the value of `{key}`"
             yield _finding(RELOAD_FORGETS, message, _place(new, new.behavior, ("context",)), hint)
     for key, name in was.items():
         check = checks[key]
         if name in before.context and check and not check.accepts(before.context[name]):
             place = _place(new, new.behavior, ("context", key))
-            message = f"a reload would forget what `{key}` holds: a {type_name(before.context[name])}, and {check} now"
+            was_type = type_name(before.context[name])
+            message = f"a reload would lose the value of `{key}`: it is a {was_type}, and must be {check} now"
             yield _finding(RELOAD_FORGETS, message, place, "let `types` allow both")
 
 

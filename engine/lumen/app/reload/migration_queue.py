@@ -19,12 +19,12 @@ from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
 from lumen.interpreters.replay.visits import home_of
 from lumen.language.projects import Project
 
-OTHER_VISITS = "recorded visits would be others with these files"
-APPLY = "`lumen reload --apply` takes them all the same"
-ONE_VISITOR = "for one visitor: when that visit is over the files before come back"
-VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` takes them for good"
+OTHER_VISITS = "recorded visits would go differently with these files"
+APPLY = "`lumen reload --apply` activates them all the same"
+ONE_VISITOR = "for one visitor: when that visit is over, the files before come back"
+VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` activates them for good"
 BETWEEN = "a visit is under way"
-BY_A_PERSON = "somebody refused them"
+BY_A_PERSON = "a person refused them"
 
 _log = logging.getLogger(__name__)
 
@@ -120,9 +120,9 @@ class MigrationQueue:
         report = self._about(staged, "dry run")
         match verdict:
             case MigrationPlan(notes=notes):
-                report.reason, report.notes = "it would be active at once", notes
+                report.reason, report.notes = "they would be active at once", notes
             case MigrationDelay(reason, what):
-                report.reason = f"it would wait for `{what}`: {reason}"
+                report.reason = f"they would wait for `{what}`: {reason}"
             case Refusal(hint=hint):
                 report.verdict, report.reason = "refused", reason_of(verdict, staged.project)
                 report.hint = hint

@@ -38,7 +38,7 @@ class ReloadNotifier:
             loop = self._behavior.loop
             loop.bus.publish(status_key(loop.project.robot), told)
         except BusError as error:
-            _log.warning("what came of the saved files was not published: %s", error)
+            _log.warning("the result of the reload was not published: %s", error)
 
     def line(self, text: str) -> None:
         """To the terminal only."""

@@ -49,7 +49,7 @@ class RunRecords:
     def trouble(self) -> str:
         """What can't be written of where the behaviour stands, what happened or is recorded, and why; else empty."""
         if why := self.keeper.trouble if self.keeper else "":
-            return f"where the behaviour stands can't be written: {why}"
+            return f"the snapshot of the behaviour can't be written: {why}"
         if why := self.inputs.trouble if self.inputs else "":
             return why
         return self.recorder.trouble if self.recorder else ""
@@ -140,9 +140,9 @@ class RunRecords:
         if self._keeping and (fault := self._keeping.exception()):
             self._keeping = None
             if not self._failed:
-                _log.error("where the behaviour stands could not be kept", exc_info=fault)
+                _log.error("the snapshot of the behaviour could not be kept", exc_info=fault)
             self._failed = True
         if self.keeper and self.keeper.trouble and not self._told:
             self._told = True
-            _log.warning("where the behaviour stands can't be kept: %s", self.keeper.trouble)
+            _log.warning("the snapshot of the behaviour can't be kept: %s", self.keeper.trouble)
         return True

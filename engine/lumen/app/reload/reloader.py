@@ -156,7 +156,7 @@ class Reloader:
         try:
             self._tick(now)
         except Exception:
-            _log.exception("the saved files could not be taken")
+            _log.exception("the saved files could not be used")
             self._queue.drop()
 
     def _tick(self, now: float) -> None:
@@ -192,7 +192,7 @@ class Reloader:
 
     def _warn(self, failed: list[Rehearsal]) -> None:
         for rehearsal in failed:
-            self._notifier.line(f"the story `{rehearsal.story.name}` does not hold with these files: {told(rehearsal)}")
+            self._notifier.line(f"the story `{rehearsal.story.name}` fails with these files: {told(rehearsal)}")
 
     def _hear(self, message: Message) -> None:
         try:
@@ -203,7 +203,7 @@ class Reloader:
         queue = self._queue
         if order.verb == "stop":
             self._behavior.loop.happen(Event("stop", {}, cause=Cause("person", sender=message.sender)))
-            order.answer(self._answer("stopped", "the behaviour is told to stop").to_json())
+            order.answer(self._answer("stopped", "the behaviour stops").to_json())
         elif order.verb == "status":
             order.answer(self._status().to_json())
         elif self._mode == "off":

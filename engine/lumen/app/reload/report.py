@@ -78,14 +78,14 @@ class ReloadReport:
             case "rolled back":
                 yield f"{self.reason}: back to the files before, revision {self.revision}"
             case "refused":
-                goes_on = "the last good files run" if self.who == START else "the exhibition goes on as it was"
+                goes_on = "the last good files run" if self.who == START else "the exhibition continues unchanged"
                 yield f"refused: {self._why()}{goes_on}"
             case "waiting":
                 yield f"waiting for `{self.waiting_for}`: {self.reason} (`lumen reload --now` does not wait)"
             case "staged":
-                yield f"staged: {self._what()}; `lumen reload --apply` makes it active"
+                yield f"staged: {self._what()}; `lumen reload --apply` activates it"
             case "unchanged":
-                yield self.reason or "the saved files are those that run"
+                yield self.reason or "the saved files already run"
             case "dry run":
                 yield f"{self._what()}; {self.reason}"
             case _:

@@ -46,7 +46,7 @@ def request_from(message: Message, bus: Bus) -> ReloadRequest:
     if verb not in REQUESTS:
         raise UsageError(f"there is no command `{verb[:40]}`: {did_you_mean(verb[:40], REQUESTS, 'there are')}")
     if not isinstance(body.get("now", False), bool):
-        raise UsageError("`now` is true or false")
+        raise UsageError("`now` must be true or false")
     return ReloadRequest(verb, body.get("now", False), answering(message, bus))
 
 

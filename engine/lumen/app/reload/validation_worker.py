@@ -107,7 +107,7 @@ class ValidationWorker:
 
     def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
         found: VisitsCheck | None = self._ask("visits", str(self._root), running, budget)
-        return found or VisitsCheck(trouble="the process that was to play them has begun anew")
+        return found or VisitsCheck(trouble="the process that plays them was restarted")
 
     def close(self) -> None:
         """Have the process kept for who needs one soon."""
@@ -124,7 +124,7 @@ class ValidationWorker:
         try:
             process = self._running()
         except OSError as error:
-            raise FatalFilesError(f"no process can be begun that reads the files: {error.strerror}") from None
+            raise FatalFilesError(f"the process that reads the files can't start: {error.strerror}") from None
         child = process.child
         began, timer = time.monotonic(), threading.Timer(self._timeout, child.kill)
         timer.start()
@@ -138,7 +138,7 @@ class ValidationWorker:
             process.end()
             late = time.monotonic() - began >= self._timeout
             how = f"it took more than {self._timeout:.0f} s" if late else _how(child.returncode)
-            raise FatalFilesError(f"these files end the process that reads them: {how}", overdue=late) from None
+            raise FatalFilesError(f"the process that reads these files failed: {how}", overdue=late) from None
         except BaseException:  # whoever is interrupted leaves an answer in the pipe, which is none to the next question
             self._process = None
             process.end()

@@ -45,7 +45,7 @@ class VisitsCheck:
         elif report.visits:
             yield f"of {self._which()}: {self._counts()}"
         elif not self.complete:
-            yield f"not one recorded visit could be played within {self.budget:g} s (`budget` in lumen.yaml)"
+            yield f"no recorded visit could be played within {self.budget:g} s (`budget` in lumen.yaml)"
         if report.differ:
             first = report.differ[0]
             when = datetime.fromtimestamp(first.at).strftime("%Y-%m-%d %H:%M:%S")

@@ -37,7 +37,7 @@ def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") 
     if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):
         file = Path(word)
         if not file.is_file():
-            raise UsageError(f"there is no file {word}: `lumen replay --list` shows which there are")
+            raise UsageError(f"no file {word}: `lumen replay --list` lists the files")
         header_of(file)
         return ChosenJournal(root, (file,))
     found = [(file, header) for file, header in headers(folder) if file.parent == folder or not (all or word)]
@@ -52,7 +52,7 @@ def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") 
     if not wanted:
         what = f"of {word} " if word else ""
         raise UsageError(
-            f"nothing {what}is in {folder}: `lumen run` keeps there what happens; see `lumen replay --list`"
+            f"nothing {what}is in {folder}: `lumen run` writes the journal there; see `lumen replay --list`"
         )
     return ChosenJournal(root, tuple(file for file, _ in wanted))
 
@@ -79,7 +79,7 @@ def time_of_day(text: str) -> time:
     try:
         return time.fromisoformat(text.zfill(5) if text.count(":") == 1 else text.zfill(8))
     except ValueError:
-        raise UsageError(f"`{text}` is no time of day: write it as 14:03 or 14:03:20") from None
+        raise UsageError(f"`{text}` is not a time of day: write it as 14:03 or 14:03:20") from None
 
 
 def _day(word: str) -> date:
@@ -88,4 +88,6 @@ def _day(word: str) -> date:
     try:
         return date.fromisoformat(word)
     except ValueError:
-        raise UsageError(f"`{word}` is no file and no day: write today, yesterday, or one such as 2026-11-23") from None
+        raise UsageError(
+            f"`{word}` is neither a file nor a day: write today, yesterday, or a date such as 2026-11-23"
+        ) from None

@@ -15,7 +15,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.robots.command_table import COMMANDS, USUAL_DURATION, row_of
 
-NOT_WHOLE = "visits that are not whole in the journal"
+NOT_WHOLE = "visits that are incomplete in the journal"
 
 
 def against(
@@ -35,7 +35,7 @@ def against(
         tell(report.visits + 1)
         if deadline is not None and monotonic() > deadline:
             report.visits += 1
-            report.leave_out("there was no time for them")
+            report.leave_out("visits for which there was no time")
         else:
             player.play(visit, report)
     return report
@@ -71,7 +71,7 @@ class VisitPlayer:
         elif old is None or known:
             report.leave_out(NOT_WHOLE)
         else:
-            report.leave_out(f"there is no behaviour `{old.behavior}` any more")
+            report.leave_out(f"visits of the behaviour `{old.behavior}`, which no longer exists")
 
     def _verdict(self, visit: RecordedVisit, old: Project) -> VisitVerdict | None:
         new = _staged_like(old, live(old, self._new))

@@ -38,10 +38,10 @@ def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -
         for visit in visits(with_machines(entries, bundles))
     ]
     if not found:
-        raise UsageError("there is no visit in that journal; `lumen replay --list` shows which files there are")
+        raise UsageError("that journal has no visit; `lumen replay --list` lists the files")
     one = _under_way(found, at) if at else found[-1]
     if one.visit.redacted:
-        raise UsageError(f"the visit {one.when} is redacted: somebody in it is forgotten, and what was said is gone")
+        raise UsageError(f"the visit {one.when} is redacted: a visitor in it was forgotten, and the words are gone")
     return one
 
 

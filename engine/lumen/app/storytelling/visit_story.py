@@ -66,7 +66,7 @@ def visit_story(
     if home is None or home.snapshot is None or not visit.inputs:
         raise UsageError("the beginning of that visit is not in the journal: no story can be made of it")
     if home.behavior not in project.behaviors:
-        raise UsageError(f"there is no behaviour `{home.behavior}` any more: no story can be made of that visit")
+        raise UsageError(f"the behaviour `{home.behavior}` no longer exists: no story can be made of that visit")
     stands = deserialize(old.machine, home.snapshot)
     blank = _blank(project, stands, visit, name, title, renamed)
     was = told([(entry.event.at, renamed(command)) for entry in visit.inputs for command in entry.commands])
@@ -167,7 +167,7 @@ def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequenc
                 break
             left_out.add(number)
         left_out = set()
-    raise UsageError("that visit can't be played as a story: what happened in it does not come about again")
+    raise UsageError("that visit can't be played as a story: its events do not happen again in the same way")
 
 
 def _steps(

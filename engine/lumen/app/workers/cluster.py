@@ -22,7 +22,7 @@ def cluster_address(text: str) -> str:
     """`tcp://HOST:PORT` of `dask://HOST:PORT`. Raises UsageError, also where the extra is not installed."""
     host, _, port = text.removeprefix(SCHEME).rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port[:6]) < 65536:
-        raise UsageError(f"`{text[:80]}` is no address of a cluster: write it as dask://HOST:8786")
+        raise UsageError(f"`{text[:80]}` is not the address of a cluster: write it as dask://HOST:8786")
     demand("cluster", f"--workers {SCHEME}…", "distributed")
     return f"tcp://{host}:{port}"
 
@@ -43,7 +43,7 @@ def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
         client = distributed.Client(address, timeout=ANSWER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise WorkersError(
-            f"no scheduler of Dask answers at {shown}: start one there with `dask scheduler`, and workers with "
+            f"no Dask scheduler answers at {shown}: start one there with `dask scheduler`, and workers with "
             f"`dask worker {address}`"
         ) from error
     try:
@@ -51,7 +51,9 @@ def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
         if not seen:
             raise WorkersError(f"the scheduler at {shown} has no workers: start some with `dask worker {address}`")
         if bare := [name for name, found in seen.items() if not found["packages"].get(PACKAGE_NAME)]:
-            raise WorkersError(f"Lumen is not installed where the worker {bare[0]} runs: install the same one there")
+            raise WorkersError(
+                f"Lumen is not installed where the worker {bare[0]} runs: install the same version there"
+            )
         yield client.get_executor(pure=False), client.submit(bytes, packed)
     except OSError as error:  # the scheduler is gone
         raise CancelledError(str(error)) from error

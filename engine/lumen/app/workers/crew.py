@@ -63,9 +63,9 @@ class StaffedCrew:
                 return
             self._staff = None
             if not again:
-                _log.warning("%s: %d tasks are done again", self._trouble, len(work.left))
+                _log.warning("%s: %d tasks are repeated", self._trouble, len(work.left))
             numbered = chain(work.left.items(), numbered)
-        raise WorkersError(f"{self._trouble} a second time: {self._remedy}")
+        raise WorkersError(f"{self._trouble}, for the second time: {self._remedy}")
 
 
 class _Work:

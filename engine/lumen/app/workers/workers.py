@@ -77,10 +77,10 @@ class Workers:
     def _trouble(self) -> str:
         if self.address:
             return f"the cluster at {self.address.replace('tcp://', SCHEME)} has lost workers, or its scheduler"
-        return "a worker process ended before its time (was there too little memory?)"
+        return "a worker process ended too early (perhaps it had too little memory)"
 
     def _remedy(self) -> str:
-        return "look into the logs of its workers" if self.address else "take fewer of them with --workers 1"
+        return "read the logs of its workers" if self.address else "use fewer of them with --workers 1"
 
 
 def workers_of(text: str | None) -> Workers:
@@ -95,7 +95,8 @@ def workers_of(text: str | None) -> Workers:
     count = int(text) if text.isdecimal() and text.isascii() and len(text) < 6 else 0
     if not 1 <= count <= MAX_WORKERS:
         raise UsageError(
-            f"--workers is a number from 1 to {MAX_WORKERS}, or a cluster such as {SCHEME}HOST:8786, not `{text[:40]}`"
+            f"--workers must be a number from 1 to {MAX_WORKERS} or a cluster such as {SCHEME}HOST:8786,"
+            f" not `{text[:40]}`"
         )
     return Workers(count)
 

@@ -64,16 +64,18 @@ def read_header(line: bytes, name: str) -> JournalHeader:
             matcher=int(data.get("matcher", 0)),
         )  # fmt: skip
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        raise JournalError(f"{name} is no journal, or was cut in its first line: nothing in it can be read") from None
+        raise JournalError(
+            f"{name} is not a journal, or was cut off in its first line: nothing in it can be read"
+        ) from None
     if version != JOURNAL_VERSION:
         raise JournalError(
-            f"{name} was written by another Lumen (the journal's version {version}, this one reads {JOURNAL_VERSION}): "
-            "replay it with that one"
+            f"{name} was written by another version of Lumen (the journal has version {version}, this one reads"
+            f" {JOURNAL_VERSION}): replay it with that version"
         )
     if header.matcher > MATCHER:
         raise JournalError(
-            f"{name} was written by a later Lumen (its rules for sentences are version {header.matcher}, this one has"
-            f" {MATCHER}): replay it with that one"
+            f"{name} was written by a later version of Lumen (its rules for sentences are version {header.matcher}, this"
+            f" one has {MATCHER}): replay it with that version"
         )
     return header
 

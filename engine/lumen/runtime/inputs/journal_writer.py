@@ -237,4 +237,4 @@ class JournalWriter:
             try:
                 redact(file, person)
             except ModuleError as error:
-                _log.warning("the journal still names somebody who was to be forgotten: %s", error)
+                _log.warning("the journal still names a person who should be forgotten: %s", error)
