@@ -74,8 +74,8 @@ def read_header(line: bytes, name: str) -> JournalHeader:
         )
     if header.matcher > MATCHER:
         raise JournalError(
-            f"{name} was written by a later version of Lumen (its rules for sentences are version {header.matcher}, this"
-            f" one has {MATCHER}): replay it with that version"
+            f"{name} was written by a later version of Lumen (its rules for sentences are version"
+            f" {header.matcher}, this one has {MATCHER}): replay it with that version"
         )
     return header
 
