@@ -17,7 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         choices=("test",),
         help="send a test alert to each recipient in `alerts:` of lumen.yaml, even in quiet hours",
     )
-    add("project", nargs="?", metavar="PROJECT", help="the project's folder (default: here or above)")
+    add("project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 

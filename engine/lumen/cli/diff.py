@@ -23,7 +23,9 @@ COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"
 def configure(parser: argparse.ArgumentParser) -> None:
     which = f"a folder, a revision of this project (HEAD~1), or `{LIVE}`: the files that run now"
     parser.add_argument("old", metavar="OLD", help=which)
-    parser.add_argument("new", metavar="NEW", nargs="?", help="the same (default: the project here or above)")
+    parser.add_argument(
+        "new", metavar="NEW", nargs="?", help="the other version, likewise (default: this folder or one above)"
+    )
     parser.add_argument(
         "--configurations", action="store_true", help="show the outcome of a reload in every configuration"
     )

@@ -46,7 +46,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "Check the bus of an exhibition: whether the broker runs, is new enough and lets Lumen read and send,"
         " whether the clocks agree, and which routes no process serves."
     )
-    parser.add_argument("project", nargs="?", metavar="PROJECT", help="the project's folder (default: here or above)")
+    parser.add_argument(
+        "project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)"
+    )
     parser.add_argument(
         "--bus", metavar="URL", help="the bus (default: LUMEN_BUS, then that of lumen.yaml, then this machine)"
     )

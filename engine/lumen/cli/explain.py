@@ -19,7 +19,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "code",
         nargs="?",
         metavar="CODE",
-        help="a code as lint prints it, the first words of codes, or a family (default: all)",
+        help="a code of lint, the beginning of codes, or a family (default: all codes)",
     )
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 

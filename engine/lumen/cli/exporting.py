@@ -39,22 +39,24 @@ WRITERS: Mapping[str, Writer] = {
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; a fuzzy"
-        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. Parts that the"
-        " format can't express are listed with their line; the rest is written all the same, and the exit code is 1."
+        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. If the"
+        " format can't express something, it is listed with its line, the rest is written, and the exit code is 1."
     )
     targets = (*WRITERS, "fll", "asyncapi")
     parser.add_argument("target", metavar="FORMAT", choices=targets, help=" | ".join(targets))
     which = "a behaviour (default: the one that runs) or a controller (default: the only one)"
     parser.add_argument("behavior", nargs="?", metavar="NAME", help=which)
     parser.add_argument(
-        "--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)"
+        "--project",
+        metavar="DIR",
+        help="the project's folder (default: this folder or one above, else the shipped project)",
     )
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
     parser.add_argument(
         "--format",
         choices=tuple(FORMATS),
         default="text",
-        help="how to print the list of omissions (default: text)",
+        help="how to print what is left out (default: text)",
     )
 
 

@@ -35,7 +35,7 @@ WHATS: Mapping[str, str] = {
     "publish": "send a project to the centre as a bundle",
     "try": "let all robots try a bundle without switching to it",
     "rollout": "roll a bundle out to the robots, step by step",
-    "log": "list incidents, and what was counted with each bundle",
+    "log": "list incidents, and the counts of each bundle",
     "status": "show the houses, the robots and the rollout",
     "pause": "pause the rollout",
     "go": "continue a rollout that is paused, or that waits because its result is unknown",
@@ -85,7 +85,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--ca",
         metavar="FILE",
         default="",
-        help="init: the CA file for the centre's certificate, on a house's broker; check: that for the broker's",
+        help="init: path of the CA file for the centre on a house's broker; check: the CA file for this broker",
     )
     add("--rabbitmqctl", metavar="CMD", default=USUAL, help="check: the command to run, such as 'sudo rabbitmqctl'")
     configure_format(parser)

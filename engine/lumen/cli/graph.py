@@ -25,15 +25,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("behavior", nargs="?", help="a behaviour's name (default: the one that runs)")
     which = parser.add_mutually_exclusive_group()
-    which.add_argument("--region", metavar="NAME", help="only the states inside this one, and what they lead to")
+    which.add_argument("--region", metavar="NAME", help="only the states inside this state, and their targets")
     which.add_argument("--state", metavar="NAME", help="only this state, with the transitions to it and from it")
-    add("--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)")
+    add(
+        "--project",
+        metavar="DIR",
+        help="the project's folder (default: this folder or one above, else the shipped project)",
+    )
     add("-o", "--output", metavar="FILE", type=Path, help=".svg or .png: a picture; .dot: for Graphviz; else Mermaid")
     add(
         "--layout",
         choices=LAYOUTS,
         default="auto",
-        help="layout by Graphviz's dot or Lumen's own; auto uses dot if it is installed",
+        help="lay out with Graphviz (dot) or Lumen (own); auto: Graphviz if installed",
     )
     configure_format(parser)
 
@@ -73,7 +77,7 @@ def _content(options: argparse.Namespace, machine: MachineDefinition, ending: st
     if options.layout == "dot":
         raise UsageError("Graphviz's `dot` is not installed: install it, or leave out --layout dot")
     if ending == ".png":
-        raise UsageError("a PNG needs Graphviz's `dot`, which is not installed or left out: write an .svg instead")
+        raise UsageError("a PNG needs Graphviz: install it, leave out --layout own, or write an .svg")
     return svg(diagram).encode()
 
 

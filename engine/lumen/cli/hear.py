@@ -38,9 +38,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="STATE",
         help="a state's id, or its path such as guide.talking (default: all states that hear)",
     )
-    add("--behavior", metavar="BEHAVIOR", help="another behaviour than the one that runs")
+    add("--behavior", metavar="BEHAVIOR", help="a behaviour other than the one that runs")
     add("--language", metavar="LANG", help="the language that the robot speaks (default: the project's first)")
-    add("--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)")
+    add(
+        "--project",
+        metavar="DIR",
+        help="the project's folder (default: this folder or one above, else the shipped project)",
+    )
     configure_format(parser)
 
 

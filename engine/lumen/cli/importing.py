@@ -54,9 +54,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
         " Python) into a motion file, a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
-        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. Parts that can't be"
-        " converted are listed with their line; the rest is written all the same, and the exit code is 1. A result that"
-        " Lumen could not load is not written, and the exit code is 2."
+        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. If something"
+        " can't be converted, it is listed with its line, the rest is written, and the exit code is 1. If Lumen could"
+        " not load the result, nothing is written, and the exit code is 2."
     )
     add = parser.add_argument
     add(
@@ -76,13 +76,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--project",
         metavar="DIR",
-        help="the project whose robot a motion is for (default: here or above, else the shipped one)",
+        help="the project whose robot a motion is for (default: this folder or one above, else the shipped one)",
     )
     add(
         "--format",
         choices=tuple(FORMATS),
         default="text",
-        help="how to print the list of omissions (default: text)",
+        help="how to print what is left out (default: text)",
     )
 
 

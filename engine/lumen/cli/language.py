@@ -21,7 +21,7 @@ CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 VERBS = {
     "list": "list the languages of the project, and how much each lacks",
     "add LANG": f"add an entry for it to each text and phrase, with {TO_DO}and the words to translate",
-    "check [LANG…]": "list what these languages lack, or all of them; exit code 1 if anything is missing",
+    "check [LANG…]": "list what is missing in these languages (default: all); exit code 1 if anything is",
 }
 
 
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--from", dest="source", metavar="LANG", help="add: the language to translate from (default: the first)"
     )
-    parser.add_argument("--project", metavar="DIR", help="the project's folder (default: here or above)")
+    parser.add_argument("--project", metavar="DIR", help="the project's folder (default: this folder or one above)")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
@@ -89,7 +89,7 @@ def _add(options: argparse.Namespace, root: Path, files: dict[str, bytes], found
     write(root, files, changed)
     for file, content in sorted(changed.items()):
         print(f"{file}: {content.count(TO_DO.encode()) - files[file].count(TO_DO.encode())} to translate")
-    print(f"Translate the texts that begin with {TO_DO.strip()}; `lumen language check {language}` lists those left.")
+    print(f"Translate the texts that begin with {TO_DO.strip()}; `lumen language check {language}` lists the rest.")
     print(f"The robot speaks it after the action `language: {language}`, or with `lumen run --language {language}`.")
     return 0
 

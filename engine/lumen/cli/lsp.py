@@ -5,7 +5,7 @@ import argparse
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--stdio", action="store_true", help="use standard input and output, as every editor does; this is the only way"
+        "--stdio", action="store_true", help="use standard input and output (the default, and the only way)"
     )
 
 

@@ -37,9 +37,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "name",
         nargs="?",
         metavar="NAME",
-        help="forget: the visitor to forget; journal: only the entries about this visitor",
+        help="forget: the visitor; journal: list only entries about this visitor",
     )
-    add("--project", metavar="PROJECT", help="the project's folder (default: here or above, else the shipped project)")
+    add(
+        "--project",
+        metavar="PROJECT",
+        help="the project's folder (default: this folder or one above, else the shipped project)",
+    )
     add("--bus", metavar="URL", help="forget: the exhibition's bus (default: LUMEN_BUS, then this machine)")
     configure_robot_name(parser)
     add("--limit", metavar="N", type=int, default=50, help="journal: the newest N entries (default: 50)")
@@ -148,7 +152,7 @@ def _lines(name: str, folder: Path, found: Forgetting) -> Iterator[str]:
     for title, places in (("deleted", found.deleted), ("STILL THERE", found.left), ("not here", found.elsewhere)):
         yield from (f"  {title}: {where}: {what}" for where, what in places)
     if found.others:
-        yield f"  still remembered, with the name in theirs: {', '.join(found.others)}"
+        yield f"  still remembered, because the name is only part of theirs: {', '.join(found.others)}"
 
 
 def _visitor(row: dict[str, object]) -> str:

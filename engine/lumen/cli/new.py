@@ -31,7 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--action",
         metavar=ACTION,
         default=ACTION,
-        help="Lumen's action for its GitHub workflow: the repository, and the 40 digits of a commit",
+        help="Lumen's GitHub action: its repository, and the 40 digits of a commit",
     )
     configure_format(parser)
 

@@ -18,7 +18,10 @@ from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
 from lumen.loading.packaged import shipped_root
 
-GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away; Ctrl-C rests the robot, twice ends.\n"
+GREETING = (
+    "You are the visitor: type what you say, or /help. Ctrl-D walks away; Ctrl-C makes the robot rest, and a second"
+    " Ctrl-C ends.\n"
+)
 
 
 class Performance:

@@ -47,7 +47,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--retime", action="store_true", help="lengthen a .motion, .xar or .py where its joints would move too fast"
     )
     parser.add_argument(
-        "--project", metavar="DIR", help="the project's folder (default: here or above, else the shipped project)"
+        "--project",
+        metavar="DIR",
+        help="the project's folder (default: this folder or one above, else the shipped project)",
     )
     configure_model(parser)
     parser.add_argument(

@@ -8,7 +8,7 @@ from lumen.app.reaching import Reached, reach_exhibition, robots_meant
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "project", nargs="?", metavar="PROJECT", help="the exhibition's folder (default: here or above)"
+        "project", nargs="?", metavar="PROJECT", help="the exhibition's folder (default: this folder or one above)"
     )
     parser.add_argument("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
     configure_robot_name(parser)

@@ -52,10 +52,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const="",
         metavar="TEXT",
-        help="keep the last minutes (needs `record: {ring: …}` in lumen.yaml)",
+        help="mark this moment, and keep the last minutes if `record: {ring: …}` is set",
     )
     add("--recover", metavar="FILE.mcap", type=Path, help="repair a recording that was cut off")
-    add("--project", metavar="DIR", help="the exhibition's folder (default: here or above)")
+    add("--project", metavar="DIR", help="the exhibition's folder (default: this folder or one above)")
     add("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 

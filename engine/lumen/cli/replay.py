@@ -40,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--all", action="store_true", help="replay every recorded visit")
     add("--list", action="store_true", help="list the files of the journal")
-    add("--project", metavar="DIR", help="the project whose journal is read (default: here or above)")
+    add("--project", metavar="DIR", help="the project whose journal is read (default: this folder or one above)")
     add("--until", metavar="14:03", help="only up to that time of day")
     add("--bundle", metavar="DIR", help="use these files: a folder, or a revision such as HEAD~1")
     add("--robot", choices=("recording", "simulation"), help="perform it again on this robot")

@@ -62,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "project",
         nargs="?",
         metavar="PROJECT",
-        help="the project's folder (default: here or above, else the shipped project)",
+        help="the project's folder (default: this folder or one above, else the shipped project)",
     )
     add(
         "--story",

@@ -30,7 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--name", action="append", default=[], metavar="OLD=NEW", help="replace a visitor's name; may be repeated")
     add("--title", help="the title of the story")
     add("--force", action="store_true", help="replace an existing file")
-    add("--project", metavar="DIR", help="the project whose journal is read (default: here or above)")
+    add("--project", metavar="DIR", help="the project whose journal is read (default: this folder or one above)")
     configure_robot_name(parser)
     configure_format(parser)
 

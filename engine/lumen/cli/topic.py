@@ -59,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--for", dest="span", metavar="TIME", help="how long to listen (default: 3s; echo: until Ctrl-C)"
     )
     parser.add_argument("--wait", metavar="TIME", help="pub: wait this long for an answer, and print it")
-    parser.add_argument("--project", metavar="DIR", help="the exhibition's folder (default: here or above)")
+    parser.add_argument("--project", metavar="DIR", help="the exhibition's folder (default: this folder or one above)")
     parser.add_argument("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 

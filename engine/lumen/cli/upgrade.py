@@ -19,7 +19,9 @@ from lumen.rules.upgrading import Rewriting, upgraded
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("project", nargs="?", metavar="PROJECT", help="the project's folder (default: here or above)")
+    parser.add_argument(
+        "project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)"
+    )
     parser.add_argument("--diff", action="store_true", help="print what would be written, and write nothing")
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit code 1 if something must be rewritten"

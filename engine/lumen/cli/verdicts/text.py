@@ -74,7 +74,7 @@ def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
     asked = paint(f"{count(trial.asked, 'question', 'questions')} in `{trial.language}`", "bold", on=coloured)
     yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, {trial.rates.wrong:.0%} wrongly;"
     yield (
-        f"  each tested with the others as examples: {trial.others.recall:.0%}, {trial.others.wrong:.0%} wrongly;"
+        f"  each tested with weights from the others: {trial.others.recall:.0%}, {trial.others.wrong:.0%} wrongly;"
         f" an answer needs a probability of {trial.least:.0%}"
     )
     for each in trial.wrong:
