@@ -58,4 +58,4 @@ def test_says_who_is_not_reached_and_why(folder: Path, web: Webs, capsys: pytest
 def test_nobody_is_to_be_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     told(folder, "")
     assert main(["alerts", "test", str(folder)]) == 2
-    assert "there is no `alerts:` in" in capsys.readouterr().err
+    assert "no recipient: write one under `to` of `alerts:` in" in capsys.readouterr().err

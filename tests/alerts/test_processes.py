@@ -57,7 +57,7 @@ def test_an_exhibition_that_is_stopped_killed_and_begun_again(
     second.wait()
     assert {body["text"].partition(": ")[2].partition(" after")[0] for body in web.bodies} == {
         "a person stopped it",
-        "it ended without notice, and goes on",
+        "it ended without notice, and continues",
     }
 
 

@@ -185,7 +185,7 @@ def test_what_can_be_no_event_is_refused(mine: Path) -> None:
         for event in ("done.command.d1", "shared.changed"):
             refused = ask("event", event=event)
             assert refused["verdict"] == "refused"
-            assert "only robots say that" in refused["reason"]
+            assert "only robots send it" in refused["reason"]
         assert '`{"ask": "now"}`' in ask("nothing")["reason"]
 
 

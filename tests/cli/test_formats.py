@@ -53,7 +53,7 @@ def test_what_is_left_out_is_listed_with_its_line(tmp_path: Path, capsys: pytest
     ("content", "arguments", "words"),
     [
         ("<a", ["import", "FILE"], "this is not XML"),
-        ("hello", ["import", "FILE"], "neither SCXML, the JSON of XState, nor a motion"),
+        ("hello", ["import", "FILE"], "is not SCXML, XState's JSON, a motion"),
         (None, ["import", "FILE"], "can't read"),
         (CHART.format(""), ["import", "FILE", "-o", "/no/such/folder/x.yaml"], "can't write"),
         (None, ["export", "scxml", "tuor"], "did you mean `tour`?"),

@@ -41,10 +41,10 @@ def test_without_a_state_every_state_that_hears_is_asked(root: Path, capsys: pyt
     assert "`on heard` is taken and leads to `choice`" in blocks[3]
 
 
-def test_it_ends_with_1_if_no_row_takes_it(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_ends_with_1_if_no_row_is_taken(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (root / "behaviors" / "deaf.yaml").write_text("states: {a: {hears: {greeting: a}}}\nwords: common\n", "utf-8")
     assert main(["hear", "a chair", "--behavior", "deaf", "--project", str(root)]) == 1
-    assert capsys.readouterr().out == "a\n  no row takes it\n"
+    assert capsys.readouterr().out == "a\n  no row is taken\n"
     assert main(["hear", "Hello!", "--behavior", "deaf", "--project", str(root)]) == 0
 
 

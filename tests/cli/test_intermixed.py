@@ -25,4 +25,4 @@ def test_what_is_wrong_ends_with_two(words: list[str], capsys: pytest.CaptureFix
 @pytest.mark.process
 def test_what_stands_behind_two_dashes_is_no_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["diff", "--", "--x"]) == 2
-    assert "`--x` is no folder" in capsys.readouterr().err
+    assert "`--x` is not a folder" in capsys.readouterr().err

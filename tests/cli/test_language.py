@@ -150,11 +150,11 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["add", "en"], "speaks `en` already"),
+        (["add", "en"], "has `en` already"),
         (["add"], "write `lumen language add LANG`"),
-        (["add", "de", "--from", "fr"], "does not speak `fr`"),
+        (["add", "de", "--from", "fr"], "has no language `fr`"),
         (["add", "German"], "`German` is not a language code: write two or three lowercase letters, such as `de`"),
-        (["check", "em"], "does not speak `em`: it speaks `en`"),
+        (["check", "em"], "has no language `em`: it has `en`"),
     ],
 )
 def test_what_can_t_be_is_one_line(hall: Path, capsys: pytest.CaptureFixture[str], words: list[str], says: str) -> None:

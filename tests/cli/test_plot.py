@@ -135,9 +135,9 @@ def test_any_name_can_be_drawn(head: Controller) -> None:
     ("arguments", "words"),
     [
         (["fuzzy/haed.yaml"], "did you mean `fuzzy/head.yaml`?"),
-        ([HEAD, "-o", "head.gif"], "has to end in .png or .svg"),
+        ([HEAD, "-o", "head.gif"], "must end in .png or .svg"),
         ([HEAD, "-o", "/no/such/folder/x.png"], "can't write"),
-        ([HEAD, "--at", "FaceXLoc=left", "FaceYLoc=1"], "write it like FaceXLoc=80"),
+        ([HEAD, "--at", "FaceXLoc=left", "FaceYLoc=1"], "write an input and a number, such as FaceXLoc=80"),
         ([HEAD, "--at", "FaceXLoc=1"], "`FaceYLoc` of `head` is missing"),
         ([HEAD, "--at", "FaceXLoc=1", "FaceYLoc=1", "Face=1"], "no input `Face`"),
         ([HEAD, "--at", "FaceXLoc=nan", "FaceYLoc=1"], "must be a number, not nan"),

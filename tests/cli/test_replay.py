@@ -63,11 +63,11 @@ def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str
     assert replayed(played, capsys, file)[1]["visits"] == 1
     assert replayed(played, capsys, file, "--until", "00:00")[0] == 0
     for words, says in (
-        (["tomorrow"], "is no file and no day"),
+        (["tomorrow"], "is neither a file nor a day"),
         ([date.today().isoformat()], "nothing of"),
         (["nothing.journal"], "no file nothing.journal"),
         (["--all"], "nothing is in"),
-        (["--until", "25:00"], "is no time of day"),
+        (["--until", "25:00"], "is not a time of day"),
     ):
         assert main(["replay", "--project", str(played), *words]) == 2
         assert says in capsys.readouterr().err

@@ -56,7 +56,7 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
     ("arguments", "words"),
     [
         (["--story", "vistor"], "did you mean `visitor`?"),
-        (["--for", "3"], "--for takes a duration"),
+        (["--for", "3"], "write a duration such as 60s"),
         (["--language", "fr"], "it has `en`, `id`"),
         (["--bus", "amqp://guest:guest@127.0.0.1:1/"], "no broker listens at 127.0.0.1:1"),
         (["--bus", "carrier-pigeon://"], "write memory://"),
@@ -70,9 +70,9 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
             ["--robot", "simulation", "--imperfections", "noise,backlsh"],
             "--imperfections has no `backlsh`: did you mean `backlash`?",
         ),
-        (["--robot", "recording", "--imperfections", "none"], "those of a simulated robot"),
+        (["--robot", "recording", "--imperfections", "none"], "needs the simulated robot"),
         (["--robot", "none", "--speed", "4"], "leave out --speed"),
-        (["--robot", "none", "--story", "visitor"], "a story needs a robot in a hall"),
+        (["--robot", "none", "--story", "visitor"], "a story needs a robot"),
     ],
 )
 def test_what_can_not_be_is_one_line_and_exit_code_2(

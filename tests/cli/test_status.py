@@ -80,7 +80,7 @@ def test_it_goes_where_a_person_wants_it(
     assert main(["goto", "offer", str(copy)]) == 2
     said = capsys.readouterr()
     assert "enters talking, waiting, guide.talking.waiting.wishes, offer, face.watched" in said.out
-    assert "say --yes" in said.err
+    assert "add --yes" in said.err
     monkeypatch.setattr("sys.stdin", Terminal("no\n"))
     assert main(["goto", "offer", str(copy)]) == 1
     assert "offer" not in entered

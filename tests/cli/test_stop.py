@@ -32,7 +32,7 @@ def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
     assert "stopped" in exhibition.configuration
     monkeypatch.setattr("sys.stdin", io.StringIO())
     assert main(["resume", str(copy)]) == 2
-    assert "say --yes" in capsys.readouterr().err
+    assert "add --yes" in capsys.readouterr().err
     monkeypatch.setattr("sys.stdin", Terminal("Yes\n"))
     assert main(["resume", str(copy)]) == 0
     until(lambda: "watching" in exhibition.configuration)

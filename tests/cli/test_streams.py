@@ -86,7 +86,7 @@ def test_a_stream_that_the_shell_closed_is_none(monkeypatch: pytest.MonkeyPatch)
 
 def test_nothing_to_say_and_a_name_that_no_system_takes_are_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["say", " "]) == 2
-    assert "there is nothing to say" in capsys.readouterr().err
+    assert "the text is empty" in capsys.readouterr().err
     assert main(["test", "a" * 300]) == 2
     assert "a name is too long for this system" in capsys.readouterr().err
 

@@ -175,7 +175,7 @@ def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
         "lumen topic: no process listens to `lumen.elsewhere`: an exhibition listens to `avatar.NAO.aim`"
     )
     assert "`avatar.NAO.comand`: did you mean `avatar.NAO.command`?" in run("topic", "pub", "avatar.NAO.comand", "x")[2]
-    assert "nobody listens" in run("topic", "pub", "lumen.elsewhere", "a text", "--wait", "50ms")[2]
+    assert "no process listens" in run("topic", "pub", "lumen.elsewhere", "a text", "--wait", "50ms")[2]
     assert run("topic", "pub", "lumen.deaf", "a text", "--wait", "50ms")[::2] == (
         1,
         "lumen topic: no answer within 0.05 s\n",
@@ -191,7 +191,7 @@ def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
     [
         (["echo", "sonra"], "did you mean `sonar`?"),
         (["pub", "face"], "write `lumen topic pub KEY BODY`"),
-        (["pub", "face", "{x: 1"], "the BODY begins like JSON and is none"),
+        (["pub", "face", "{x: 1"], "the BODY begins like JSON but is not valid"),
         (["list", "all"], "write `lumen topic list`"),
         (["hz", "sonar", "--for", "2"], "write a number and its unit"),
     ],
@@ -230,7 +230,7 @@ def test_the_doctor_finds_what_a_user_may_not(
 
     until(told)
     assert "`face` can't be sent" not in out
-    assert "nobody serves `command` (avatar.NAO.command)" in out
+    assert "no process serves `command` (avatar.NAO.command)" in out
 
 
 def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> None:

@@ -96,7 +96,7 @@ def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
         ("why", "dance", "ask `lumen why-not dance`"),
         ("why-not", "dnace", "did you mean `dance`?"),
         ("why-not", "talking", "ask `lumen why talking`"),
-        ("why-not", "", "why not what?"),
+        ("why-not", "", "name a state, a motion or a text"),
     ],
 )
 def test_a_question_without_an_answer_says_what_to_do(greeted: Exhibition, question: str, what: str, said: str) -> None:

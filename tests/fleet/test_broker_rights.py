@@ -53,11 +53,11 @@ def other_user(there: Any) -> None:
             short_queue,
             f"the queue {UP}",
             "its x-max-length is null, not 50000",
-            f"rabbitmqctl delete_queue {UP}, which loses",
+            f"rabbitmqctl delete_queue {UP}, which deletes",
         ),
-        (leak, f"the binding of lumen.# from amq.topic to {UP}", "lets more cross", "delete_queue"),
-        (lost_binding, "the binding of fleet.desired.itb from lumen.fleet to amq.topic", "it is not there", "import_"),
-        (other_user, "the user robots", "it is not there", "import_definitions"),
+        (leak, f"the binding of lumen.# from amq.topic to {UP}", "sends more messages", "delete_queue"),
+        (lost_binding, "the binding of fleet.desired.itb from lumen.fleet to amq.topic", "it is missing", "import_"),
+        (other_user, "the user robots", "it is missing", "import_definitions"),
     ],
 )
 def test_each_fault_is_told_by_name_and_nothing_else(

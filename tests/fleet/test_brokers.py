@@ -175,19 +175,19 @@ def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
     found = checked(own_broker, museums.root, "itb", capsys)
     assert wrong(found) == {
         "the permissions of the user robots": r'its configure is ".*", not "^(?!lumen\\.fleet).*"',
-        f"the shovel {UP}": "it is not there",
-        f"the policy {EXCHANGE}": "it is not there",
-        "the line up to the centre": "there is none",
-        "the line down from the centre": "there is none",
+        f"the shovel {UP}": "it is missing",
+        f"the policy {EXCHANGE}": "it is missing",
+        "the line up to the centre": "it is missing",
+        "the line down from the centre": "it is missing",
     }
     mended(own_broker, "itb", found)
     control = RabbitMQControl(own_broker.brokers["itb"].ctl)
     seen: list[dict[str, Any]] = []
     until(lambda: seen.append(checked(own_broker, museums.root, "itb", capsys)) or not wrong(seen[-1]), every=1.0)
     found = seen[-1]
-    assert found["the broker"]["note"] == "it answers, in clear"
+    assert found["the broker"]["note"] == "it answers, without TLS"
     assert {"all users", "all permissions", "all bindings", "all parameters", "all policies"} <= found.keys()
-    assert found["the line up to the centre"]["note"].startswith("it runs since ")
+    assert found["the line up to the centre"]["note"].startswith("it has run since ")
     own_broker.cables["itb"].refuse()
     cut: list[BrokerFinding] = []
     until(
@@ -205,12 +205,12 @@ def test_what_the_centre_lacks_is_told(
 ) -> None:
     found = checked(own_broker, museums.root, CENTRE, capsys)
     assert wrong(found) == {}
-    assert found["the certificate"]["note"].startswith("it is good until ")
+    assert found["the certificate"]["note"].startswith("it is valid until ")
     ctl(own_broker, CENTRE, "clear_topic_permissions", "itb", EXCHANGE)
     monkeypatch.setattr("lumen.app.fleet.broker_certificate.NOTICE", 100)
     found = checked(own_broker, museums.root, CENTRE, capsys)
     assert wrong(found).keys() == {"the certificate", f"the topic permissions of the user itb on {EXCHANGE}"}
-    assert re.fullmatch(r"it ends on \d{4}-\d\d-\d\d, in \d+ days", found["the certificate"]["wrong"])
+    assert re.fullmatch(r"it expires on \d{4}-\d\d-\d\d, in \d+ days", found["the certificate"]["wrong"])
     del found["the certificate"]
     mended(own_broker, CENTRE, found)
     monkeypatch.undo()
@@ -227,7 +227,7 @@ def test_what_was_not_looked_at_is_not_well(
     assert "!! users, rights, policies and lines: they were not checked: `no-such-tool` can't be run" in told
     where = ["--project", str(museums.root), "--bus", own_broker.url(CENTRE)]
     assert main(["fleet", "check", "itb", *where, "--rabbitmqctl", "false"]) == 1
-    assert f"!! the queue {UP}: it is not there\n   rabbitmqctl import_definitions" in capsys.readouterr().out
+    assert f"!! the queue {UP}: it is missing\n   rabbitmqctl import_definitions" in capsys.readouterr().out
     monkeypatch.setattr("lumen.cli.fleet.ANSWER_TIMEOUT", 0.2)
     museums.served._desk.close()
     assert main(["fleet", "status", *where]) == 2

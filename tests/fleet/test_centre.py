@@ -220,7 +220,7 @@ def test_a_plan_that_can_not_be_is_refused_in_words(hall: Hall, plan: dict[str, 
 
 def test_only_one_process_is_the_centre_of_a_folder_and_only_with_its_key(hall: Hall, tmp_path: Path) -> None:
     with closing(MemoryBus()) as bus:
-        with pytest.raises(UsageError, match="another process is the centre"):
+        with pytest.raises(UsageError, match="another process is already the centre"):
             ServedCentre(hall.root, hall.signer, bus, print)
         generate(tmp_path / "other")
         with pytest.raises(UsageError, match="not the one that robots trust"):
@@ -253,5 +253,5 @@ def test_nothing_but_numbers_hashes_and_words_of_ours_leaves_a_house(hall: Hall)
 def test_a_centre_without_a_broker_is_told_with_what_helps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fleet", "status", "--project", str(tmp_path), "--bus", "amqp://127.0.0.1:1/"]) == 2
     told = capsys.readouterr().err
-    assert "no broker listens at 127.0.0.1:1: start RabbitMQ there (the centre's broker: --bus" in told
+    assert "no broker listens at 127.0.0.1:1: start RabbitMQ there (set the centre's broker with --bus" in told
     assert "memory" not in told

@@ -172,8 +172,8 @@ def test_a_program_called_dot_draws_where_there_is_one(
         (["--state", "ofer", "-o", "x.svg"], "`tour` has no state `ofer`: did you mean `offer`?"),
         (["--region", "offer", "-o", "x.svg"], "no state `offer`"),
         (["--state", "offer"], "Mermaid shows the whole"),
-        (["-o", "x.png"], "a PNG takes Graphviz's `dot`"),
-        (["-o", "x.svg", "--layout", "dot"], "`dot` is not on this machine"),
+        (["-o", "x.png"], "a PNG needs Graphviz"),
+        (["-o", "x.svg", "--layout", "dot"], "`dot` is not installed"),
     ],
 )
 def test_what_can_t_be_drawn_is_one_line(

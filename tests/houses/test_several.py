@@ -123,9 +123,9 @@ def test_the_command_line_runs_all_of_them(two: Path, capsys: pytest.CaptureFixt
     assert main(["run", str(two), *flags, "--robot-name", "bob"]) == 2
     assert "there is no robot `bob`: there are `ana`, `ben`" in capsys.readouterr().err
     assert main(["run", str(two), *flags, "--video", "film.mp4"]) == 2
-    assert "--video is about one robot" in capsys.readouterr().err
+    assert "--video is for one robot" in capsys.readouterr().err
     assert main(["run", str(two), *flags, "--voice", "espeak"]) == 2
-    assert "--voice is about one robot" in capsys.readouterr().err
+    assert "--voice is for one robot" in capsys.readouterr().err
 
 
 def test_who_is_meant(two: Path) -> None:
@@ -135,5 +135,5 @@ def test_who_is_meant(two: Path) -> None:
     shipped = Path(lumen.load().root)
     assert robots_of(shipped, None) == ()
     assert one_robot(shipped, "NAO") == ""
-    with pytest.raises(UsageError, match="takes one or more"):
+    with pytest.raises(UsageError, match="must be one or more"):
         robots_of(two, ",")

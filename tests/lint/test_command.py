@@ -186,8 +186,8 @@ def test_what_is_typed_without_end_is_a_line(
         (["--watch", "--fix"], "--watch"),
         (["--watch", "--format", "json"], "for people"),
         (["FOREIGN"], "belongs to no project"),
-        (["PROJECT/README"], "nothing that lint reads"),
-        (["-", "--stdin-filename", "PROJECT/README"], "no file that lint reads"),
+        (["PROJECT/README"], "holds no file that lint reads"),
+        (["-", "--stdin-filename", "PROJECT/README"], "is not a file that lint reads"),
         (["-", "--stdin-filename", "FOREIGN"], "belongs to no project"),
     ],
 )

@@ -103,7 +103,7 @@ def test_a_start_on_them_is_refused_or_takes_the_last_good_ones(copy: Path, read
     assert "THE FILES END THE PROCESS THAT READS THEM" in told[-1]
     [news] = run_directory.news
     assert (news.verdict, run_directory.refused) == ("refused", fingerprint(read_files(copy)))
-    assert "these files end the process" in news.reason
+    assert "the process that reads these files failed" in news.reason
     run_directory.close(forget=False)
 
 

@@ -89,7 +89,7 @@ def test_a_robot_that_was_stopped_long_ago_waits_for_a_person(
     home.remove(ALIVE_FILE)
     assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "3min", *words]) == 0
     told = capsys.readouterr().out
-    assert "until you say `lumen resume`" in told
+    assert "or run `lumen resume`" in told
     assert "stopped, paused  (stop" in told
     assert "watching  (" not in told
 
@@ -143,14 +143,14 @@ def test_what_another_lumen_has_left_is_told_and_begun_anew(copy: Path) -> None:
     found = resumed(copy)
     assert isinstance(found, FreshStart)
     assert found.rests
-    assert "its snapshot is of version 7, this one reads 1" in found.why
-    assert "start that Lumen instead" in found.why
+    assert "its snapshot has version 7, this one reads 1" in found.why
+    assert "start that version to continue" in found.why
     files = {**read_files(copy), "lumen.yaml": b"lumen: 9\n" + (copy / "lumen.yaml").read_bytes()}
     bundle = SnapshotStore(home).store(files)
     home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": bundle}).encode())
     assert "this is written for vocabulary 9" in str(resumed(copy))
     home.write(SNAPSHOT_FILE, json.dumps({**data, "snapshot": {"version": 1}}).encode())
-    assert "can't be gone on with" in str(resumed(copy))
+    assert "can't be continued" in str(resumed(copy))
     for damaged in (b"", b"{", b"[]", b'{"version": 1}', b"\xff"):
         home.write(SNAPSHOT_FILE, damaged)
         assert resumed(copy) == FreshStart()
@@ -259,5 +259,5 @@ def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.Capture
 def test_a_second_run_of_a_project_leaves_the_first_alone(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running(copy):
         assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s", "--fresh"]) == 0
-        assert "Another run of this project is going on" in capsys.readouterr().out
+        assert "This project already runs in another process" in capsys.readouterr().out
         assert main(["stop", str(copy)]) == 0

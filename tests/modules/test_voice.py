@@ -148,7 +148,7 @@ def test_a_language_that_espeak_lacks_is_spoken_in_the_first(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("flags", "said"),
     [
-        (["--sound", "a.wav"], "say --voice espeak, too"),
+        (["--sound", "a.wav"], "add --voice espeak"),
         (["--voice", "espeak", "--robot", "recording"], "leave out --robot"),
         (["--voice", "espeak", "--sound", "nowhere/a.wav"], "name a .wav file in an existing folder"),
         (["--voice", "espeak", "--sound", "a.mp3"], "name a .wav file"),
@@ -161,7 +161,7 @@ def test_flags_that_do_not_go_together(flags: list[str], said: str, capsys: pyte
 
 def test_a_robot_without_a_voice_to_give(tmp_path: Path) -> None:
     chosen = Setup(NoRobot(), SimulatedClock(lambda _: None, None), None)
-    with pytest.raises(UsageError, match="gives the simulated robot a voice"):
+    with pytest.raises(UsageError, match="--voice needs the simulated robot"):
         voiced(chosen, "espeak", tmp_path / "a.wav", "en")
 
 

@@ -146,7 +146,7 @@ def test_the_verb_recovers(tmp_path: Path, long: bytes, capsys: pytest.CaptureFi
     path.write_bytes(long)
     shutil.copy(path, tmp_path / "a.mcap.123.new")
     assert main(["record", "--recover", str(path)]) == 0
-    assert "is whole again: 180 messages" in capsys.readouterr().out
+    assert "is complete again: 180 messages" in capsys.readouterr().out
     assert main(["record", "--recover", str(path)]) == 0
     assert "nothing to recover" in capsys.readouterr().out
     assert not (tmp_path / "a.mcap.123.new").exists()

@@ -723,4 +723,4 @@ def test_without_a_temporary_folder_the_error_names_the_setting(
 
     monkeypatch.setattr("lumen.cli.lint.run", none)
     assert main(["lint"]) == 2
-    assert "set TMPDIR to one that can" in capsys.readouterr().err
+    assert "set TMPDIR to one that is" in capsys.readouterr().err

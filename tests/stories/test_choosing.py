@@ -53,7 +53,7 @@ def test_one_story_at_a_time_is_run(
 ) -> None:
     monkeypatch.chdir(copy)
     assert main(["run", "--story", "safety_*"]) == 2
-    assert "one story at a time" in capsys.readouterr().err
+    assert "choose one story" in capsys.readouterr().err
 
 
 def test_the_first_that_fails_is_the_last(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:

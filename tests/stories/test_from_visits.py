@@ -133,7 +133,7 @@ def test_a_story_is_written_passes_and_fails_once_the_robot_says_something_else(
     output = folder / "behaviors" / "stories" / "kept.yaml"
     assert ask(folder, "--at", "10:00", "-o", str(output)) == 0
     text = output.read_text("utf-8")
-    assert "# Of the visit from 10:00:" in text
+    assert "# The visit from 10:00:" in text
     assert "says: Goodbye!" in text
     assert "said: Goodbye!" in text
     assert main(["test", str(folder), "kept"]) == 0
@@ -146,7 +146,7 @@ def test_a_story_is_written_passes_and_fails_once_the_robot_says_something_else(
     assert ask(folder, "-o", str(output), "--force", "--format", "json") == 1, "it says something else now"
     said = json.loads(capsys.readouterr().out)
     assert (said["same"], said["was"], said["is"]) == (False, "“Goodbye!” (en)", "“So long!” (en)")
-    assert "# Then it was otherwise" in output.read_text("utf-8")
+    assert "# The robot does something else with the files of today" in output.read_text("utf-8")
     assert main(["test", str(folder), "kept"]) == 0, "what it does now is what is expected"
 
 
@@ -154,8 +154,8 @@ def test_a_story_is_written_passes_and_fails_once_the_robot_says_something_else(
     ("words", "told"),
     [
         (["--at", "13:00"], "no visit was under way at 13:00; the nearest was from 10:00:"),
-        (["--at", "25:00"], "`25:00` is no time of day"),
-        (["--name", "Budi"], "says no two names: write it as --name Budi=Ani"),
+        (["--at", "25:00"], "`25:00` is not a time of day"),
+        (["--name", "Budi"], "write two names, such as `--name Budi=Ani`"),
         (["--at", "10:00", "-o", "/dev/null/x/y.yaml"], "can't write"),
         (["2001-01-01"], "nothing of 2001-01-01"),
     ],
@@ -171,7 +171,7 @@ def test_who_is_forgotten_is_in_no_story(folder: Path, capsys: pytest.CaptureFix
         redact(file, PersonName("Goodbye"))
     capsys.readouterr()
     assert ask(folder) == 2
-    assert "is redacted: somebody in it is forgotten" in capsys.readouterr().err
+    assert "is redacted: a visitor in it was forgotten" in capsys.readouterr().err
 
 
 @pytest.mark.slow

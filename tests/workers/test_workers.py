@@ -46,7 +46,7 @@ def test_what_a_dead_worker_was_at_is_done_again_and_told(tmp_path: Path, caplog
     assert sorted(Workers(2).results(square_or_die, KIT, tasks)) == [(number, number**2) for number in range(6)]
     (told,) = caplog.messages
     assert told.startswith("a worker process ended too early (perhaps it had too little memory): ")
-    assert told.endswith(" tasks are done again")
+    assert told.endswith(" tasks are repeated")
 
 
 @pytest.mark.slow

@@ -243,7 +243,7 @@ class Exhibition:
         doing: then it is applied at a later tick. Raises UsageError where it was opened without `reload`.
         """
         if self.reloader is None:
-            raise UsageError("this exhibition was opened without `reload`: open it with `reload=True`")
+            raise UsageError('this exhibition runs with reload="off": it keeps its files')
         return self.reloader.reload(self.now)
 
     def close(self) -> None:

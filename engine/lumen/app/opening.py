@@ -37,7 +37,9 @@ def open(
     if story is not None:
         named = list(stories_of(project, story))
         if len(named) > 1:
-            raise UsageError(f"one story at a time: `{story}` means `{named[0].name}`, `{named[1].name}` and more")
+            raise UsageError(
+                f"choose one story: `{story}` matches {len(named)}, such as `{named[0].name}` and `{named[1].name}`"
+            )
         found = named[0]
     setup = _setup(project, robot, clock, str(speed), found)
     try:

@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     title = options.title or f"A visit on {one.began:%Y-%m-%d} at {one.began:%H:%M}"
     stem = output.stem if output else "visit"
     made = visit_story(project, old, one.visit, name=stem, title=title, renamed=renaming(names))
-    remarks = [f"Made by `lumen story` from the visit {one.when}. It contains what people said: check it for names."]
+    remarks = [f"The visit {one.when}, written by `lumen story`. It contains what people said: check it for names."]
     if not made.same:
         remarks.append(f"The robot does something else with the files of today. Then: {made.was}. Now: {made.now}.")
     text = story_text(made.story, remarks)

@@ -35,8 +35,8 @@ def _judged(what: str, rows: list[dict[str, Any]], state: str, again: str) -> Br
         return BrokerFinding(what, note=f"it has run since {row.get('last_changed')}")
     return BrokerFinding(
         what,
-        f"it is {row.get(state)}{_why(row)}: check that this machine reaches the centre, that the certificate is "
-        "valid, and that the centre accepts this house's password",
+        f"it is {row.get(state)}{_why(row)}: the centre can't be reached from here, its certificate is not valid, "
+        "or it refuses this house's password",
         mend=again,
     )
 

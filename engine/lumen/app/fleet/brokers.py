@@ -231,7 +231,7 @@ def _topic(user: str, exchange: str, write: str, read: str) -> dict[str, str]:
 
 
 def _conf() -> str:
-    return """# Written by `lumen fleet init`. Put it into /etc/rabbitmq/, with the files beside it and certificates.
+    return """# Written by `lumen fleet init`. Put it into /etc/rabbitmq/, with the other files and the certificates.
 load_definitions = /etc/rabbitmq/definitions.json
 listeners.tcp.1 = 127.0.0.1:5672
 listeners.ssl.1 = 5671

@@ -32,7 +32,7 @@ def fleet_in(root: Path) -> Fleet:
     """The fleet of that folder. Raises UsageError where there is none that can be used."""
     read, found = read_fleet(root)
     if read is None and not found:
-        raise UsageError(f"there is no fleet.yaml in {root.absolute()}: docs/fleet.md describes it")
+        raise UsageError(f"there is no fleet.yaml in {root.absolute()}: write one, as docs/fleet.md shows")
     if read is None or read.built is None or has_errors([*found, *read.report.diagnostics]):
         first = next(iter([*found, *(read.report.diagnostics if read else ())]), "")
         raise UsageError(f"fleet.yaml has errors: {first}")

@@ -101,7 +101,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
     name = composed(here.absolute().relative_to(root).as_posix())
     files = {file for file in own_files(read_files(root)) if file == name or file.startswith(f"{name}/")}
     if not files:
-        raise UsageError(f"in {path} is nothing that lint reads: docs/yaml.md lists the files of a project")
+        raise UsageError(f"{path} holds no file that lint reads: docs/yaml.md lists the files of a project")
     return root, files
 
 

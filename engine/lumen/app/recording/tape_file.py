@@ -75,7 +75,7 @@ class FileTape:
             self.messages = self._file.messages
         except (OSError, LumenError) as error:
             self.trouble = f"the recording {self.path.name} can't be written: {_reason(error)}"
-            _log.warning("%s; the part that was written can be recovered", self.trouble)
+            _log.warning("%s; `lumen record --recover` repairs the file", self.trouble)
             self._file.abandon()
             self._file = None
 

@@ -179,5 +179,5 @@ def told(rehearsal: Rehearsal) -> str:
 
 def fault_of(error: Exception) -> str:
     """What is said of a fault of ours, with where it was raised in the log."""
-    _log.error("a fault in Lumen with saved files", exc_info=error)
+    _log.error("Lumen failed on the saved files", exc_info=error)
     return f"Lumen failed on these files: {error!r}"
