@@ -73,7 +73,7 @@ def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str
         assert says in capsys.readouterr().err
     Path(file).write_bytes(b"not a journal")
     assert main(["replay", "--project", str(played), file]) == 2
-    assert "no journal" in capsys.readouterr().err
+    assert "is not a journal" in capsys.readouterr().err
 
 
 def test_a_diff_plays_the_visits_that_are_kept(played: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -72,7 +72,7 @@ def test_a_damaged_byte_costs_what_follows_it() -> None:
     [
         (b'{"lumen-journal":2,"first":0,"run":"","bundle":"","began":0}\n', "version 2"),
         (b'{"lumen-journal":1,"first":0}\n', "no journal"),
-        (b'{"lumen-jour', "cut in its first line"),
+        (b'{"lumen-jour', "cut off in its first line"),
         (b"", "no journal"),
         (b"\xff\n", "no journal"),
     ],
