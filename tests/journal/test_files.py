@@ -71,10 +71,10 @@ def test_a_damaged_byte_costs_what_follows_it() -> None:
     ("line", "says"),
     [
         (b'{"lumen-journal":2,"first":0,"run":"","bundle":"","began":0}\n', "version 2"),
-        (b'{"lumen-journal":1,"first":0}\n', "no journal"),
+        (b'{"lumen-journal":1,"first":0}\n', "is not a journal"),
         (b'{"lumen-jour', "cut off in its first line"),
-        (b"", "no journal"),
-        (b"\xff\n", "no journal"),
+        (b"", "is not a journal"),
+        (b"\xff\n", "is not a journal"),
     ],
 )
 def test_what_is_no_journal_of_ours_is_told(line: bytes, says: str, tmp_path: Path) -> None:
