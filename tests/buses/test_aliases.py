@@ -107,7 +107,7 @@ def test_a_robot_that_keys_without_a_robot_share_is_told_of(
     face = replace(project.routes["face"], key="lumen.visual.face.detection", alias="")
     robot = ours(project, routes={**project.routes, "face": face})
     stranger.publish("lumen.presence", BEN)
-    assert "both hear what comes on `face`" in caplog.text
+    assert "both robots receive the messages on `face`" in caplog.text
     robot.close()
 
 

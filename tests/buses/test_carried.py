@@ -146,7 +146,7 @@ def test_an_id_is_that_of_its_sender_and_who_uses_it_again_is_answered(opened: O
         said = pika.BasicProperties(message_id="1", app_id=sender, reply_to=mine, correlation_id=sender)
         stranger.basic_publish("amq.topic", way.key, body, said)
     _, properties, answer = read(stranger, mine)
-    reason = "'desk' has sent the id '1' before: give each message an id of its own"
+    reason = "'desk' has sent the id '1' before: give each message its own id"
     assert (properties.correlation_id, answer.decode()) == ("desk", f"message refused: {reason}")
     assert seen.bodies == [1, 2]
     assert bus.dropped == {way.key: 1}
@@ -163,7 +163,7 @@ def test_what_failed_in_a_handler_is_put_aside_with_the_reason(opened: Open, str
     stranger.basic_publish("amq.topic", way.key, b'{"method": "wave"}')
     method, properties, body = read(stranger, dead)
     assert (method.routing_key, body) == (way.key, b'{"method": "wave"}')
-    assert properties.headers == {"key": way.key, "reason": "who should handle it failed: KeyError('arm')"}
+    assert properties.headers == {"key": way.key, "reason": "its handler failed: KeyError('arm')"}
 
 
 @pytest.mark.parametrize(
@@ -257,7 +257,7 @@ def test_what_nobody_waits_for_is_told_once_with_the_nearest_key(
         assert (got, method.routing_key) == (body, lost.key)
         assert properties.headers == {"reason": f"nobody takes `{lost.key}`"}
     told = [r.getMessage() for r in caplog.records if "nobody takes" in r.getMessage()]
-    assert told == [f"nobody takes what is sent on `{lost.key}`: did you mean `lumen.H.speech.recognition`?"]
+    assert told == [f"no process receives messages on `{lost.key}`: did you mean `lumen.H.speech.recognition`?"]
 
 
 def test_a_time_to_live_that_changes_makes_the_queue_anew(opened: Open, caplog: pytest.LogCaptureFixture) -> None:
@@ -361,7 +361,7 @@ def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(
 
 def test_preparing_says_what_the_broker_refuses(broker: RabbitMQ) -> None:
     bus = connect(broker.url_of("visual"))
-    with pytest.raises(BusError, match=r"refuses to let us read `lumen\.secret`: ACCESS_REFUSED"):
+    with pytest.raises(BusError, match=r"refuses the subscription to `lumen\.secret`: ACCESS_REFUSED"):
         bus.prepare({"lumen.secret": route("lumen.secret", Carried.TELEMETRY)})
     bus.prepare({"avatar.M": route("avatar.M", Carried.TELEMETRY)})
     bus.prepare({})

@@ -104,7 +104,7 @@ def test_no_property_ends_the_connection_nor_the_thread_that_handles(
     told = [record.getMessage() for record in caplog.records]
     assert told == [
         "properties of messages on `lumen.poison.a` are dropped: content_type, correlation_id, reply_to, message_id "
-        "can't be read; the message is taken without"
+        "cannot be read; the message is accepted without it"
     ]
     bus.close()
     assert bus._transport.consumer.unreadable.counts == {"lumen.poison.a": 2}  # type: ignore[attr-defined]
@@ -118,7 +118,7 @@ def test_an_answer_that_amqp_cant_carry_costs_that_answer(broker: RabbitMQ, capl
     bus.publish("lumen.carried", 1)
     assert seen.wait(1) == [1]
     until(lambda: publisher.unsendable.counts)
-    assert "messages on `lumen.carried` are dropped: AMQP can't carry it" in caplog.text
+    assert "messages on `lumen.carried` are dropped: AMQP cannot carry it" in caplog.text
     bus.close()
 
 

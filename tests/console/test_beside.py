@@ -65,5 +65,5 @@ def test_why_it_cannot_begin_is_told(copy: Path) -> None:
             return any("restarts in" in line for line in told)
 
         until(ended)
-        until(lambda: part.tick(0.0, ()) or any(f"port {port} of 127.0.0.1 can't be had" in line for line in told))
+        until(lambda: part.tick(0.0, ()) or any(f"port {port} of 127.0.0.1 is not available" in line for line in told))
         part.close()

@@ -42,7 +42,7 @@ def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 def test_a_name_that_is_not_ours_is_refused(open_to_all: Browser, host: str) -> None:
     answer = open_to_all.get("/api/now", Host=host)
     assert answer.status == 421
-    assert "not called that" in answer.data["reason"]
+    assert "unknown host" in answer.data["reason"]
 
 
 @pytest.mark.parametrize("host", ["localhost", "127.0.0.1:1", "[::1]:8080"])
@@ -167,12 +167,12 @@ def test_rest_is_never_rationed(open_to_all: Browser) -> None:
 
 
 def test_nobody_else_is_let_in_without_pins(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="there are no PINs"):
+    with pytest.raises(UsageError, match="no PINs are set"):
         Console(lambda: pytest.fail("no bus is wanted"), tmp_path, "0.0.0.0", 0)
 
 
 def test_a_port_that_is_taken_is_said_in_a_line(open_to_all: Browser, tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=f"port {open_to_all.port} of 127.0.0.1 can't be had"):
+    with pytest.raises(UsageError, match=f"port {open_to_all.port} of 127.0.0.1 is not available"):
         Console(lambda: pytest.fail("no bus is wanted"), tmp_path, "127.0.0.1", open_to_all.port)
 
 

@@ -58,7 +58,7 @@ def test_what_ends_a_job_is_said() -> None:
 def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "JOB_TIME", 0.5)
     told = reasons(done(*["slow"] * (MAX_WAITING + 1)))
-    late = "that takes longer than 0.5 s: ask `lumen` on the terminal"
+    late = "this takes longer than 0.5 s: use `lumen` in a terminal"
     assert [reason for _, reason in told].count(late) == MAX_WAITING
     assert "ask again in a moment" in told[-1][1]
 
@@ -122,7 +122,7 @@ def test_a_model_that_is_gone_is_said_and_what_draws_is_begun_anew(
     monkeypatch.setattr(jobs, "PROGRAM", "tests.console.gone_wrong")
     with Stream(browser, "/api/poses?robot=NAO") as stream:
         until(lambda: len(stream.of("trouble")) > 1)
-    assert "the robot can't be drawn: " in stream.of("trouble")[0].data["reason"]
+    assert "the robot cannot be drawn: " in stream.of("trouble")[0].data["reason"]
 
 
 def test_who_does_not_read_poses_is_given_the_newest_only(

@@ -101,7 +101,7 @@ FAULTS: list[tuple[str, Reply, list[str], str]] = [
     ("500", status(500), [], "answers 500"),
     ("401", status(401), [], "answers 401"),
     ("redirect", redirects, [], "answers 307"),
-    ("gone", vanishes, [], "can't be reached"),
+    ("gone", vanishes, [], "cannot be reached"),
     ("no JSON", writes(b"data: {oops\n\n"), [], "no JSON"),
     ("deep JSON", writes(b"data: " + b"[" * 50_000 + b"\n\n"), [], "no JSON"),
     ("other JSON", writes(b"data: [1]\n\n"), [], "something else than a chat completion"),
@@ -193,7 +193,7 @@ def test_what_is_no_question_is_a_line(desk: Make, body: dict[str, Any]) -> None
     here = desk(says("Yes."))
     here.bus.publish("lumen.NAO.ask", body)
     assert here.module.settle(HANG)
-    assert "is expected on lumen.NAO.ask" in here.told[0]
+    assert "is required on lumen.NAO.ask" in here.told[0]
 
 
 def test_nobody_is_there(desk: Make) -> None:
@@ -201,7 +201,7 @@ def test_nobody_is_there(desk: Make) -> None:
         url = gone.url
     here = desk(says("Yes."), model={"url": url, "name": "fake"})
     assert here.said() == []
-    assert here.told == ["the language model can't be reached: ConnectionRefusedError"]
+    assert here.told == ["the language model cannot be reached: ConnectionRefusedError"]
 
 
 def test_sentences_are_whole() -> None:

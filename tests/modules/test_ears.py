@@ -121,7 +121,7 @@ def test_a_language_that_nobody_understands(stand: Make) -> None:
     listening(here)
     here.bus.publish(STREAM, {"content": Sound(16_000, b"\x01\x00" * 800).text(), "language": "jv"})
     here.settle()
-    assert here.told == ["nobody understands the language `jv` here, only en, id: type what was said"]
+    assert here.told == ["the ears understand only en, id, not `jv`: type what was said"]
 
 
 def test_another_rate_lasts_as_long() -> None:

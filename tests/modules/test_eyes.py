@@ -185,7 +185,7 @@ def test_faces_that_were_learnt_long_ago_are_deleted(photographed: Pixels) -> No
         ({"contentUrl": "data:image/jpeg;base64,QUJD"}, "can't be read, UnidentifiedImageError"),
         ({"contentUrl": "data:image/jpeg;base64,@@@"}, "is no base64"),
         ({"contentUrl": "data:image/jpeg;base64,bm8gcGljdHVyZQ=="}, "can't be read, UnidentifiedImageError"),
-        (body(np.zeros((8, 8, 3), np.uint8)), "is 8 x 8 px, and has to lie between 32 and 4096"),
+        (body(np.zeros((8, 8, 3), np.uint8)), "is 8 x 8 px: its width and height must be between 32 and 4096"),
         (body(np.zeros((10, 5000, 3), np.uint8)), "is 5000 x 10 px"),
     ],
 )
@@ -214,7 +214,7 @@ def test_a_model_that_does_not_load(tmp_path: Path) -> None:
     with pytest.raises(ModuleError, match=r"nowhere.xml is missing: pip install 'lumen-robot\[eyes\]'"):
         PersonDetector(tmp_path / "nowhere.xml")
     (tmp_path / "broken.xml").write_text("<opencv_storage><cascade>")
-    with pytest.raises(ModuleError, match=r"broken.xml can't be loaded"):
+    with pytest.raises(ModuleError, match=r"broken.xml cannot be loaded"):
         PersonDetector(tmp_path / "broken.xml")
 
 
@@ -238,7 +238,7 @@ def test_a_video_file(stand: Make, project: Project, photographed: Pixels, tmp_p
     with pytest.raises(ModuleError, match="there is no video"):
         Eyes(with_options(project, "eyes", camera="gone.avi"), here.bus, here.told.append, None)
     (tmp_path / "none.avi").write_text("no video")
-    with pytest.raises(ModuleError, match="can't be opened: it is no video"):
+    with pytest.raises(ModuleError, match="cannot be opened: its video format is not supported"):
         Eyes(with_options(project, "eyes", camera=str(tmp_path / "none.avi")), here.bus, here.told.append, None)
 
 

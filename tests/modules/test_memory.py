@@ -123,7 +123,10 @@ def test_what_another_program_still_reads_is_said_and_gone_once_it_is_closed(sta
     answer = here.ask(FACT, {"method": "forget", "name": "Wulandari"})
     here.settle()
     assert answer == {"ok": False, "reason": here.told[0]}
-    assert here.told[0] == f"{file} is read by another program, and keeps what was deleted until that is closed"
+    assert (
+        here.told[0]
+        == f"{file} is open in another program: close that program to remove the deleted entries from the file"
+    )
     assert forgotten.bodies == [{"name": "Wulandari"}]
     other.close()
     assert Store(file).visitors() == []

@@ -186,14 +186,14 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
     name = f"the MQTT broker 127.0.0.1:{rabbitmq.mqtt}"
     try:
         module = added(here)
-        until(lambda: here.told == [f"{name} can't be reached: it is tried again until it is there"])
+        until(lambda: here.told == [f"{name} cannot be reached: Lumen keeps trying"])
         here.bus.publish(LAMP, {"level": 1.0})
         here.bus.publish("museum.mood", {"name": "late"})
         here.settle()
         assert here.told[1:] == ["a message on lamp (MQTT) is dropped: the broker is away"]
         assert module.refused == 1
         rabbitmq.start()
-        until(lambda: here.told[2:] == [f"{name} is there again"])
+        until(lambda: here.told[2:] == [f"{name} is back"])
         lamp = Device(rabbitmq.mqtt, "hall/lamp", "hall/mood")
         try:
             assert lamp.wait(1) == [("hall/mood", b'{"name":"late"}', True)]
@@ -202,7 +202,7 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
         finally:
             lamp.close()
         rabbitmq.kill()
-        until(lambda: here.told[3:] == [f"{name} is gone: it is tried again until it is there"] or len(here.told) > 4)
+        until(lambda: here.told[3:] == [f"{name} is gone: Lumen keeps trying to reach it"] or len(here.told) > 4)
         assert all(name in line for line in here.told[2:])
     finally:
         rabbitmq.stop()
@@ -224,7 +224,7 @@ def test_what_our_own_broker_carries_anyway_does_not_go_round_for_ever(
     lamp.send("hall/button", '{"number": 7}')
     until(lambda: {"number": 7} in pressed.bodies)
     assert len(lamp.came) == 1
-    assert told == ["RabbitMQ carries `lamp` to and from museum/lamp/set by itself: take it out of `mqtt`"]
+    assert told == ["RabbitMQ already carries `lamp` to and from museum/lamp/set: delete it from `mqtt`"]
     module.close()
     bus.close()
 
@@ -247,11 +247,11 @@ def test_a_wrong_password_is_told_and_no_device_stops_the_robot(
     there.send("hall/stop", '{"type": "motion", "method": "rest"}')
     until(lambda: module.refused == 1)
     assert stops.bodies == []
-    assert here.told == ["a message on hall/stop (MQTT) is dropped: devices may not send on the route `stop`"]
+    assert here.told == ["a message on hall/stop (MQTT) is dropped: devices may not send to the route `stop`"]
     (tmp_path / "mqtt").write_text("guest:wrong")
     other = stand(here.project)
     added(other)
-    until(lambda: any("lets nobody in" in line for line in other.told))
+    until(lambda: any("refuses the connection" in line for line in other.told))
 
 
 def _asked_for(there: Device, pressed: Collector) -> bool:
@@ -401,9 +401,10 @@ def test_a_device_that_has_no_name_is_told_once(museum: Callable[..., Project], 
         here.bus.publish(LAMP, {"level": 1})
     here.settle()
     assert (
-        len([line for line in here.told if line.startswith("the OSC device nobody.invalid:9000 can't be reached")]) == 1
+        len([line for line in here.told if line.startswith("the OSC device nobody.invalid:9000 cannot be reached")])
+        == 1
     )
-    assert len([line for line in here.told if line.startswith("DMX universe 1 can't be sent to")]) == 1
+    assert len([line for line in here.told if line.startswith("DMX universe 1 cannot be sent to")]) == 1
 
 
 def test_a_flood_is_a_line_and_then_a_count() -> None:

@@ -34,8 +34,8 @@ def test_what_can_not_be_posted_is_one_line(stand: Make, tmp_path: Path, monkeyp
     here.bus.publish(EXPRESSION, {"text": "Hello"})
     here.settle()
     assert here.told == [
-        f"a body with a `text` is expected on {EXPRESSION}: nothing is posted",
-        f"{tmp_path} can't be written: Is a directory",
+        f"a body with a `text` is required on {EXPRESSION}: nothing is posted",
+        f"{tmp_path} cannot be written: Is a directory",
     ]
     full = stand()
     full.add(Social(full.project, full.bus, full.told.append, tmp_path / "posts.jsonl"))
@@ -43,4 +43,4 @@ def test_what_can_not_be_posted_is_one_line(stand: Make, tmp_path: Path, monkeyp
     for _ in range(2):
         full.bus.publish(EXPRESSION, {"text": "Hello"})
     full.settle()
-    assert full.told == [f"{tmp_path / 'posts.jsonl'} is full: move it away, and the next posts are kept again"]
+    assert full.told == [f"{tmp_path / 'posts.jsonl'} is full: move it away so that new posts can be kept"]

@@ -71,7 +71,7 @@ def test_takes_any_text(text: str) -> None:
 
 
 def test_no_espeak_is_one_line() -> None:
-    with pytest.raises(ModuleError, match=r"espeak-ng can't be loaded \(.*\): pip install 'lumen-robot\[voice\]'"):
+    with pytest.raises(ModuleError, match=r"espeak-ng cannot be loaded \(.*\): pip install 'lumen-robot\[voice\]'"):
         Espeak("libnowhere.so", None)
 
 

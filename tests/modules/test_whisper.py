@@ -51,7 +51,7 @@ def test_silence_says_nothing() -> None:
 
 def test_a_model_of_other_languages_is_refused() -> None:
     assert Whisper(Path("w"), ["en-GB", "jv"], Engine()).languages == ("en-GB",)
-    with pytest.raises(ModuleError, match="understands none of jv: take one that is not only English"):
+    with pytest.raises(ModuleError, match="understands none of jv: use a multilingual model"):
         Whisper(Path("w"), ["jv"], Engine())
 
 
@@ -63,7 +63,7 @@ def test_an_engine_that_fails_costs_one_sound() -> None:
 
 
 def test_a_folder_that_is_none_says_what_it_should_hold(tmp_path: Path) -> None:
-    with pytest.raises(ModuleError, match=r"names the folder .*nowhere, which is not there"):
+    with pytest.raises(ModuleError, match=r"the folder .*nowhere, which `whisper` names, does not exist"):
         Whisper(tmp_path / "nowhere", ["en"])
     (tmp_path / "config.json").write_text("{}")
     with pytest.raises(

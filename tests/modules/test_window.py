@@ -81,7 +81,7 @@ def test_who_goes_is_not_shown_any_more(window: Window) -> None:
 
 def test_a_port_that_is_taken_is_one_line() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        with pytest.raises(ModuleError, match="window can't be opened on port") as error:
+        with pytest.raises(ModuleError, match="window cannot be opened on port") as error:
             Window(taken.getsockname()[1])
         assert "\n" not in str(error.value)
 

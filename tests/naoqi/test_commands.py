@@ -186,7 +186,7 @@ def test_a_walk_ends_where_nobody_knows_where_it_is(robot: Lockstep, live: Live)
     robot.start("a", Walk(0.3))
     live(0.5)
     robot.nao.world.astray = True
-    assert "nobody knows where the robot is (ALMotion::getRobotPosition no odometry)" in reason(live(1.5))
+    assert "the position of the robot is unknown (ALMotion::getRobotPosition no odometry)" in reason(live(1.5))
     robot.nao.world.astray = False
     assert robot.nao.world.position[0] < 0.15
 

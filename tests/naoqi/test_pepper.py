@@ -40,7 +40,7 @@ def test_nothing_is_missed_of_it_and_no_reflex_left_off(project: Project, caplog
 def test_a_nao_is_no_pepper(project: Project) -> None:
     nao = FakeNao(lumen.load(ROOT).body)
     try:
-        with pytest.raises(lumen.RobotModelError, match="this robot has no HipRoll, and models/Pepper has"):
+        with pytest.raises(lumen.RobotModelError, match="this robot has no HipRoll, but models/Pepper does"):
             Lockstep(project, nao)
     finally:
         nao.close()
@@ -121,7 +121,7 @@ def test_after_a_fall_somebody_has_to_set_it_up(robot: Lockstep, live: LiveFor) 
     robot.settle()
     assert answers(live(0.1)) == ["fallen"]
     robot.start("a", Posture("Stand"))
-    assert reason(live(0.2)) == "the robot has fallen, and can't get up by itself: set it up and `wake` it"
+    assert reason(live(0.2)) == "the robot has fallen and cannot get up by itself: set it on its feet, then `wake` it"
     assert robot.nao.world.called("setStiffnesses") == []
     robot.start("b", Wake())
     assert answers(live(4.0)) == ["done.command.b"]

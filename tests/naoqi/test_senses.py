@@ -130,7 +130,9 @@ def test_a_robot_that_feels_nothing_has_its_joints_all_the_same(
     assert len(joints.angles) == 26
     assert (joints.temperature, joints.inertial, joints.fsr) == ((), {}, {})
     lines = [record.getMessage() for record in caplog.records]
-    assert lines == ["the robot does not feel its heat, balance and weight: ALMemory::getListData no such key"]
+    assert lines == [
+        "the robot does not report its temperatures, its balance and the weight on its feet: ALMemory::getListData no such key"
+    ]
 
 
 def test_a_full_battery_is_told_when_naoqi_tells(robot: Lockstep, live: Live) -> None:

@@ -245,7 +245,7 @@ def test_what_is_heard_of_lasts_and_is_asked_after(line: Line) -> None:
     assert line.sent() == ["look", *["outcome"] * 11]
     line.report("d1", "unknown")
     [event] = line.live(0.1)
-    assert event.data == {"reason": "the robot has forgotten it: it was restarted"}
+    assert event.data == {"reason": "the robot has restarted and forgotten the command"}
 
 
 def test_every_end_is_told_once_and_as_it_was(line: Line) -> None:

@@ -639,7 +639,7 @@ def lumen(root: Path, *words: str, **settings: str) -> tuple[int, str]:
     ("setting", "why"),
     [
         ({"MUJOCO_GL": "nonsense"}, "MUJOCO_GL=nonsense does not work here (invalid value"),
-        ({"MUJOCO_GL": "glfw"}, "MUJOCO_GL=glfw draws on a screen, and there is none"),
+        ({"MUJOCO_GL": "glfw"}, "MUJOCO_GL=glfw draws on a screen, but this machine has none"),
         ({"MUJOCO_GL": "disable"}, "there is no OpenGL library"),
     ],
     ids=["nonsense", "glfw", "disable"],
@@ -673,7 +673,7 @@ def test_a_program_that_is_no_ffmpeg_is_named(tmp_path: Path) -> None:
         tmp_path, "play", "wave", "--speed", "max", "--video", "a.mp4", IMAGEIO_FFMPEG_EXE=str(tmp_path / "none")
     )
     assert code == 2
-    assert f"IMAGEIO_FFMPEG_EXE={tmp_path / 'none'} is no ffmpeg: unset it" in told
+    assert f"IMAGEIO_FFMPEG_EXE={tmp_path / 'none'} is not ffmpeg: unset it" in told
     assert "Traceback" not in told
 
 

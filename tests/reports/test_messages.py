@@ -98,7 +98,7 @@ def test_the_first_of_many_repeated_ids_is_logged_with_what_to_do(caplog: pytest
             line.come("desk", "1")
         line.end()
     assert caplog.messages == [
-        f"messages on `{KEY}` are dropped: 'desk' has sent the id '1' before: give each message an id of its own"
+        f"messages on `{KEY}` are dropped: 'desk' has sent the id '1' before: give each message its own id"
     ]
     assert line.dispatcher.repeated.counts == {KEY: 49}
 

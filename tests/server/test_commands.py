@@ -131,14 +131,14 @@ def test_nothing_waits_for_long_behind_a_flood() -> None:
     said = [command for _, command in stand.robot.started if isinstance(command, Say)]
     assert 15.0 < sum(speech_duration(text.text) for text in said) < 20.0
     assert len([command for _, command in stand.robot.started if isinstance(command, Perform)]) == 16
-    assert ("say 39", "command failed: what waits before it takes 17 s already: send it later, or `stop` that") in (
+    assert ("say 39", "command failed: the commands before it take 17 s: send it later, or `stop` them") in (
         caller.told
     )
     stand.server.answer(Event("done.command.m1"))
     caller.order("say", "long", text="la " * 1_000)
     caller.order("say", "next", text="Hello")
     stand.server.sample(0.02)
-    assert caller.told[-1] == ("long", "command failed: a text takes at most 60 s to say, and this one 180 s")
+    assert caller.told[-1] == ("long", "command failed: this text takes 180 s to say: send one of at most 60 s")
     assert stand.robot.started[-1][1] == Say("Hello")
     stand.server.close()
 
@@ -151,7 +151,7 @@ def test_who_comes_just_before_the_end_gets_an_answer() -> None:
     receive = stand.server._orders._receive
     stand.server.close()
     receive(Message("avatar.NAO.command", {"method": "rest"}, "lumen.me", "late"))
-    assert caller.told == [(id, "command failed: the robot takes no more commands") for id in [*"01234", "late"]]
+    assert caller.told == [(id, "command failed: the robot accepts no more commands") for id in [*"01234", "late"]]
     assert stand.robot.started == []
 
 
@@ -216,7 +216,7 @@ def test_where_the_bus_refuses_the_new_key_the_old_one_stays(caplog: pytest.LogC
     stand.bus.publish("avatar.NAO.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == [("m1", Rest())]
-    assert "commands are still taken under `avatar.NAO.command`: you may not read that" in caplog.text
+    assert "commands are still accepted on `avatar.NAO.command`: you may not read that" in caplog.text
     stand.server.close()
 
 

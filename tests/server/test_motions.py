@@ -40,18 +40,18 @@ def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
     ("change", "words"),
     [
         ({"tracks": {"Tail": [[1.0, 0.0]]}}, "no joint `Tail`"),
-        ({"tracks": {"HeadPitch": [[1.0, 9.0]]}}, "`HeadPitch` reaches from"),
-        ({"tracks": {"HeadPitch": [[1.0, "up"]]}}, "has to be a number"),
-        ({"tracks": {"HeadPitch": [[1.0, float("nan")]]}}, "has to be a number"),
-        ({"tracks": {"HeadPitch": [[0.0, 0.1]]}}, "times above 0 that increase"),
-        ({"tracks": {"HeadPitch": [[1.0, 0.1], [1.0, 0.2]]}}, "times above 0 that increase"),
-        ({"tracks": {"HeadPitch": []}}, "times above 0 that increase"),
-        ({"tracks": {"HeadPitch": [[1.0, 0.1, "magic"]]}}, "can't be moved by `magic`"),
-        ({"tracks": {"HeadPitch": [[1.0, 0.1, "linear", 1.0]]}}, "a key of `HeadPitch` is a list"),
+        ({"tracks": {"HeadPitch": [[1.0, 9.0]]}}, "`HeadPitch` moves from"),
+        ({"tracks": {"HeadPitch": [[1.0, "up"]]}}, "must be a number"),
+        ({"tracks": {"HeadPitch": [[1.0, float("nan")]]}}, "must be a number"),
+        ({"tracks": {"HeadPitch": [[0.0, 0.1]]}}, "must be above 0 and increase"),
+        ({"tracks": {"HeadPitch": [[1.0, 0.1], [1.0, 0.2]]}}, "must be above 0 and increase"),
+        ({"tracks": {"HeadPitch": []}}, "must be above 0 and increase"),
+        ({"tracks": {"HeadPitch": [[1.0, 0.1, "magic"]]}}, "there is no interpolation `magic`"),
+        ({"tracks": {"HeadPitch": [[1.0, 0.1, "linear", 1.0]]}}, "a key of `HeadPitch` must be a list"),
         ({"tracks": {"HeadPitch": [[i + 1.0, 0.0] for i in range(20_001)]}}, "more than 20,000"),
         ({"tracks": []}, "needs a `name`"),
-        ({"duration": MAX_MOTION_DURATION + 1}, "may take from 0 to 600 s"),
-        ({"duration": None}, "has to be a number"),
+        ({"duration": MAX_MOTION_DURATION + 1}, "must take 0 to 600 s"),
+        ({"duration": None}, "must be a number"),
         ({"start": "Handstand"}, "no posture `Handstand`"),
         ({"cues": [[1.0, "leds"]]}, "a cue of `nod`"),
         ({"origin": 3}, "the `origin` of `nod`"),
@@ -63,5 +63,5 @@ def test_what_is_no_motion_of_this_body_is_refused(project: Project, change: dic
 
 
 def test_what_is_no_object_is_refused(project: Project) -> None:
-    with pytest.raises(RobotError, match="has to be an object"):
+    with pytest.raises(RobotError, match="must be an object"):
         decode_motion("dance", project.body)

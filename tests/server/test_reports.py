@@ -123,7 +123,7 @@ def test_who_asks_is_told_the_outcome_and_that_nobody_knows_it(desk: Desk) -> No
     desk.order("", "outcome")
     desk.live(0.1)
     assert (desk.states("a")[-1], desk.states("b")) == ("finished", ["unknown"])
-    assert desk.answers.bodies[-1] == "command failed: which command? `id` names it"
+    assert desk.answers.bodies[-1] == "command failed: name the command with `id`"
 
 
 @pytest.mark.parametrize(("key", "method"), [("stop", "rest"), ("command", "stopMove"), ("stop", "stop")])
@@ -211,7 +211,7 @@ def test_a_robot_that_was_restarted_does_nothing_twice_but_rest(tmp_path: Path) 
         ends.append((desk.states("a")[-1], desk.states("b")[-1]))
         desk.host.close()
     assert ends == [("cancelled", "finished"), ("failed", "finished")]
-    assert desk.reports.bodies[0]["reason"] == "the robot was restarted since it began that"
+    assert desk.reports.bodies[0]["reason"] == "the robot has restarted since it began that command"
 
 
 def test_a_ledger_keeps_the_newest_and_a_line_that_was_cut_short_harms_nobody(tmp_path: Path) -> None:
@@ -237,4 +237,4 @@ def test_a_disk_that_takes_nothing_is_told_of_once(tmp_path: Path, caplog: pytes
     ledger = DeduplicationLog(tmp_path / "home" / "commands")
     for id in ("a", "b"):
         ledger.note(id, "desk")
-    assert [record.getMessage().count("can't be kept in") for record in caplog.records] == [1]
+    assert [record.getMessage().count("cannot be written to") for record in caplog.records] == [1]

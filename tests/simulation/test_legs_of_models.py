@@ -68,7 +68,7 @@ ROLL = '<body name="{}HipPitch" pos="0 0 0">'
 REFUSED = {
     "hip axes that pass each other": (
         [(ROLL.format(side), ROLL.format(side).replace("0 0 0", "0 0 -0.02")) for side in "LR"],
-        "the axes of `LHipPitch` and `LHipRoll` pass each other by 20.0 mm: they have to meet",
+        "the axes of `LHipPitch` and `LHipRoll` pass each other by 20.0 mm: they must meet",
     ),
     "a yaw axis beside the hip": (
         [(f'<body name="{side}HipRoll" pos="0 0 0">', f'<body name="{side}HipRoll" pos="0.01 0 0">') for side in "LR"],
@@ -84,7 +84,7 @@ REFUSED = {
     ),
     "a sole in the air": (
         [('<site name="LSole" pos="0 0 -0.04511"/>', '<site name="LSole" pos="0 0 -0.07"/>')],
-        "nothing flat of `LAnkleRoll` touches the ground at the site `LSole`",
+        "no flat part of `LAnkleRoll` touches the ground at the site `LSole`",
     ),
 }
 
@@ -92,7 +92,7 @@ REFUSED = {
 @pytest.mark.parametrize("fault", REFUSED)
 def test_legs_that_it_can_not_walk_on_are_refused(body: Body, models: Path, fault: str) -> None:
     edits, reason = REFUSED[fault]
-    with pytest.raises(RobotModelError, match="the robot can't walk on its legs: ") as raised:
+    with pytest.raises(RobotModelError, match="the robot cannot walk on its legs: ") as raised:
         read(body, models, *edits)
     assert reason in str(raised.value)
 

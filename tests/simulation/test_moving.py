@@ -168,7 +168,7 @@ def test_what_is_pressed_ends_it_and_what_is_no_number_changes_nothing(staged: S
     staged.advance(1.5)
     staged.start("nan", Move(nan))
     reason = answer(until_answered(staged, "nan", 0.1), "nan")
-    assert reason == "error: there is no walking at (nan, 0.0, 0.0)"
+    assert reason == "error: the robot cannot walk at (nan, 0.0, 0.0)"
     staged.touch("ChestButton", True)
     assert answer(until_answered(staged, "m", 1.2), "m") == "error: the chest button is pressed: the walk was ended"
     staged.start("n", Move(0.05))

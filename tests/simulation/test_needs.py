@@ -73,12 +73,12 @@ def test_a_timestep_that_no_simulation_can_live_with_is_told(body: Body, models:
 
 def test_a_timestep_that_would_lose_time_is_told(body: Body, models: Path) -> None:
     hall = changed(models, "hall.xml", ('timestep="0.0025"', 'timestep="0.003"'))
-    assert "a timestep that fits into 0.01 s" in trouble(body, models, hall)
+    assert "a timestep that divides 0.01 s evenly" in trouble(body, models, hall)
 
 
 def test_what_stands_nowhere_is_told_by_its_name(body: Body, models: Path) -> None:
     hall = changed(models, "hall.xml", ('pos="0 0 0.25"', 'pos="0 0 nan"'))
-    assert "no place that is a number: podium" in trouble(body, models, hall)
+    assert "a position that is not a number: podium" in trouble(body, models, hall)
 
 
 @pytest.mark.parametrize(("file", "content"), [("nao/head.obj", "v 1 2 x"), ("hall/planks.png", "no picture")])
@@ -100,4 +100,4 @@ def test_a_simulation_that_has_become_unstable_ends_instead_of_beginning_anew(ro
 
 def test_a_hall_in_degrees_is_told(body: Body, models: Path) -> None:
     hall = changed(models, "hall.xml", ('angle="radian"', 'angle="degree"'))
-    assert "other_hall.xml does not go with the robot's nao.xml" in trouble(body, models, hall)
+    assert "other_hall.xml does not fit the robot's nao.xml" in trouble(body, models, hall)

@@ -181,7 +181,7 @@ def refused(robot: SimulatedRobot, command: Walk) -> str:
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
-        (Walk(0.5), "foot would leave the stage: it would reach x = 0.41 m, and the stage is -0.4 to 0.4 m"),
+        (Walk(0.5), "foot would leave the stage: it would reach x = 0.41 m, but the stage goes from -0.4 to 0.4 m"),
         (Walk(-0.6), "foot would leave the stage: it would reach x = -0.4"),
         (Walk(0.0, 0.7), "left foot would leave the stage: it would reach y = 0.6"),
         (Walk(3.0), "would leave the stage"),

@@ -106,7 +106,7 @@ def test_no_faster_than_its_base_and_no_sooner_than_it_can_bear(greeter: Simulat
 
 def test_wheels_do_not_go_aside(greeter: SimulatedRobot) -> None:
     greeter.start("go", Move(0.0, 0.2, 0.0))
-    assert answer(until_answered(greeter, "go"), "go") == "error: wheels don't drive aside: turn first"
+    assert answer(until_answered(greeter, "go"), "go") == "error: a robot on wheels cannot drive sideways: turn first"
 
 
 def test_it_stays_on_its_stage() -> None:
@@ -181,9 +181,14 @@ def test_without_imperfections_only_what_its_wheels_slip_is_unknown() -> None:
 
 
 UNFIT = {
-    "an axle that points ahead": ('"left_wheel" class="wheel" axis="0 1 0"', "0 1 0", "1 0 0", "is no hinge"),
-    "a smaller wheel": ('name="right_tyre" class="touch" type="cylinder" size="0.09', "0.09", "0.07", "differ in size"),
-    "no motor for speeds": ('<velocity name="left_wheel"', "velocity", "motor", "a velocity actuator of the wheel"),
+    "an axle that points ahead": ('"left_wheel" class="wheel" axis="0 1 0"', "0 1 0", "1 0 0", "is not a hinge"),
+    "a smaller wheel": (
+        'name="right_tyre" class="touch" type="cylinder" size="0.09',
+        "0.09",
+        "0.07",
+        "must be of one size",
+    ),
+    "no motor for speeds": ('<velocity name="left_wheel"', "velocity", "motor", "a velocity actuator for the wheel"),
 }
 
 

@@ -34,7 +34,8 @@ def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
     assert whereabouts.doubt == DRIFT_AFTER_LYING_BACK
     whereabouts.check([Footstep("L", Pose(0.6, 0.05))])
     with pytest.raises(
-        RobotError, match=r"might leave the stage: .* to 1 m; the robot has been down since, and may be 0\.25"
+        RobotError,
+        match=r"might leave the stage: .* to 1 m; the robot has fallen since, so its position may be wrong by 0\.25",
     ):
         whereabouts.check([Footstep("L", Pose(0.7, 0.05))])
     whereabouts.lose("Sit")
@@ -70,7 +71,9 @@ def test_a_robot_that_sat_walks_only_where_it_is_safe_all_the_same(body: Body) -
         assert answer(until_answered(robot, "p"), "p") == "done"
     assert abs(truth(robot).place) < DRIFT_AFTER_SITTING
     robot.start("w", Walk(0.5))
-    assert "the robot has been down since, and may be 0.1 m off" in answer(until_answered(robot, "w"), "w")
+    assert "the robot has fallen since, so its position may be wrong by 0.1 m" in answer(
+        until_answered(robot, "w"), "w"
+    )
     robot.start("w", Walk(0.3))
     assert answer(until_answered(robot, "w"), "w") == "done"
 

@@ -43,4 +43,4 @@ def test_a_body_without_a_model_is_not_simulated(
 ) -> None:
     monkeypatch.setenv(MODEL_VARIABLE, "pepper")
     assert main(["run", "--robot", "simulation", str(ROOT), "--for", "1s"]) == 2
-    assert "Pepper has no MJCF: it can be run with --robot naoqi or --robot recording" in capsys.readouterr().err
+    assert "Pepper has no MJCF: run it with --robot naoqi or --robot recording" in capsys.readouterr().err

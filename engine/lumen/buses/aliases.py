@@ -56,7 +56,7 @@ class Aliases:
             try:
                 self._undo.append(bus.subscribe(pattern, self._hear))
             except BusError as error:
-                _log.debug("who else is on the bus can't be heard: %s", error)
+                _log.debug("other robots on the bus cannot be detected: %s", error)
         for undo in old:
             undo()
 
@@ -90,11 +90,15 @@ class Aliases:
 
     def _warn(self, robot: str, project: Project) -> None:
         shared = [f"`{n}`" for n, row in project.routes.items() if row.event and "{robot}" not in row.key]
-        both = f"; both hear what comes on {', '.join(shared)}: write `{{robot}}` into the key" if shared else ""
+        both = (
+            f"; both robots receive the messages on {', '.join(shared)}: write `{{robot}}` into the key"
+            if shared
+            else ""
+        )
         if project.aliases:
-            what = f"lumen.yaml of {project.robot} says `aliases: true`: it alone may say so"
+            what = f"lumen.yaml of {project.robot} has `aliases: true`: no other robot may have it"
         else:
-            what = "messages under an `alias` are neither taken nor sent while it is there (`aliases` in lumen.yaml)"
+            what = "while it is there, Lumen neither accepts nor sends messages under an `alias` (see `aliases` in lumen.yaml)"
         _log.warning("another robot, %.100s, is on this bus: %s%s", robot, what, both)
 
 

@@ -100,7 +100,7 @@ class AmqpBus:
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
-            raise BusClosedError("the bus is closed: nobody can subscribe any more")
+            raise BusClosedError("the bus is closed: subscribing is no longer possible")
         check_subscription(pattern, handler)
         route = self._routes.get(pattern)
         consumer = self._transport_of(route).consumer
@@ -118,7 +118,7 @@ class AmqpBus:
         origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
-            raise BusClosedError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: publishing is no longer possible")
         for name in (key, reply_to, correlation_id):
             check_key(name)
         route = self._routes.get(key)
@@ -159,7 +159,7 @@ class AmqpBus:
         if not message.reply_to:
             return
         if self._closed:
-            raise BusClosedError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: publishing is no longer possible")
         check_key(message.reply_to)
         self._transport.answer(message.reply_to, message.correlation_id, body, self.sender)
 
@@ -194,6 +194,6 @@ class AmqpBus:
         self._closed = True
         ended = [transport.end(deadline) for transport in self._transports()]
         if left := sum(len(transport.publisher.outbox) for transport in self._transports()):
-            _log.warning("the bus was closed with %d messages unsent", left)
+            _log.warning("the bus was closed before %d messages were sent", left)
         elif not all(ended):
-            _log.warning("the bus was closed while it still works, after %g s", CLOSE_TIMEOUT)
+            _log.warning("the bus was still working %g s after it was closed", CLOSE_TIMEOUT)

@@ -47,7 +47,7 @@ def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
     if kind is float or kind is int:
         return _number(body)
     if not depth:
-        raise BadMessageError(f"a body may be nested {MAX_BODY_DEPTH} levels deep")
+        raise BadMessageError(f"a body must not be nested deeper than {MAX_BODY_DEPTH} levels")
     if kind is list or kind is tuple:
         return list(body) if _plain(body) else [copied(value, depth - 1) for value in body]
     return _derived(body, depth)
@@ -81,7 +81,7 @@ def _number(number: float) -> float:
     if isinstance(number, int):
         if MIN_INTEGER <= number <= MAX_INTEGER:
             return number
-        raise BadMessageError("an integer in a body lies between -2**63 and 2**63")
+        raise BadMessageError("an integer in a body must be between -2**63 and 2**63")
     if isfinite(number):
         return number
     raise BadMessageError(f"{number} is not a number that JSON has")
@@ -90,7 +90,7 @@ def _number(number: float) -> float:
 def _key(key: object) -> str:
     if isinstance(key, str):
         return str(key)
-    raise BadMessageError(f"the keys of a body are texts, not {type(key).__name__} ({key!r})")
+    raise BadMessageError(f"the keys of a body must be texts, not {type(key).__name__} ({key!r})")
 
 
 def _derived(body: object, depth: int) -> Any:
@@ -105,20 +105,20 @@ def _derived(body: object, depth: int) -> Any:
         return copied(dict(body), depth)
     if isinstance(body, list | tuple):
         return copied(list(body), depth)
-    raise BadMessageError(f"a body is JSON data, and {type(body).__name__} is not")
+    raise BadMessageError(f"a body must be JSON data, not {type(body).__name__}")
 
 
 def check_key(key: str) -> None:
     """Raise BusError where AMQP could not carry this key: a text of 255 bytes at most."""
     if not isinstance(key, str) or not _fits(key):
-        raise BadMessageError(f"a key is a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
+        raise BadMessageError(f"a key must be a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
 
 
 def check_subscription(pattern: str, handler: object) -> None:
     """Raise BusError where nobody could be called, or no key be meant."""
     check_key(pattern)
     if not callable(handler):
-        raise BadMessageError(f"who subscribes is called with each message, which {str(handler)[:40]!r} can't be")
+        raise BadMessageError(f"a subscriber must be a function, not {str(handler)[:40]!r}")
 
 
 def _fits(key: str) -> bool:
@@ -131,7 +131,7 @@ def _fits(key: str) -> bool:
 def check_ttl(ttl: object) -> None:
     """Raise BusError for what is no length of time: a number from 0 on, in [s], or None."""
     if ttl is not None and not (type(ttl) in (int, float) and 0 <= ttl <= MAX_TTL):  # type: ignore[operator]
-        raise BadMessageError(f"a ttl is a number of seconds from 0 to {MAX_TTL}, not {str(ttl)[:40]!r}")
+        raise BadMessageError(f"a ttl must be a number of seconds from 0 to {MAX_TTL}, not {str(ttl)[:40]!r}")
 
 
 def encode(body: Any) -> bytes:
@@ -199,7 +199,7 @@ def text_of_json(body: Any) -> str:
         _decoder.decode(body)
     except (ValueError, RecursionError, BadMessageError):
         return ""
-    return f"it is a text that holds JSON: send it with the content type {JSON}, not {TEXT}, and encode it once"
+    return f"it is a text that holds JSON: encode it once, and send it with the content type {JSON}, not {TEXT}"
 
 
 def _no_constant(name: str) -> Any:

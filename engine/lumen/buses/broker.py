@@ -43,7 +43,7 @@ class BrokerAddress:
             self.parameters = pika.URLParameters(url)
         except (ValueError, TypeError, KeyError) as error:
             raise BusAddressError(
-                f"`{shown}` is no address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/VHOST"
+                f"`{shown}` is not the address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/VHOST"
             ) from None  # the original error may quote the password
         options = self.parameters
         options.connection_attempts = 1
@@ -69,14 +69,16 @@ class BrokerAddress:
         numbers = tuple(int(n) for n in re.findall(r"\d+", text)[:2])
         if "RabbitMQ" in str(server.get("product")) and numbers < MIN_RABBITMQ_VERSION:
             least = ".".join(map(str, MIN_RABBITMQ_VERSION))
-            raise BusUnreachableError(f"the broker at {self} is RabbitMQ {text}, and too old: install {least} or newer")
+            raise BusUnreachableError(
+                f"the broker at {self} is RabbitMQ {text}, which is too old: install {least} or newer"
+            )
 
     def explain(self, error: BaseException) -> BusError:
         """What to do about a connection that could not be opened."""
         if isinstance(error, BusError):
             return error
         found = filter(None, map(self._explained, _causes(error)))
-        return next(found, None) or BusUnreachableError(f"the broker at {self} can't be used: {error!r}")
+        return next(found, None) or BusUnreachableError(f"the broker at {self} cannot be used: {error!r}")
 
     def _explained(self, cause: BaseException) -> BusError | None:
         code = cause.reply_code if isinstance(cause, exceptions.ConnectionClosed) else 0
@@ -86,14 +88,14 @@ class BrokerAddress:
             )
         if isinstance(cause, exceptions.ProbableAccessDeniedError) or code == 530 or "vhost" in str(cause):
             return BusRefusedError(
-                f"user `{self.user}` may not use the virtual host `{self.vhost}` at {self}, or there is none"
+                f"user `{self.user}` may not use the virtual host `{self.vhost}` at {self}, or it does not exist"
             )
         reason = self._unreachable(cause)
         return BusUnreachableError(reason) if reason else None
 
     def short_of(self, what: str) -> str:
         """Return the message for a broker that accepts nothing because it is short of memory or disk space."""
-        more = "`rabbitmqctl status` shows its alarms and what it has"
+        more = "type `rabbitmqctl status` to see its alarms and how much it has"
         return f"the broker at {self} is short of {what} and accepts no messages until it has enough: {more}"
 
     def _unreachable(self, cause: BaseException) -> str:
@@ -106,12 +108,12 @@ class BrokerAddress:
         if isinstance(cause, ssl.SSLCertVerificationError):
             what = cause.verify_message.rstrip(".")
             if "self-signed" in what or "issuer" in what:
-                what += "; name who signed it, as in amqps://HOST/?ca=FILE"
-            return f"the certificate of the broker at {self} can't be trusted: {what}"
+                what += "; name the certificate of its signer, as in amqps://HOST/?ca=FILE"
+            return f"the certificate of the broker at {self} cannot be trusted: {what}"
         if isinstance(cause, ssl.SSLError):
             return f"the broker at {self} does not speak TLS: use amqp://, or the port for TLS (5671)"
         if isinstance(cause, exceptions.IncompatibleProtocolError | exceptions.StreamLostError):
-            return f"what listens at {self} is no AMQP 0-9-1 broker, or closed the connection at once"
+            return f"the program at {self} is not an AMQP 0-9-1 broker, or it closed the connection at once"
         if isinstance(cause, TimeoutError) or "Timeout" in type(cause).__name__:
             return f"the broker at {self} does not answer: check the host, the port and the network"
         return ""
@@ -135,18 +137,20 @@ def _trusting(authority: str) -> ssl.SSLContext:
         return ssl.create_default_context(cafile=authority or None)
     except (OSError, ssl.SSLError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise BusAddressError(f"`{authority}` holds no certificates of who signs the broker's: {reason}") from None
+        raise BusAddressError(f"`{authority}` has no certificates that can check the broker's: {reason}") from None
 
 
 def _credentials(file: str) -> Any:
     try:
         name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
     except (OSError, UnicodeDecodeError) as error:
-        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names can't be read: {error}") from None
+        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names cannot be read: {error}") from None
     if not separator or not name or "\n" in password:
-        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names holds no line `NAME:PASSWORD`")
+        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names must hold one line `NAME:PASSWORD`")
     if os.name == "posix" and Path(file).stat().st_mode & 0o077:
-        logging.getLogger(__name__).warning("others can read the password in `%s`: type `chmod 600 %s`", file, file)
+        logging.getLogger(__name__).warning(
+            "other users can read the password in `%s`: type `chmod 600 %s`", file, file
+        )
     return pika.PlainCredentials(name, password)
 
 

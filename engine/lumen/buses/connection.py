@@ -164,7 +164,7 @@ class BrokerConnection:
             self._lost(error, since)
         except Exception as error:
             if self._opened.done():
-                _log.exception("the bus met something unexpected")
+                _log.exception("the bus failed unexpectedly")
             self._lost(error, since)
         finally:
             connection, self.connection, self.channel = self.connection, None, None

@@ -93,7 +93,7 @@ class Consumer(BrokerConnection):
         subscription = self._subscriptions.add(pattern, handler, route)
         if not self._later(lambda: self._bind(subscription)) and self._epoch:
             subscription.bound.set()
-            _log.warning("`%s` is subscribed to as soon as the broker at %s is back", pattern, self.address)
+            _log.warning("Lumen subscribes to `%s` as soon as the broker at %s is back", pattern, self.address)
         if not self._hurried:
             self._await(subscription)
         return subscription
@@ -137,7 +137,7 @@ class Consumer(BrokerConnection):
                 "the broker at %s does not confirm the subscription to `%s`", self.address, subscription.pattern
             )
         if subscription.refusal:
-            what = f"refuses to let us read `{subscription.pattern}`"
+            what = f"refuses the subscription to `{subscription.pattern}`"
             raise BusRefusedError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
@@ -178,7 +178,9 @@ class Consumer(BrokerConnection):
     def _refused(self, subscription: Subscription, reason: str) -> None:
         self._subscriptions.refuse(subscription, reason)
         if self._hurried and subscription.handler is not None:
-            _log.error("the broker at %s refuses to let us read `%s`: %s", self.address, subscription.pattern, reason)
+            _log.error(
+                "the broker at %s refuses the subscription to `%s`: %s", self.address, subscription.pattern, reason
+            )
 
     def _consume(self, subscription: Subscription) -> None:
         if self.channel is not None and subscription.active and subscription.epoch == self._epoch:
@@ -230,7 +232,9 @@ class Consumer(BrokerConnection):
         except UnicodeDecodeError:
             text = _short(key.decode(errors="backslashreplace"))
         if properties.unreadable:
-            self.unreadable.add(text, f"{', '.join(properties.unreadable)} can't be read; the message is taken without")
+            self.unreadable.add(
+                text, f"{', '.join(properties.unreadable)} cannot be read; the message is accepted without it"
+            )
         return text
 
 

@@ -132,7 +132,7 @@ class Dispatcher:
     def _repeat(self, delivery: Delivery) -> None:
         id, sender = delivery.properties.message_id, delivery.properties.app_id
         who = repr(sender[:MAX_SHOWN]) if sender else "a sender without a name (`app_id`)"
-        reason = f"{who} has sent the id {id[:MAX_SHOWN]!r} before: give each message an id of its own"
+        reason = f"{who} has sent the id {id[:MAX_SHOWN]!r} before: give each message its own id"
         self.repeated.add(delivery.key, reason)
         self.repeated.tell()
         self._refused(delivery, reason)
@@ -163,7 +163,7 @@ class Dispatcher:
         except Exception as error:
             _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, delivery.key)
             if subscription.must_arrive:
-                self._refused(delivery, f"who should handle it failed: {error!r}")
+                self._refused(delivery, f"its handler failed: {error!r}")
 
     def _drop(self, delivery: Delivery, reason: str) -> None:
         self.unusable(delivery.key, reason)

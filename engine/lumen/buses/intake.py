@@ -78,7 +78,7 @@ class Intake:
     def _drop(self, delivery: Delivery, rate: float) -> None:
         self.flooded = True
         subscription = delivery.subscription
-        why = f"more than {rate:g} a second come"
+        why = f"more than {rate:g} messages a second arrive"
         self.drops.add(delivery.key, why)
         if subscription.must_arrive and not self._answers.wait(delivery.key, ANSWERED_RATE):
             self._refused(delivery, why)

@@ -83,7 +83,9 @@ class _Hub:
             while len(self.queue) > MAX_QUEUED_MESSAGES:
                 item = self.queue.popleft()
                 if type(item) is tuple:
-                    self.drops.add(item[1].key, f"{MAX_QUEUED_MESSAGES:,} messages wait for a subscriber already")
+                    self.drops.add(
+                        item[1].key, f"{MAX_QUEUED_MESSAGES:,} messages are waiting for a subscriber already"
+                    )
                 else:
                     self.queue.append(item)
 
@@ -164,7 +166,7 @@ class MemoryBus:
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
-            raise BusClosedError("the bus is closed: nobody can subscribe any more")
+            raise BusClosedError("the bus is closed: subscribing is no longer possible")
         check_subscription(pattern, handler)
         subscription = _Subscription(pattern, handler)
         self._mine[subscription] = None
@@ -188,7 +190,7 @@ class MemoryBus:
         origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
-            raise BusClosedError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: publishing is no longer possible")
         own = copied(body)
         hub = self._hub
         listeners = hub.listeners.get(key)
@@ -221,7 +223,7 @@ class MemoryBus:
         self._hub.queue.append(lambda: self._leave(gone))
         self._hub.deliver()
         if self._hub.deliverer != get_ident() and not gone.wait(HANDLER_TIMEOUT):
-            _log.warning("the bus was closed while a subscriber still works, after %g s", HANDLER_TIMEOUT)
+            _log.warning("a subscriber was still working %g s after the bus was closed", HANDLER_TIMEOUT)
 
     def _leave(self, gone: threading.Event) -> None:
         mine = tuple(self._mine)

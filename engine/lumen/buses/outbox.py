@@ -75,7 +75,7 @@ class Outbox:
                 self._may.append(message)
             self._weigh(message, +1)
             while len(self._may) > MAX_PENDING_MESSAGES or self._bytes[False] > MAX_PENDING_BYTES:
-                self.drops.add(self._pop().key, "too much waits to be sent")
+                self.drops.add(self._pop().key, "too many messages are waiting to be sent")
         self._came()
 
     def take(self, limit: int) -> list[OutgoingMessage]:
@@ -132,7 +132,7 @@ class Outbox:
         late = [p for p in self._must if p.deadline is not None and p.deadline <= now]
         if not late:
             raise BusFullError(
-                f"the broker takes nothing, and {len(self._must):,} messages that must arrive wait already"
+                f"the broker accepts nothing, and {len(self._must):,} messages that must arrive are waiting already"
             )
         for message in late:
             self.drops.add(message.key, LATE)

@@ -73,7 +73,7 @@ def _image(body: Mapping[str, Any]) -> PackedBody | None:
 
 def _image_again(data: bytes, headers: Mapping[str, Header]) -> dict[str, Any]:
     if not data.startswith(b"\xff\xd8"):
-        raise ValueError("it is no JPEG")
+        raise ValueError("it is not a JPEG")
     said = {name: headers[other] for name, other in _SAME.items() if other in headers}
     own = {"contentType": JPEG_TYPE, "contentSize": len(data), "contentUrl": DataUrl(data)}
     rest = {k: v for k, v in headers.items() if not k.startswith("x-") and k not in (TIME, CAUSE_HEADER)}
@@ -103,7 +103,7 @@ def _joints(body: Mapping[str, Any]) -> PackedBody | None:
 def _joints_again(data: bytes, headers: Mapping[str, Header]) -> dict[str, Any]:
     names, lists = (str(headers.get(key, "")).split(",") for key in ("names", "lists"))
     if len(data) != 4 * len(names) * len(lists) or not {*lists} <= {*_LISTS}:
-        raise ValueError("its headers `names` and `lists` do not say what its numbers are")
+        raise ValueError("its headers `names` and `lists` do not match its numbers")
     numbers = array("f", data)
     if byteorder == "big":
         numbers.byteswap()
@@ -113,7 +113,7 @@ def _joints_again(data: bytes, headers: Mapping[str, Header]) -> dict[str, Any]:
     except (ValueError, RecursionError):
         more = None
     if not isinstance(more, dict):
-        raise ValueError("its header `more` is no JSON object")
+        raise ValueError("its header `more` must be a JSON object")
     return {**more, "name": names, **rows, **_timed(headers)}
 
 
@@ -123,5 +123,5 @@ def _timed(headers: Mapping[str, Header]) -> dict[str, float]:
     except (ValueError, OverflowError):
         time = math.nan
     if not math.isfinite(time):
-        raise ValueError("its header `time` is no number")
+        raise ValueError("its header `time` must be a number")
     return {TIME: time} if TIME in headers else {}

@@ -172,7 +172,7 @@ class Publisher(BrokerConnection):
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
         except Exception as error:  # it can't be written down: sent again, it would end the connection again
-            self.unsendable.add(message.key, f"AMQP can't carry it: {error!r}")
+            self.unsendable.add(message.key, f"AMQP cannot carry it: {error!r}")
             return
         self._number += 1
         self._window[self._number] = _Sent(len(message.body), message if message.must else None)
@@ -184,7 +184,7 @@ class Publisher(BrokerConnection):
 
     def _nacked(self, number: int, several: bool) -> None:
         messages = self._settled(number, several)
-        _log.warning("the broker at %s could not take %d messages", self.address, len(messages))
+        _log.warning("the broker at %s did not accept %d messages", self.address, len(messages))
         self.outbox.put_back([sent.again for sent in messages if sent.again])
 
     def _settled(self, number: int, several: bool) -> list[_Sent]:
@@ -234,7 +234,7 @@ class Publisher(BrokerConnection):
         self._warned.add(key)
         others = [other for other in self.known if other != key]
         hint = f": {did_you_mean(key, others)}" if others else ""
-        _log.warning("nobody takes what is sent on `%s`%s", key, hint if "mean" in hint else "")
+        _log.warning("no process receives messages on `%s`%s", key, hint if "mean" in hint else "")
 
     def _declare(self, name: str, work: Callable[[AskedChannel], None]) -> None:
         """Declare something on the broker once; where it refuses, as it does to a user of few rights, all goes on."""

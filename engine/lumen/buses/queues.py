@@ -129,8 +129,8 @@ def declared_otherwise(reply: str) -> str:
     argument, kind, name, wanted, there = found.groups()
     delete = f"rabbitmqctl delete_queue {name}" if kind == "queue" else f"rabbitmqadmin delete exchange name={name}"
     return (
-        f"the {kind} `{name}` was declared with other arguments (its `{argument}` is {there}, not {wanted}), so that"
-        f" its messages are lost: delete it (`{delete}`), and restart the programs that use it"
+        f"the {kind} `{name}` was declared with other arguments (its `{argument}` is {there}, not {wanted}), and its"
+        f" messages are lost: type `{delete}`, then restart the programs that use it"
     )
 
 

@@ -136,7 +136,7 @@ class ValidatedBus:
     ) -> None:
         check = self._checks.get(key)
         if (check is None or not check.fits(body)) and (reason := self._wrong(key, body)):
-            raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
+            raise BadMessageError(f"a message on `{key}` cannot be sent: {reason}")
         id, sender, when, cause = origin
         if not id:
             self._passed = id = f"{PREFIX}-{next(NUMBERS)}"
@@ -167,7 +167,7 @@ class ValidatedBus:
         if check is not None:
             return check(body)
         known = key in self._routed or key.split(".", 1)[0] in KEY_PREFIXES
-        return "" if known else "no route of lumen.yaml has this key, and it begins with neither `avatar` nor `lumen`"
+        return "" if known else "no route of lumen.yaml has this key, and it does not begin with `avatar` or `lumen`"
 
 
 @dataclass(eq=False)

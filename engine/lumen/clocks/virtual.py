@@ -36,9 +36,9 @@ class VirtualClock:
 
         Raises UsageError for a time that never passes: below 0, infinite, NaN.
         """
-        need_number(dt, "what a clock advances by", finite=False)
+        need_number(dt, "the step of a clock", finite=False)
         if not 0.0 <= dt < inf:
-            raise UsageError(f"a clock can't advance by {dt} s")
+            raise UsageError(f"a clock cannot advance by {dt} s")
         self.wait(self._now + dt)
 
     def wait(self, until: float) -> None:

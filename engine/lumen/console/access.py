@@ -37,7 +37,7 @@ class TooFastError(Exception):
 
     def __init__(self, wait: float) -> None:
         self.wait = max(1, math.ceil(wait))
-        super().__init__(f"too many wrong PINs: the next may be tried in {self.wait} s. Rest needs none")
+        super().__init__(f"too many wrong PINs: try again in {self.wait} s. Rest needs no PIN")
 
 
 class Access:
@@ -131,11 +131,13 @@ def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[R
     for word, variable in said.items():
         pin = environment.get(variable.removeprefix("$"), "")
         if not pin:
-            raise UsageError(f"the PIN for {word} is to be in {variable}, and that is not set")
+            raise UsageError(f"the PIN for {word} is missing: set the environment variable {variable}")
         if len(pin) < SHORTEST_PIN:
-            raise UsageError(f"the PIN for {word}, in {variable}, is too short: {SHORTEST_PIN} characters at least")
+            raise UsageError(f"the PIN for {word}, in {variable}, is too short: use at least {SHORTEST_PIN} characters")
         if pin in found.values():
-            raise UsageError(f"the PIN for {word}, in {variable}, is that of another role, too: each needs its own")
+            raise UsageError(
+                f"the PIN for {word}, in {variable}, is also the PIN of another role: give each role its own"
+            )
         found[ROLES[word]] = pin
     return found
 

@@ -13,7 +13,7 @@ from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.2
 """How often it is looked whether the bus is still there [s]."""
-AWAY = "the broker is away: nothing that is sent reaches anybody until it is back"
+AWAY = "the broker is away: no command reaches a robot until it is back"
 RETRY_PERIOD = 0.5
 """How long after a bus could not be reached it is tried again [s]."""
 
@@ -39,7 +39,7 @@ class BusLink:
         changed: Callable[[], None],
     ) -> None:
         self.reached: Reached | None = None
-        self._trouble = "the bus has not been reached yet"
+        self._trouble = "the console has not reached the bus yet"
         self._reach, self._patterns = reach, patterns
         self._heard, self._answered, self._returned, self._changed = heard, answered, returned, changed
         self._ending = threading.Event()

@@ -135,7 +135,7 @@ class Commands:
             if one.state != SENT:
                 one.become(UNSENT, str(error))
             else:
-                one.become(FAILED, no_robot(order.key) if rests else f"nobody answered on `{order.key}`")
+                one.become(FAILED, no_robot(order.key) if rests else f"no answer came on `{order.key}`")
             if rests:
                 self._stop_behavior(robot)
 
@@ -149,8 +149,8 @@ class Commands:
 
     def _unsent(self, exchange: Exchange, key: str) -> str:
         if exchange.nobody.is_set():
-            return f"nobody is there who takes it (`{key}`)"
-        return self._watch.link.trouble or "the bus does not take it: the broker is away, or the exhibition hangs"
+            return f"no process accepts this command (`{key}`)"
+        return self._watch.link.trouble or "the bus does not accept it: the broker is away, or the exhibition hangs"
 
     def _note(self, robot: str, text: str, by: str) -> None:
         """Have it in the journal who did that, where the behaviour does not hear of it."""

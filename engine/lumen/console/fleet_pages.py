@@ -35,18 +35,16 @@ class FleetPages:
         data = await self._reception.posted(request)
         decision = data.get("decision")
         if decision not in DECISIONS:
-            raise DeniedError(400, f"`decision` is one of {', '.join(DECISIONS)}")
+            raise DeniedError(400, f"`decision` must be one of {', '.join(DECISIONS)}")
         return as_json(await self._asked({"ask": decision, "by": person.name or person.role.word}))
 
     async def _asked(self, body: dict[str, Any]) -> dict[str, Any]:
         try:
             said = await self._reception.watch.exchanges.ask(ORDER, body, ANSWER_TIMEOUT)
         except BusError:
-            raise DeniedError(
-                503, "no centre of a fleet answers on this bus: start it with `lumen fleet serve`"
-            ) from None
+            raise DeniedError(503, "no fleet centre answers on this bus: start one with `lumen fleet serve`") from None
         if not isinstance(said, dict):
-            raise DeniedError(503, "the centre answers nothing that can be shown")
+            raise DeniedError(503, "the centre sent an answer that cannot be shown")
         if not said.get("ok"):
             raise DeniedError(409, str(said.get("reason")))
         return said

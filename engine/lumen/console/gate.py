@@ -60,16 +60,16 @@ class Gate:
     def _refusal(self, scope: Scope, headers: Mapping[str, str]) -> tuple[int, str] | None:
         host = headers.get("host", "")
         if not self._known(host, scope):
-            return 421, "this console is not called that: open it under the address that `lumen console` printed"
+            return 421, "unknown host: open the console at the address that `lumen console` printed"
         origin = headers.get("origin")
         if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
-            return 403, "a page of somebody else may not ask this console anything"
+            return 403, "pages of other sites may not use this console: open it at its own address"
         foreign = headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none")
         if foreign and (scope["path"].startswith(("/api/", "/camera/")) or scope["method"] in WRITING):
-            return 403, "a page of somebody else may not ask this console anything"
+            return 403, "pages of other sites may not use this console: open it at its own address"
         kind = headers.get("content-type", "").partition(";")[0].strip().lower()
         if scope["method"] == "POST" and kind != "application/json":
-            return 415, "what is posted has to be JSON: `Content-Type: application/json`"
+            return 415, "the request body must be JSON: send `Content-Type: application/json`"
         return None
 
     def _known(self, host: str, scope: Scope) -> bool:
@@ -102,7 +102,7 @@ def _same_address(name: str, here: str) -> bool:
 
 async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tuple[int, str] | None]:
     """The body, or why it is refused."""
-    too_large = 413, f"what is posted may have {MAX_BODY} bytes"
+    too_large = 413, f"the request body is too large: send at most {MAX_BODY} bytes"
     length = headers.get("content-length", "0")
     if length.isdigit() and int(length) > MAX_BODY:
         return b"", too_large
@@ -110,7 +110,7 @@ async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tu
     while True:
         message = await receive()
         if message["type"] != "http.request":
-            return b"", (400, "the request was not sent to its end")
+            return b"", (400, "the request ended early")
         body += message.get("body", b"")
         if len(body) > MAX_BODY:
             return b"", too_large
@@ -149,7 +149,7 @@ def json_object(body: bytes) -> dict[str, Any]:
     try:
         data = json.loads(body or b"null")
     except (ValueError, RecursionError):
-        raise ValueError("what is posted is no JSON") from None
+        raise ValueError("the request body is not JSON") from None
     if not isinstance(data, dict):
-        raise ValueError("a JSON object is expected")
+        raise ValueError("the request body must be a JSON object")
     return data

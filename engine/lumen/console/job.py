@@ -32,7 +32,7 @@ from lumen.language.sayings import Saying
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 
-TOO_LONG_AGO = "it was too long ago"
+TOO_LONG_AGO = "too long ago"
 REPLAY_TIME = 10.0
 """How long visits are played with the saved files [s]; the others are said to be unknown."""
 

@@ -31,13 +31,13 @@ class Jobs:
     async def do(self, job: str, *arguments: Any, told: AsyncIterator[bytes] | None = None) -> bytes:
         """What a job answers; it reads what it is `told`, line by line. What `told` raises is raised."""
         if self._waiting >= MAX_WAITING:
-            raise DeniedError(503, f"{MAX_WAITING} questions like that are being answered: ask again in a moment")
+            raise DeniedError(503, f"{MAX_WAITING} such requests are running already: try again in a moment")
         self._waiting += 1
         try:
             async with asyncio.timeout(JOB_TIME), self._turn:
                 return await self._done(job, arguments, told)
         except TimeoutError:
-            raise DeniedError(503, f"that takes longer than {JOB_TIME:g} s: ask `lumen` on the terminal") from None
+            raise DeniedError(503, f"this takes longer than {JOB_TIME:g} s: use `lumen` in a terminal") from None
         finally:
             self._waiting -= 1
 
@@ -47,7 +47,7 @@ class Jobs:
         try:
             return await asyncio.create_subprocess_exec(*line, stdin=PIPE, stdout=PIPE, limit=1 << 20)
         except OSError as error:
-            raise DeniedError(503, f"no process can be begun that computes this: {error.strerror}") from None
+            raise DeniedError(503, f"cannot start a process to compute this: {error.strerror}") from None
 
     async def _done(self, job: str, arguments: Iterable[Any], told: AsyncIterator[bytes] | None) -> bytes:
         child = await self.begin(job, *arguments)
@@ -94,9 +94,9 @@ def why_none(code: int, wrote: bytes) -> str:
     if code == REFUSED:
         return wrote.decode("utf-8", "replace")
     if code == OUT_OF_MEMORY:
-        return "what computes this took more memory than it may: ask `lumen` on the terminal"
-    how = f"it ended with {code}"
+        return "this needs more memory than the console allows: use `lumen` in a terminal"
+    how = f"exit code {code}"
     if code < 0:
         with suppress(ValueError):
-            how = f"it was ended by {signal.Signals(-code).name}"
-    return f"what computes this did not live to answer ({how}): ask again, or `lumen` on the terminal"
+            how = f"ended by {signal.Signals(-code).name}"
+    return f"the process that computes this ended without an answer ({how}): try again, or use `lumen` in a terminal"

@@ -52,11 +52,11 @@ def verdict_outcome(answer: Any) -> str | None:
         case {"verdict": "refused"}:
             return str(answer.get("reason") or "it was refused")
         case {"verdict": "done", "taken": False}:
-            return str(answer.get("reason") or "nothing takes that event now")
+            return str(answer.get("reason") or "nothing reacts to that event now")
         case {"verdict": str()}:
             return ""
         case _:
-            return "this exhibition's Lumen does not know that: it is an older one"
+            return "this exhibition runs an older Lumen, which cannot do that"
 
 
 def reload_outcome(answer: Any) -> str | None:
@@ -69,14 +69,14 @@ def reload_outcome(answer: Any) -> str | None:
         case {"verdict": str()}:
             return ""
         case _:
-            return "it was not understood"
+            return "the exhibition sent an answer that the console does not understand"
 
 
 def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
     """The message that a command is. Raises UsageError that says what would be right."""
     make = _MAKERS.get(command)
     if make is None:
-        raise UsageError(f"there is no command `{command[:40]}`: there are {', '.join(NEEDS)}")
+        raise UsageError(f"there is no command `{command[:40]}`: choose one of {', '.join(NEEDS)}")
     return make(fields, keys, by)
 
 
@@ -84,7 +84,7 @@ def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = T
     """The text of a field. Raises UsageError."""
     value = fields.get(name, "")
     if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
-        raise UsageError(f"`{name}` is a text of {'1' if needed else '0'} to {most} characters")
+        raise UsageError(f"`{name}` must be a text of {'1' if needed else '0'} to {most} characters")
     return value
 
 
@@ -116,32 +116,32 @@ def _question(**body: Any) -> Callable[[RobotKeys], Order]:
 def _event(fields: Fields, keys: RobotKeys, by: str) -> Order:
     data = fields.get("data")
     if not (data is None or isinstance(data, dict)):
-        raise UsageError("`data` is an object, or left out")
+        raise UsageError("`data` must be an object, or be left out")
     return _question(ask="event", event=text_in(fields, "event"), data=data or {}, by=by)(keys)
 
 
 def _approve(fields: Fields, keys: RobotKeys, by: str) -> Order:
     if not isinstance(go := fields.get("go"), bool):
-        raise UsageError("`go` is true or false")
+        raise UsageError("`go` must be true or false")
     return _question(ask="approve", id=text_in(fields, "approval"), go=go, by=by)(keys)
 
 
 def _autonomy(fields: Fields, keys: RobotKeys, by: str) -> Order:
     if (level := fields.get("level")) not in ("ask", "alone"):
-        raise UsageError("`level` is `ask` or `alone`")
+        raise UsageError("`level` must be `ask` or `alone`")
     return _question(ask="autonomy", level=level, by=by)(keys)
 
 
 def _model(fields: Fields, keys: RobotKeys, by: str) -> Order:
     if not isinstance(on := fields.get("on"), bool):
-        raise UsageError("`on` is true or false")
+        raise UsageError("`on` must be true or false")
     return _question(ask="model", on=on, by=by)(keys)
 
 
 def _files(verb: str) -> Callable[[Fields, RobotKeys, str], Order]:
     def make(fields: Fields, keys: RobotKeys, by: str) -> Order:
         if not isinstance(now := fields.get("now", False), bool):
-            raise UsageError("`now` is true or false")
+            raise UsageError("`now` must be true or false")
         return Order(keys.config, {"command": verb, "now": now, "by": by}, LONG, reload_outcome)
 
     return make

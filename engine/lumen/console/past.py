@@ -22,7 +22,7 @@ from lumen.errors import BusError, UsageError
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""
 MAX_QUESTION = 500
-ELSEWHERE = "this robot's files are elsewhere: open the console there"
+ELSEWHERE = "this robot's files are on another machine: open the console there"
 SAID = ("behavior", "state", "row", "language", "text")
 """The keys of a saying that is posted."""
 
@@ -70,7 +70,7 @@ class Past:
         said = await self._ask(view, {"ask": "fork", **asked})
         if said.get("verdict") == "refused" or "would" not in said:
             reason = said.get("reason") if said.get("verdict") == "refused" else None
-            raise DeniedError(400, str(reason or "this exhibition's Lumen does not know that: it is an older one"))
+            raise DeniedError(400, str(reason or "this exhibition runs an older Lumen, which cannot do that"))
         for key in ("was", "would"):
             said[key] = [{**one, **told_of(one)} for one in said[key]]
         return as_json(said)
@@ -88,7 +88,7 @@ class Past:
         try:
             wanted = wanted and date.fromisoformat(wanted).isoformat()
         except ValueError:
-            raise DeniedError(400, "`date` is a day such as 2026-11-23") from None
+            raise DeniedError(400, "`date` must be a day, such as 2026-11-23") from None
         if (
             self._is_ours(view)
             and (found := await self._jobs.do("day", self._home(view), wanted, form, "here")) != NOTHING
@@ -99,17 +99,17 @@ class Past:
                 "day", self._home(view), wanted, form, "told", told=self._source.pages(view.robot)
             )
         except BusError as error:
-            raise DeniedError(503, f"the exhibition does not tell its day: {error}") from None
+            raise DeniedError(503, f"the exhibition did not send this day: {error}") from None
 
     async def _entries(self, request: Request) -> Response:
         view = self._asked(request, Role.OPERATOR)
         first, last = (request.query_params.get(name, "") for name in ("from", "to"))
         if not (first.isdigit() and last.isdigit() and len(first + last) < 36):
-            raise DeniedError(400, "`from` and `to` are positions of entries: whole numbers")
+            raise DeniedError(400, "`from` and `to` must be positions of entries: whole numbers")
         try:
             found = await self._source.entries(view, int(first), int(last))
         except BusError as error:
-            raise DeniedError(503, f"the exhibition does not tell its entries: {error}") from None
+            raise DeniedError(503, f"the exhibition did not send its entries: {error}") from None
         data = b'{"entries":[' + b",".join(entry.data for entry in found) + b"]}"
         return Response(data, headers=NO_STORE, media_type="application/json")
 
@@ -169,5 +169,5 @@ class Past:
         except BusError as error:
             raise DeniedError(503, f"the exhibition does not answer: {error}") from None
         if not isinstance(said, dict):
-            raise DeniedError(503, "the exhibition answers nothing that can be shown")
+            raise DeniedError(503, "the exhibition sent an answer that cannot be shown")
         return said

@@ -26,7 +26,7 @@ class Person(NamedTuple):
     @property
     def by(self) -> str:
         """As what they stand in journals."""
-        return self.name or (self.role.word if self.role else "somebody at the console")
+        return self.name or (self.role.word if self.role else "a person at the console")
 
 
 ROLES = {role.word: role for role in Role}

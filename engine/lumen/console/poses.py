@@ -97,7 +97,7 @@ class Poses:
             await asyncio.wait({asyncio.ensure_future(child.wait())}, timeout=1.0)
         code = child.returncode
         await ended(child)
-        raise DeniedError(503, f"the robot can't be drawn: {why_none(code or 0, line)}")
+        raise DeniedError(503, f"the robot cannot be drawn: {why_none(code or 0, line)}")
 
     def _leave(self) -> None:
         """End the process where nobody looks any more: it ends where there is nothing more to read."""

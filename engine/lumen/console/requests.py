@@ -37,13 +37,13 @@ class Reception:
         """Who asks, who has to be at least `needs`."""
         address = address_of(request)
         if not self.ration.take(address):
-            raise DeniedError(429, "too many requests: wait a second. Rest is always taken", **{"Retry-After": "1"})
+            raise DeniedError(429, "too many requests: wait a second. Rest always works", **{"Retry-After": "1"})
         try:
             person = self._known(request, address)
         except TooFastError as error:
             raise DeniedError(429, str(error), **{"Retry-After": str(error.wait)}) from None
         if person.role < needs:
-            raise DeniedError(403 if person.role else 401, f"that is for the role {needs.word}: sign in with its PIN")
+            raise DeniedError(403 if person.role else 401, f"this needs the role {needs.word}: sign in with its PIN")
         return person
 
     def resting(self, request: Request) -> Person:
@@ -60,7 +60,7 @@ class Reception:
             return next(iter(known.values()))
         if not isinstance(name, str) or name not in known:
             reason = self.watch.link.trouble if not known else ""
-            raise DeniedError(404, reason or f"`robot` is one of {', '.join(sorted(known))}")
+            raise DeniedError(404, reason or f"`robot` must be one of {', '.join(sorted(known))}")
         return known[name]
 
     async def posted(self, request: Request) -> dict[str, Any]:
@@ -90,10 +90,10 @@ async def say_why_not(request: Request, error: Exception) -> Response:
         case DeniedError():
             return refused(error.status, error.reason, **error.headers)
         case HTTPException(status_code=404):
-            return refused(404, "there is nothing under that path")
+            return refused(404, "there is nothing at this path")
         case HTTPException(status_code=405):
-            return refused(405, "that path does not take this method")
+            return refused(405, "this path does not accept this method")
         case HTTPException():
             return refused(error.status_code, str(error.detail))
         case _:
-            return refused(500, "the console failed on that; its terminal says more")
+            return refused(500, "the console failed: see its terminal")

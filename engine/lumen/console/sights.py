@@ -51,7 +51,7 @@ class Sights:
         try:
             data = await self.poses(view.robot).shape()
         except DeniedError as error:
-            raise DeniedError(error.status, f"the robot can't be drawn: {error.reason}") from None
+            raise DeniedError(error.status, f"the robot cannot be drawn: {error.reason}") from None
         return Response(data, headers=NO_STORE, media_type="application/json")
 
     async def _poses(self, request: Request) -> Response:

@@ -87,7 +87,7 @@ class Site:
         robot = request.query_params.get("robot", "")
         after = request.headers.get("last-event-id") or request.query_params.get("after", "")
         if self.watch.lookers >= MAX_STREAMS:
-            raise DeniedError(503, f"{MAX_STREAMS} pages listen already: close some")
+            raise DeniedError(503, f"{MAX_STREAMS} pages are open already: close some")
         who = Listener(robot, positions_in(after, robot), full, "once" in request.query_params)
         return StreamingResponse(self.streams.events(who), media_type=STREAM, headers=NO_STORE)
 
@@ -95,11 +95,11 @@ class Site:
         data = await self.reception.posted(request)
         id, name = data.get("id"), data.get("command")
         if not isinstance(name, str) or name not in NEEDS:
-            raise DeniedError(400, f"`command` is one of {', '.join(NEEDS)}")
+            raise DeniedError(400, f"`command` must be one of {', '.join(NEEDS)}")
         rests = name == REST
         person = self.reception.resting(request) if rests else self.reception.person(request, NEEDS[name])
         if not isinstance(id, str) or not _ID.fullmatch(id):
-            raise DeniedError(400, "`id` is 1 to 100 letters, digits or . _ : -, the same where it is the same command")
+            raise DeniedError(400, "`id` must be 1 to 100 letters, digits or . _ : -; use a new one for each command")
         robot = self._meant(data.get("robot"), rests=rests)
         if person.role == Role.SHOW and name == "event":
             _check_button(self.reception.robot(robot), data)
@@ -128,14 +128,14 @@ class Site:
         data = await self.reception.posted(request)
         pin, name = data.get("pin"), data.get("name") or ""
         if not isinstance(pin, str) or not isinstance(name, str) or len(name) > MAX_NAME:
-            raise DeniedError(400, f"`pin` is a text, and `name` one of up to {MAX_NAME} characters")
+            raise DeniedError(400, f"`pin` must be a text, and `name` a text of at most {MAX_NAME} characters")
         self.reception.person(request)
         try:
             role = self.access.role(address_of(request), pin) if self.access.pins else Role.AUTHOR
         except TooFastError as error:
             raise DeniedError(429, str(error), **{"Retry-After": str(error.wait)}) from None
         if not role:
-            raise DeniedError(401, "that is the PIN of no role")
+            raise DeniedError(401, "no role has this PIN")
         shown = "".join(sign for sign in name if sign.isprintable()).strip()
         answer = as_json({"role": role.word, "name": shown})
         cookie = self.access.sign(Person(role, shown))
@@ -149,7 +149,7 @@ def _check_button(view: KnownRobot, data: dict[str, object]) -> None:
     for button in buttons if isinstance(buttons, list) else ():
         if button.get("event") == data.get("event") and (button.get("data") or {}) == (data.get("data") or {}):
             return
-    raise DeniedError(403, "the role show sends only the events of the buttons that are there: sign in as operator")
+    raise DeniedError(403, "the role show may only press the buttons on the page: sign in as operator")
 
 
 async def _outcome(command: PageCommand) -> AsyncIterator[bytes]:

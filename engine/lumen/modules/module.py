@@ -124,7 +124,7 @@ class Module:
             try:
                 self.bus.publish(self.key("trouble"), {"module": self.name, "text": text}, ttl=10.0)
             except BusError as error:
-                _log.debug("the trouble could not be published: %s", error)
+                _log.debug("an error of the module could not be published: %s", error)
 
     def well(self) -> None:
         """It works (again): from now on the same trouble is told once more."""

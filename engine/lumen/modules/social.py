@@ -40,7 +40,7 @@ class Social(Module):
             case {"text": str(text)} if text.strip():
                 pass
             case _:
-                raise ModuleError(f"a body with a `text` is expected on {message.key}: nothing is posted")
+                raise ModuleError(f"a body with a `text` is required on {message.key}: nothing is posted")
         date = datetime.now(UTC).isoformat(timespec="seconds")
         self._write(json.dumps({"date": date, **message.body}, ensure_ascii=False))
         self.publish("social_perception", {"kind": "posted", "text": text, "date": date})
@@ -59,7 +59,7 @@ class Social(Module):
             private_folder(self._file.parent)
             with open(os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "ab") as file:
                 if file.tell() > MAX_FILE_BYTES:
-                    raise ModuleError(f"{self._file} is full: move it away, and the next posts are kept again")
+                    raise ModuleError(f"{self._file} is full: move it away so that new posts can be kept")
                 file.write(line.encode("utf-8", "replace") + b"\n")
         except OSError as error:
-            raise ModuleError(f"{self._file} can't be written: {error.strerror}") from None
+            raise ModuleError(f"{self._file} cannot be written: {error.strerror}") from None

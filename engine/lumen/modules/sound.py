@@ -68,11 +68,11 @@ class Sound(NamedTuple):
 def sound_of(text: object) -> Sound:
     """The sound in a WAV in base64. Raises ModuleError for what is none, or not of the kind that is understood."""
     if not isinstance(text, str):
-        raise ModuleError("a sound is a WAV in base64, and a text")
+        raise ModuleError("a sound must be a text: a WAV file in base64")
     try:
         data = base64.b64decode(text.partition("base64,")[2] or text, validate=True)
     except (binascii.Error, ValueError):
-        raise ModuleError("a sound is no base64: it is not listened to") from None
+        raise ModuleError("a sound is ignored: it is not base64") from None
     return wav(data)
 
 
@@ -83,15 +83,17 @@ def wav(data: bytes) -> Sound:
             channels, width, rate = file.getnchannels(), file.getsampwidth(), file.getframerate()
             kind = f"{channels} channel{'s' * (channels != 1)}, {8 * width} bits, {rate} Hz"
             if channels != 1 or width != 2 or not 8_000 <= rate <= 48_000:
-                raise ModuleError(f"a sound has {kind}; one channel, 16 bits and 8,000 to 48,000 Hz are understood")
+                raise ModuleError(
+                    f"a sound is ignored: it has {kind}; send one channel, 16 bits and 8,000 to 48,000 Hz"
+                )
             samples = file.readframes(round(MAX_DURATION * rate) + 1)
     except (wave.Error, EOFError, OSError):
-        raise ModuleError("a sound is no WAV, or of a kind that is not understood: it is not listened to") from None
+        raise ModuleError("a sound is ignored: it is not a WAV file, or not of a supported kind") from None
     found = Sound(rate, samples[: len(samples) // 2 * 2])
     if not samples:
-        raise ModuleError("a sound is empty: it is not listened to")
+        raise ModuleError("a sound is ignored: it is empty")
     if found.duration > MAX_DURATION:
-        raise ModuleError(f"a sound is longer than {MAX_DURATION:g} s: it is not listened to")
+        raise ModuleError(f"a sound is ignored: it is longer than {MAX_DURATION:g} s")
     return found
 
 
@@ -101,7 +103,7 @@ def save(file: Path, sound: Sound) -> None:
         with file.open("wb") as opened:
             _write(opened, sound)
     except OSError as error:
-        raise ModuleError(f"{file} can't be written: {error.strerror}") from None
+        raise ModuleError(f"{file} cannot be written: {error.strerror}") from None
 
 
 def _write(where: IO[bytes], sound: Sound) -> None:

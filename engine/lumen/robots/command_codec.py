@@ -77,7 +77,7 @@ def _decode(p: CommandParameters) -> RobotCommand | Language:
     if motion := motions.get(p.method) or motions.get(MOTION_NAMES_2015.get(p.method, "")):
         return Perform(motion)
     if p.method in UNSUPPORTED_METHODS:
-        raise BadCommandError(f"`{p.method}` can't be done with this robot")
+        raise BadCommandError(f"this robot cannot do `{p.method}`")
     known = [*_METHODS, *MOTION_NAMES_2015, *p.project.motions]
     raise BadCommandError(f"there is no method `{shown(p.method)}`: {did_you_mean(shown(p.method), known)}")
 
@@ -92,7 +92,7 @@ def _change_angles(p: CommandParameters) -> Aim:
     changes = p.joints()
     pose = p.pose()
     if missing := [name for name in changes if name not in pose]:
-        raise RobotRefusedError(f"nobody knows where `{missing[0]}` stands")
+        raise RobotRefusedError(f"the angle of `{missing[0]}` is unknown")
     return aimed(p, {name: pose[name] + change for name, change in changes.items()})
 
 

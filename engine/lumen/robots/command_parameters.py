@@ -40,7 +40,7 @@ class CommandParameters:
         if value is None and default is not None:
             return default
         if not isinstance(value, str):
-            raise BadCommandError(f"the parameter `{name}` of `{self.method}` has to be a text")
+            raise BadCommandError(f"the parameter `{name}` of `{self.method}` must be a text")
         return value.strip()
 
     def language(self, name: str) -> str:
@@ -49,7 +49,7 @@ class CommandParameters:
         code = LANGUAGES_2015.get(given, given)
         if code and code not in self.project.languages:
             hint = did_you_mean(code, self.project.languages)
-            raise BadCommandError(f"the language `{shown(given)}` is not spoken here: {hint}")
+            raise BadCommandError(f"the robot does not speak `{shown(given)}`: {hint}")
         return code
 
     def turn(self) -> float:
@@ -76,7 +76,7 @@ class CommandParameters:
 def lowered(data: Any, what: str) -> dict[str, Any]:
     """An object with its keys in small letters."""
     if not isinstance(data, Mapping):
-        raise BadCommandError(f"{what} has to be an object with names and values")
+        raise BadCommandError(f"{what} must be an object with names and values")
     return {str(key).lower(): value for key, value in data.items()}
 
 
@@ -88,7 +88,7 @@ def shown(text: str) -> str:
 def number(value: Any, what: str) -> float:
     """A number of moderate size."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MAX_MAGNITUDE:
-        raise BadCommandError(f"{what} has to be a number")
+        raise BadCommandError(f"{what} must be a number")
     return float(value)
 
 

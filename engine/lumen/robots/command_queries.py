@@ -10,7 +10,7 @@ from lumen.robots.command_parameters import shown
 from lumen.robots.command_reports import CANCELLED, UNKNOWN_COMMAND, CommandRecord, CommandReports
 from lumen.robots.person_hold import PersonHold
 
-SOMEBODY = "somebody on the bus"
+SOMEBODY = "a program on the bus"
 
 _log = logging.getLogger(__name__)
 
@@ -60,7 +60,7 @@ class CommandQueries:
         id = own_id(message.body.get("parameter"))
         if not id:
             _log.warning("a command was refused: `%s` needs the `id` of a command", method)
-            self._reply(message, "command failed: which command? `id` names it")
+            self._reply(message, "command failed: name the command with `id`")
             return
         record = self._reports.asked(id, message.sender)
         cancelled = method == "cancel"

@@ -51,9 +51,9 @@ MAX_BACKLOG = 15.0
 """How long about a command may have to wait for those before it [s]; what comes then is refused."""
 MAX_SPEECH = 60.0
 """How long about a text may take to say [s]."""
-ENDED = "the robot takes no more commands"
-ID_TAKEN = "its sender gave another command that id before: give each an id of its own"
-RESTARTED = "the robot was restarted since it began that"
+ENDED = "the robot accepts no more commands"
+ID_TAKEN = "its sender has used that id for another command: give each command its own id"
+RESTARTED = "the robot has restarted since it began that command"
 
 OWN = "b"
 """The prefix of the ids of commands from a brain in another process."""
@@ -175,7 +175,7 @@ class CommandReceiver:
             try:
                 self._undo[route] = self._listen(route)
             except BusError as error:
-                _log.warning("commands are still taken under `%s`: %s", key, error)
+                _log.warning("commands are still accepted on `%s`: %s", key, error)
                 continue
             undo()
 
@@ -277,7 +277,7 @@ class CommandReceiver:
             self._warn(message.key, record.method, str(error))
             self._reports.change(record, FAILED, str(error))
         except Exception:
-            self._reports.change(record, FAILED, "the robot's server failed on it")
+            self._reports.change(record, FAILED, "the robot's server failed on this command")
             raise
 
     def _warn(self, key: str, method: str, reason: str) -> None:
@@ -336,9 +336,9 @@ class CommandReceiver:
         takes = row_of(command).duration(command)
         record.parts, record.takes = parts_of(command, self._project.body), takes if isfinite(takes) else 0.0
         if isinstance(command, Say) and takes > MAX_SPEECH:
-            raise RobotRefusedError(f"a text takes at most {MAX_SPEECH:g} s to say, and this one {takes:.0f} s")
+            raise RobotRefusedError(f"this text takes {takes:.0f} s to say: send one of at most {MAX_SPEECH:g} s")
         if (ahead := self._reports.ahead(record.parts)) > MAX_BACKLOG:
-            raise RobotRefusedError(f"what waits before it takes {ahead:.0f} s already: send it later, or `stop` that")
+            raise RobotRefusedError(f"the commands before it take {ahead:.0f} s: send it later, or `stop` them")
 
     def _clear(self, command: RobotCommand) -> None:
         """End what is of the same kind: this one is to take its place."""

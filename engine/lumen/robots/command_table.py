@@ -92,7 +92,7 @@ def _posture(p: CommandParameters) -> Posture:
 
 def _check_posture(command: Posture, body: Body) -> None:
     if not 0 < command.speed <= 1:
-        raise BadCommandError(f"a speed lies above 0 and up to 1, not at {command.speed}")
+        raise BadCommandError(f"a speed must be above 0 and at most 1, not {command.speed}")
     if command.name not in body.postures:
         hint = did_you_mean(command.name, body.postures, "it knows")
         raise BadCommandError(f"no posture `{command.name}`: {hint}")
@@ -100,7 +100,7 @@ def _check_posture(command: Posture, body: Body) -> None:
 
 def _check_lights(command: Leds, body: Body) -> None:
     if not 0 <= command.duration <= MAX_FADE_DURATION:
-        raise BadCommandError(f"lights take from 0 to {MAX_FADE_DURATION:g} s, not {command.duration:g} s")
+        raise BadCommandError(f"lights must take 0 to {MAX_FADE_DURATION:g} s, not {command.duration:g} s")
     if not command.colours:
         raise BadCommandError("`leds` needs at least one light")
     for group, colour in command.colours.items():
@@ -121,7 +121,7 @@ def _leds(p: CommandParameters) -> Leds:
 
 def _check_volume(command: Volume, body: Body) -> None:
     if not 0 <= command.level <= 1:
-        raise BadCommandError(f"a volume lies between 0 and 1, not at {command.level:g}")
+        raise BadCommandError(f"a volume must be between 0 and 1, not {command.level:g}")
 
 
 def _volume(p: CommandParameters) -> Volume:
@@ -132,14 +132,14 @@ def _volume(p: CommandParameters) -> Volume:
 
 def _check_sound(command: PlaySound, body: Body) -> None:
     if not 0 <= command.length <= MAX_SOUND_DURATION:
-        raise BadCommandError(f"a sound takes from 0 to {MAX_SOUND_DURATION:g} s, not {command.length:g} s")
+        raise BadCommandError(f"a sound must last 0 to {MAX_SOUND_DURATION:g} s, not {command.length:g} s")
     if (
         not command.file
         or not command.file.isprintable()
         or command.file[:1] in "/\\"
         or ".." in command.file.replace("\\", "/").split("/")
     ):
-        raise BadCommandError(f"`{shown(command.file)}` is no file within the project")
+        raise BadCommandError(f"`{shown(command.file)}` is not a file of the project")
 
 
 def _sound(p: CommandParameters) -> PlaySound:
@@ -177,7 +177,7 @@ def _record(p: CommandParameters) -> Record:
     duration = p.number("duration", RECORDING_DURATION)
     if not 0.1 <= duration <= MAX_RECORDING_DURATION:
         longest = f"{MAX_RECORDING_DURATION:g} s"
-        raise BadCommandError(f"the `duration` of `record` lies between 0.1 and {longest}, not at {duration:g}")
+        raise BadCommandError(f"the `duration` of `record` must be between 0.1 and {longest}, not at {duration:g}")
     return Record(shown(p.text("recordingname", "recording")), duration)
 
 

@@ -84,7 +84,7 @@ class DeduplicationLog:
         except OSError as error:
             if not self._warned:
                 self._warned = True
-                _log.warning("which commands were begun can't be kept in %s: %s", self._file, error.strerror)
+                _log.warning("the list of begun commands cannot be written to %s: %s", self._file, error.strerror)
 
 
 def _line(command: BegunCommand) -> str:

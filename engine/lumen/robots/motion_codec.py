@@ -32,7 +32,7 @@ def decode_motion(data: Any, body: Body) -> MotionDefinition:
     Raises RobotError for what is no motion, for joints and postures that the body lacks, and for angles beyond limits.
     """
     if not isinstance(data, Mapping):
-        raise BadCommandError("a `motion` has to be an object with `name`, `duration` and `tracks`")
+        raise BadCommandError("a `motion` must be an object with `name`, `duration` and `tracks`")
     name, tracks, cues = data.get("name"), data.get("tracks"), data.get("cues", [])
     if not isinstance(name, str) or not isinstance(tracks, Mapping) or not isinstance(cues, list):
         raise BadCommandError("a `motion` needs a `name`, and `tracks` with the keys of each joint")
@@ -41,11 +41,11 @@ def decode_motion(data: Any, body: Body) -> MotionDefinition:
         raise BadCommandError(f"`{name}` has more than {MAX_MOTION_KEYS:,} keys and cues")
     duration = _number(data.get("duration"), f"the `duration` of `{name}`")
     if not 0.0 <= duration <= MAX_MOTION_DURATION:
-        raise BadCommandError(f"`{name}` may take from 0 to {MAX_MOTION_DURATION:g} s, not {duration:g} s")
+        raise BadCommandError(f"`{name}` must take 0 to {MAX_MOTION_DURATION:g} s, not {duration:g} s")
     start, end = (_posture(data.get(key, ""), body) for key in ("start", "end"))
     origin = data.get("origin", {})
     if not isinstance(origin, Mapping):
-        raise BadCommandError(f"the `origin` of `{name}` has to be angles by joint")
+        raise BadCommandError(f"the `origin` of `{name}` must be an angle for each joint")
     return MotionDefinition(
         name,
         duration,
@@ -66,17 +66,17 @@ def _track(joint: str, keys: Any, body: Body) -> tuple[Keyframe, ...]:
     found = tuple(_key(joint, row, body) for row in keys) if isinstance(keys, list) else ()
     times = [0.0, *(key.time for key in found)]
     if not found or any(after <= before for before, after in pairwise(times)):
-        raise BadCommandError(f"the keys of `{joint}` need times above 0 that increase")
+        raise BadCommandError(f"the times of the keys of `{joint}` must be above 0 and increase")
     return found
 
 
 def _key(joint: str, row: Any, body: Body) -> Keyframe:
     if not isinstance(row, list) or not 2 <= len(row) <= 7 or len(row) in (4, 6):
-        raise BadCommandError(f"a key of `{joint}` is a list of its time, angle, interpolation and handles")
+        raise BadCommandError(f"a key of `{joint}` must be a list of its time, angle, interpolation and handles")
     time, angle = _number(row[0], f"a time of `{joint}`"), _angle(joint, row[1], body)
     if len(row) > 2 and row[2] not in list(Interpolation):
         raise BadCommandError(
-            f"`{joint}` can't be moved by `{str(row[2])[:40]}`: {did_you_mean(str(row[2]), Interpolation)}"
+            f"there is no interpolation `{str(row[2])[:40]}` for `{joint}`: {did_you_mean(str(row[2]), Interpolation)}"
         )
     kind = Interpolation(row[2]) if len(row) > 2 else Interpolation.MINIMUM_JERK
     handles = [_number(value, f"a handle of `{joint}`") for value in row[3:]] + [0.0] * (7 - max(len(row), 3))
@@ -85,7 +85,7 @@ def _key(joint: str, row: Any, body: Body) -> Keyframe:
 
 def _cue(cue: Any, name: str) -> Cue:
     if not isinstance(cue, list) or len(cue) != 3 or not isinstance(cue[1], str):
-        raise BadCommandError(f"a cue of `{name}` is a list of its time, kind and value")
+        raise BadCommandError(f"a cue of `{name}` must be a list of its time, kind and value")
     return Cue(_number(cue[0], f"the time of a cue of `{name}`"), cue[1], cue[2])
 
 
@@ -98,7 +98,9 @@ def _joint(joint: Any, body: Body) -> str:
 def _angle(joint: str, angle: Any, body: Body) -> float:
     value, limit = _number(angle, f"an angle of `{joint}`"), body.joints[_joint(joint, body)]
     if not limit.minimum - LIMIT_TOLERANCE <= value <= limit.maximum + LIMIT_TOLERANCE:
-        raise BadCommandError(f"`{joint}` reaches from {limit.minimum:.3f} to {limit.maximum:.3f} rad, not {value:.3f}")
+        raise BadCommandError(
+            f"`{joint}` moves from {limit.minimum:.3f} to {limit.maximum:.3f} rad, not to {value:.3f}"
+        )
     return value
 
 
@@ -110,5 +112,5 @@ def _posture(name: Any, body: Body) -> str:
 
 def _number(value: Any, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        raise BadCommandError(f"{what} has to be a number")
+        raise BadCommandError(f"{what} must be a number")
     return float(value)

@@ -170,7 +170,7 @@ class RobotServer:
         deadline = time.monotonic() + SENSES_CLOSE_TIMEOUT
         ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
         if not all(ended):
-            _log.warning("a sense still works %g s after it was closed", SENSES_CLOSE_TIMEOUT)
+            _log.warning("a sense is still running %g s after it was closed", SENSES_CLOSE_TIMEOUT)
 
     def _given(self, command: RobotCommand, id: str) -> None:
         self._started(command, id)
@@ -180,7 +180,7 @@ class RobotServer:
         try:
             publish_on(self._bus, self._project, route, body, origin=origin)
         except BusError as error:
-            _log.warning("what the robot publishes on `%s` was not sent: %s", route, error)
+            _log.warning("a message of the robot on `%s` was not sent: %s", route, error)
 
     def _wanted(self, route: Route) -> bool:
         """Whether it is to be read for this route: nobody draws a picture, or packs angles, that nobody takes."""

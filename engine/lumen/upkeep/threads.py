@@ -67,7 +67,7 @@ class WatchedThread:
     def revive(self) -> None:
         """Begin it again where it has died without ending its work; from a thread that watches over it."""
         if self.started and not self.is_alive() and not self._ending.is_set() and not self.lost:
-            _log.error("the thread `%s` is dead, and begun again", self.name)
+            _log.error("the thread `%s` has died and is started again", self.name)
             if self._again("it died"):
                 self._begin()
 
@@ -98,7 +98,9 @@ class WatchedThread:
         self._faults.append(now)
         recent = sum(now - at < FAULT_PERIOD for at in self._faults)
         if recent >= MAX_FAULTS:
-            self.lost = f"the thread `{self.name}` failed {recent} times within {FAULT_PERIOD:g} s, at last: {why}"
+            self.lost = (
+                f"the thread `{self.name}` failed {recent} times within {FAULT_PERIOD:g} s, last because of: {why}"
+            )
             _log.error("%s", self.lost)
             return False
         return not self._ending.wait(FIRST_PAUSE * 2 ** (recent - 1))

@@ -35,7 +35,7 @@ class LocalAddress:
         try:
             return LocalAddress(str(data["path"]), int(data["port"]), str(data["key"]))
         except (KeyError, TypeError, ValueError, OverflowError) as error:
-            raise BusAddressError(f"this is no address: {error!r}") from None
+            raise BusAddressError(f"this is not an address: {error!r}") from None
 
     def connect(self) -> socket.socket:
         """A connection to whoever listens there; raises OSError where nobody does."""

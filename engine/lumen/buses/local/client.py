@@ -76,7 +76,7 @@ class LocalBusClient:
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
-            raise BusClosedError("the bus is closed: nobody can subscribe any more")
+            raise BusClosedError("the bus is closed: subscribing is no longer possible")
         check_subscription(pattern, handler)
         number = next(self._numbers)
         answered, reason = self._answers[number] = (threading.Event(), [])
@@ -85,7 +85,7 @@ class LocalBusClient:
         if not answered.wait(ANSWER_TIMEOUT) or reason != [""]:
             del self._handlers[number]
             kind = BusClosedError if self.gone.is_set() else BusRefusedError
-            raise kind(reason[0] if reason else f"the exhibition does not let us read `{pattern}`")
+            raise kind(reason[0] if reason else f"the exhibition refuses the subscription to `{pattern}`")
 
         def undo() -> None:
             if self._handlers.pop(number, None) and not self._closed:
@@ -104,7 +104,7 @@ class LocalBusClient:
         origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
-            raise BusClosedError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: publishing is no longer possible")
         for name in (key, reply_to, correlation_id):
             check_key(name)
         if self.gone.is_set():
@@ -223,15 +223,15 @@ def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
             case ["prove", str(theirs)]:
                 wire.sendall(frame("proof", proof(address.key, CLIENT, theirs), question))
             case _:
-                raise BadFrameError("it does not ask who we are")
+                raise BadFrameError("it does not ask for a proof of the key")
         match _next(wire, buffer):
             case ["proof", given] if proves(given, address.key, SERVER, question):
                 wire.settimeout(None)
                 return wire, buffer
-        raise BadFrameError("it does not know the key")
+        raise BadFrameError("it has not proved that it has the key")
     except (OSError, BadFrameError, json.JSONDecodeError) as error:
         wire.close()
-        raise BusRefusedError(f"what listens there is not the exhibition: {error}") from None
+        raise BusRefusedError(f"the program at that address is not the exhibition: {error}") from None
 
 
 def _next(wire: socket.socket, buffer: bytearray) -> list[Any]:

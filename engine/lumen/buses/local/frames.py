@@ -55,7 +55,7 @@ def _words(data: bytes) -> list[Any]:
     except (ValueError, RecursionError) as error:
         raise BadFrameError(str(error)) from None
     if not isinstance(words, list) or not words or not isinstance(words[0], str):
-        raise BadFrameError("a frame is a list that begins with a word")
+        raise BadFrameError("a frame must be a list that begins with a word")
     return words
 
 

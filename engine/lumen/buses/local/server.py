@@ -159,7 +159,9 @@ class LocalBusServer:
         except OSError:
             self._disconnect(client)
         except Exception as error:  # whatever a frame can cause costs the client that sent it, and never the thread
-            _log.warning("a process that sent nonsense to the exhibition was disconnected: %s", str(error)[:200])
+            _log.warning(
+                "a process was disconnected because it sent an invalid message to the exhibition: %s", str(error)[:200]
+            )
             self._disconnect(client)
 
     def _take(self, client: ClientConnection, words: list[Any]) -> None:
@@ -171,7 +173,7 @@ class LocalBusServer:
                 client.known = True
                 client.send(frame("proof", proof(self.address.key, SERVER, str(question))))
             case _ if not client.known:
-                raise ValueError("it does not know the key")
+                raise ValueError("it has not proved that it has the key")
             case ["subscribe", int(number), str(pattern)]:
                 self._subscribe(client, number, pattern)
             case ["unsubscribe", int(number)] if number in client.undo:
@@ -191,13 +193,16 @@ class LocalBusServer:
 
     def _subscribe(self, client: ClientConnection, number: int, pattern: str) -> None:
         if number in client.undo or len(client.undo) >= MAX_SUBSCRIPTIONS:
-            raise ValueError("too many subscriptions, or one twice")
+            raise ValueError("too many subscriptions, or the same one twice")
 
         def arrived(message: Message) -> None:
             if message.key == FLUSH_MARK:
                 return
             self._drops.push(
-                client.arrived, (number, message), lambda waiting: waiting[1].key, "who reads them is too slow"
+                client.arrived,
+                (number, message),
+                lambda waiting: waiting[1].key,
+                "the process that reads them is too slow",
             )
             self._wake_up()
 

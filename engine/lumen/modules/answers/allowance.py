@@ -21,9 +21,9 @@ class Allowance:
         if visit != self._visit:
             self._visit, self._asked = visit, 0
         if len(self._times) >= self.hour:
-            return f"the language model was asked {self.hour} questions in this hour: no more are asked"
+            return f"the language model has had {self.hour} questions this hour, the most that are allowed"
         if self._asked >= self.visitor:
-            return f"this visitor has asked the language model {self.visitor} questions: no more are asked"
+            return f"this visitor has asked the language model {self.visitor} questions, the most that are allowed"
         self._times.append(now)
         self._asked += 1
         return ""

@@ -68,7 +68,7 @@ class Answers(Module):
             case {"id": str(id), "question": str(), "language": str(), "within": int() | float() as within}:
                 asked: Mapping[str, Any] = message.body
             case _:
-                raise ModuleError(f"a body with `id`, `question`, `language` and `within` is expected on {message.key}")
+                raise ModuleError(f"a body with `id`, `question`, `language` and `within` is required on {message.key}")
         try:
             visit = asked.get("visit", 0)
             if reason := self._allowance.refusal(visit if isinstance(visit, int) else 0, began):
@@ -131,7 +131,7 @@ class Answers(Module):
     def _say(self, id: str, sentence: str, asked: Mapping[str, Any], passages: list[str]) -> None:
         """Have a sentence said. Raises ModuleError where it may not be: nothing that comes after it is, either."""
         if reason := refusal(sentence, asked["language"], passages, (self.project.robot,)):
-            raise ModuleError(f"a sentence of the language model is not said: {reason}")
+            raise ModuleError(f"a sentence of the language model is not spoken: {reason}")
         body = {"id": id, "text": sentence, "language": asked["language"], "source": "model", "more": True}
         self.publish("answer", body)
 
@@ -143,7 +143,7 @@ class Answers(Module):
             event, schema = offers[call.name]
             data = _arguments(call)
             if not JsonSchema({"type": "object", **schema}).fits(data):
-                raise ModuleError(f"the language model calls `{event}` with data that does not fit its schema")
+                raise ModuleError(f"the language model calls `{event}` with data that does not match its schema")
             self.publish("answer", {"id": id, "raise": {"event": event, "data": data}})
             return
 
@@ -160,5 +160,5 @@ def _arguments(call: Call) -> dict[str, Any]:
         except (ValueError, RecursionError):
             found = None
     if not isinstance(found, dict):
-        raise ModuleError(f"the language model calls `{call.name[:40]}` with arguments that are no JSON object")
+        raise ModuleError(f"the language model calls `{call.name[:40]}` with arguments that are not a JSON object")
     return found

@@ -50,7 +50,7 @@ class Chat:
     def _choice(self, data: Any, key: str) -> Iterator[Piece]:
         choices = data.get("choices") if isinstance(data, dict) else None
         if not isinstance(choices, list):
-            raise ModuleError("the language model answers something else than a chat completion")
+            raise ModuleError("the language model's answer is not a chat completion")
         for choice in choices[:1]:
             said = choice.get(key) if isinstance(choice, dict) else None
             if isinstance(said, dict):
@@ -93,4 +93,4 @@ def _json(text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
-        raise ModuleError("the language model answers no JSON") from None
+        raise ModuleError("the language model's answer is not JSON") from None

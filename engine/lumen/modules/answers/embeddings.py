@@ -99,7 +99,7 @@ class Embeddings:
             self._kept |= zip(batch, self.source.vectors(batch, self._deadline, self._wanted), strict=True)
         if len({len(self._kept[text]) for text in texts}) > 1:
             self._kept.clear()
-            raise ModuleError("the embeddings are vectors of different lengths")
+            raise ModuleError("the embeddings have different lengths")
         return [self._kept[text] for text in texts]
 
 

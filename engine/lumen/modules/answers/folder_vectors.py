@@ -17,7 +17,7 @@ PLACES = ("", "0_StaticEmbedding")
 """Where in the folder both files may lie."""
 ROWS = ("embeddings", "embedding.weight")
 """What the tensor with a row for each token is called."""
-WANTED = "what Model2Vec saves is wanted, tokenizer.json and model.safetensors with static embeddings"
+WANTED = "name a folder that Model2Vec has saved, with tokenizer.json and model.safetensors"
 BATCH = 256
 
 
@@ -59,7 +59,7 @@ def _loaded(folder: Path) -> _Static:
         from safetensors.numpy import load_file
         from tokenizers import Tokenizer
     except ImportError as error:
-        raise ModuleError(f"embeddings of a folder need {error.name}: {INSTALL}") from None
+        raise ModuleError(f"embeddings from a folder need {error.name}: {INSTALL}") from None
     place = next((folder / each for each in PLACES if (folder / each / "model.safetensors").is_file()), folder)
     try:
         tensors = load_file(place / "model.safetensors")
@@ -69,9 +69,9 @@ def _loaded(folder: Path) -> _Static:
         mapping = tensors.get("mapping", np.arange(len(rows))).astype(np.intp)
         weights = tensors.get("weights", np.ones(len(mapping))).astype(np.float32)
         if rows.ndim != 2 or len(weights) != len(mapping) or mapping.max(initial=0) >= len(rows) or not rows.size:
-            raise ValueError("its tensors do not fit one another")
+            raise ValueError("its tensors do not match")
     except StopIteration:
         raise ModuleError(f"{place / 'model.safetensors'} has no {' or '.join(ROWS)}: {WANTED}") from None
     except Exception as error:  # tokenizers raises no other
-        raise ModuleError(f"the embeddings in {folder} can't be read ({error}): {WANTED}") from None
+        raise ModuleError(f"the embeddings in {folder} cannot be read ({error}): {WANTED}") from None
     return _Static(tokenizer, rows, weights, mapping)

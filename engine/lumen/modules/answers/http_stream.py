@@ -33,7 +33,7 @@ def answered(
     connection: socket.socket | None = None
     try:
         if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise ModuleError("the address of the language model is no http:// or https:// address")
+            raise ModuleError("the address of the language model must begin with http:// or https://")
         connection = _connected(parts.scheme, parts.hostname, parts.port, deadline)
         connection.settimeout(max(deadline - time.monotonic(), LOOK))
         connection.sendall(_request(parts.netloc.rpartition("@")[2], parts.path or "/", parts.query, body, secret))
@@ -43,11 +43,11 @@ def answered(
             raise ModuleError(f"the language model answers {response.status} {response.reason[:60]}".rstrip())
         yield response.headers.get_content_type(), _pieces(response)
     except ssl.SSLCertVerificationError:
-        raise ModuleError("the language model's certificate is not one that this machine trusts") from None
+        raise ModuleError("this machine does not trust the language model's certificate") from None
     except TimeoutError:
         raise ModuleError("the language model did not answer in time") from None
     except (OSError, HTTPException, ValueError) as error:
-        raise ModuleError(f"the language model can't be reached: {type(error).__name__}") from None
+        raise ModuleError(f"the language model cannot be reached: {type(error).__name__}") from None
     finally:
         if connection:
             connection.close()
@@ -112,4 +112,4 @@ class _BoundedReader(io.RawIOBase):
             if self._left < 0:
                 raise ModuleError(f"the language model sent more than {self._most} bytes")
             return count
-        raise ModuleError("nobody waits for the language model any more")
+        raise ModuleError("the answer of the language model is no longer needed")

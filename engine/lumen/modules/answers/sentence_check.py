@@ -89,7 +89,7 @@ def refusal(sentence: str, language: str, passages: Sequence[str], known: Sequen
 def _other_language(sentence: str, language: str) -> str:
     wanted = WORDS.get(language)
     if wanted is None:
-        return f"nobody here can tell whether it is in `{language}`"
+        return f"Lumen cannot check whether it is in `{language}`"
     if any(sign.isalpha() and not unicodedata.name(sign, "").startswith("LATIN") for sign in sentence):
         return f"it is not in `{language}`"
     said = _words(sentence.casefold())

@@ -31,4 +31,4 @@ class ServerVectors:
             found = {row["index"]: unit(row["embedding"]) for row in json.loads(content)["data"]}
             return [found[i] for i in range(len(texts))]
         except (ValueError, TypeError, KeyError, RecursionError, OverflowError):
-            raise ModuleError("the server of embeddings answers something else than a list of embeddings") from None
+            raise ModuleError("the embeddings server's answer is not a list of embeddings") from None

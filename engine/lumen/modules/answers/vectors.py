@@ -37,5 +37,5 @@ def unit(numbers: Sequence[float]) -> TextVector:
     """The same direction, of length 1. Raises ValueError where there is none."""
     length = sum(number * number for number in numbers) ** 0.5
     if not numbers or not 0.0 < length < float("inf"):
-        raise ValueError("a vector without a direction")
+        raise ValueError("the length of a vector must be above 0 and finite")
     return tuple(number / length for number in numbers)

@@ -13,7 +13,7 @@ LEAD = 1.0
 """So long before the face or the touch counts too [s]: who is near begins to speak, and then looks."""
 MAX_SPANS = 100
 """Stretches that are remembered; a sound lasts two minutes at most."""
-NO_DISTANCE = "faces come without a `distance`, so none is known to be near: take `within` out, or use the eyes here"
+NO_DISTANCE = "faces come without a `distance`, so `within` has no effect: delete it, or use Lumen's own eyes"
 Span = tuple[float, float]
 
 

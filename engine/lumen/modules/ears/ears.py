@@ -118,9 +118,7 @@ class Ears(Module):
         language = str(body.get("language") or self._recogniser.languages[0])
         if language.partition("-")[0] not in self._recogniser.languages:
             known = ", ".join(self._recogniser.languages)
-            raise ModuleError(
-                f"nobody understands the language `{language[:20]}` here, only {known}: type what was said"
-            )
+            raise ModuleError(f"the ears understand only {known}, not `{language[:20]}`: type what was said")
         found = self._heard(sound_of(body.get("content")))
         if found:
             date = datetime.now(UTC).isoformat(timespec="seconds")

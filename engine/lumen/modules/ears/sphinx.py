@@ -54,12 +54,14 @@ class Sphinx(RankingRecogniser):
         try:
             import pocketsphinx
         except ImportError as error:
-            raise ModuleError(f"speech needs PocketSphinx, which can't be imported ({error}): {INSTALL_EARS}") from None
+            raise ModuleError(
+                f"speech recognition needs PocketSphinx, which cannot be imported ({error}): {INSTALL_EARS}"
+            ) from None
         self._dictionary = Path(pocketsphinx.get_model_path("en-us/cmudict-en-us.dict"))
         try:
             self._decoder: Any = pocketsphinx.Decoder(samprate=SAMPLE_RATE, cmn="batch", loglevel="FATAL")
         except (RuntimeError, ValueError) as error:
-            raise ModuleError(f"PocketSphinx can't load its model ({error}): {INSTALL_EARS} again") from None
+            raise ModuleError(f"PocketSphinx cannot load its model ({error}): {INSTALL_EARS} again") from None
         self._freely = self._decoder.current_search()
         self._english = self._decoder.get_lm(self._freely)
         self._expected: Sequence[Sequence[str]] = ()

@@ -36,7 +36,7 @@ class Whisper(RankingRecogniser):
         self.languages = tuple(language for language in languages if language.partition("-")[0] in known)
         if not self.languages:
             raise ModuleError(
-                f"the model in {folder} understands none of {', '.join(languages)}: take one that is not only English"
+                f"the model in {folder} understands none of {', '.join(languages)}: use a multilingual model"
             )
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
@@ -75,20 +75,22 @@ def shared_whisper(folder: Path, languages: Sequence[str]) -> SharedRecogniser:
 def _loaded(folder: Path) -> Any:
     """The model of a folder, in eight bits on the processor. Raises ModuleError."""
     if not folder.is_dir():
-        raise ModuleError(f"`whisper` names the folder {folder}, which is not there: put a model of CTranslate2 there")
+        raise ModuleError(f"the folder {folder}, which `whisper` names, does not exist: put a CTranslate2 model there")
     missing = [name for name in FILES if not (folder / name).is_file()]
     if missing:
         how = "ct2-transformers-converter --model NAME --copy_files tokenizer.json preprocessor_config.json"
-        raise ModuleError(f"{folder} is no Whisper of CTranslate2, it has no {', '.join(missing)}: make one by `{how}`")
+        raise ModuleError(
+            f"{folder} is not a Whisper model for CTranslate2, because it has no {', '.join(missing)}: make one with `{how}`"
+        )
     try:
         from faster_whisper import WhisperModel
     except ImportError as error:
         raise ModuleError(
-            f"Whisper needs faster-whisper, which can't be imported ({error}): {INSTALL_WHISPER}"
+            f"Whisper needs faster-whisper, which cannot be imported ({error}): {INSTALL_WHISPER}"
         ) from None
     try:
         return WhisperModel(str(folder), device="cpu", compute_type="int8", local_files_only=True)
     except Exception as error:  # what a broken file raises is the engine's, the tokenizer's or json's own
         raise ModuleError(
-            f"faster-whisper can't load the model in {folder}: {str(error).splitlines()[0][:200]}"
+            f"faster-whisper cannot load the model in {folder}: {str(error).splitlines()[0][:200]}"
         ) from None

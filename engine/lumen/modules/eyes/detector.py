@@ -46,14 +46,14 @@ class PersonDetector:
         cv2 = self._cv2 = opencv()
         file = cascade or Path(cv2.data.haarcascades) / FACE_CASCADE
         if not file.is_file():
-            raise ModuleError(f"the face model {file} is missing: {INSTALL_EYES}; OpenCV 5 does not carry it any more")
+            raise ModuleError(f"the face model {file} is missing: {INSTALL_EYES}; OpenCV 5 no longer includes it")
         self._faces = cv2.CascadeClassifier()
         try:
             loaded = self._faces.load(str(file))
         except cv2.error:
             loaded = False
         if not loaded:
-            raise ModuleError(f"the face model {file} can't be loaded: {INSTALL_EYES} again")
+            raise ModuleError(f"the face model {file} cannot be loaded: {INSTALL_EYES} again")
         self._people = cv2.HOGDescriptor()
         self._people.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 

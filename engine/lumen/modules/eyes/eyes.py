@@ -69,7 +69,9 @@ class Eyes(Module):
         self._head = ""
         self._window = Window(options["window"]) if "window" in options else None
         if self._window:
-            self._tell(f"what they see: {self._window.address}")  # on this terminal only: nobody else is to have it
+            self._tell(
+                f"see their picture at {self._window.address}"
+            )  # on this terminal only: nobody else is to have it
 
     def hears(self) -> Mapping[str, MessageHandler]:
         heard: dict[str, MessageHandler] = {"visual_command": self._enrol, "forgotten": self._forget}
@@ -126,7 +128,7 @@ class Eyes(Module):
         if frame is None:
             self._source.close()
             self._source = None
-            raise ModuleError("the video is over: nothing is seen any more")
+            raise ModuleError("the video has ended: the eyes see nothing now")
         now = time.monotonic()
         if now - self._looked >= self._every:
             self._looked = now
@@ -178,15 +180,13 @@ class Eyes(Module):
         self._gallery.enrol(self._learning, frame.grey, face)
         self._left -= 1
         if not self._left:
-            self._tell(f"knows {self._learning} by now")
+            self._tell(f"has learnt the face of {self._learning}")
 
     def _enrol(self, message: Message) -> None:
         """Whose face the next ones are; a bare name, as in 2015."""
         name = message.body.strip() if isinstance(message.body, str) else ""
         if not name or len(name) > MAX_NAME_CHARACTERS or not name.isprintable():
-            raise ModuleError(
-                f"a name of up to {MAX_NAME_CHARACTERS} characters is expected on {message.key}, and nothing else"
-            )
+            raise ModuleError(f"a name of up to {MAX_NAME_CHARACTERS} characters is required on {message.key}")
         self._learning, self._left = name, MAX_PICTURES_PER_NAME
 
     def _forget(self, message: Message) -> None:

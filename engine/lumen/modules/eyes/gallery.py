@@ -53,7 +53,7 @@ class FaceGallery:
             del self._faces[mine[0]]
         if len(self._faces) >= MAX_PICTURES:
             raise ModuleError(
-                f"{MAX_PICTURES} pictures of faces are known: forget somebody before `{name}` can be learnt"
+                f"the gallery is full, with {MAX_PICTURES} pictures of faces: forget a visitor, then learn `{name}`"
             )
         self._faces.append((name, self._clock(), self._cut(grey, face)))
         self._save()
@@ -116,7 +116,7 @@ class FaceGallery:
                 file.write(data.getvalue())
             os.replace(draft, self._file)
         except OSError as error:
-            raise ModuleError(f"{self._file} can't be written: {error.strerror}") from None
+            raise ModuleError(f"{self._file} cannot be written: {error.strerror}") from None
 
 
 def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
@@ -128,5 +128,5 @@ def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
         if faces.shape != (len(names), FACE_SIZE, FACE_SIZE) or faces.dtype != np.uint8 or len(times) != len(names):
             raise ValueError
     except Exception:  # a damaged file raises whatever zip, numpy and the disk do
-        raise ModuleError(f"{file} holds no faces, or is damaged: move it away, and names are learnt anew") from None
+        raise ModuleError(f"{file} holds no faces or is damaged: move it away, then teach the names again") from None
     return zip(map(str, names), map(float, times), faces, strict=True)

@@ -12,12 +12,10 @@ def opencv() -> ModuleType:
     try:
         import cv2
     except ImportError as error:
-        raise ModuleError(f"the eyes need OpenCV, which can't be imported ({error}): {INSTALL_EYES}") from None
+        raise ModuleError(f"the eyes need OpenCV, which cannot be imported ({error}): {INSTALL_EYES}") from None
     for part in ("CascadeClassifier", "HOGDescriptor", "face"):
         if not hasattr(cv2, part):
-            raise ModuleError(
-                f"this OpenCV ({cv2.__version__}) has no `{part}`: {INSTALL_EYES}, without another OpenCV"
-            )
+            raise ModuleError(f"this OpenCV ({cv2.__version__}) has no `{part}`: uninstall it, then {INSTALL_EYES}")
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what it has to say is said by us, in one line
     cv2.setNumThreads(1)  # the robot's physics and the behaviour want the other cores
     module: ModuleType = cv2

@@ -30,11 +30,11 @@ def frame_of(body: Any) -> Frame:
     """The frame in the body of an image. Raises ModuleError for one that is none, or of no sensible size."""
     url = body.get("contentUrl") if isinstance(body, dict) else None
     if not isinstance(url, str) or not url.startswith("data:image/"):
-        raise ModuleError("an image has no `contentUrl` that begins with `data:image/`: it is not looked at")
+        raise ModuleError("an image is ignored: its `contentUrl` must begin with `data:image/`")
     try:
         data = url.data if isinstance(url, DataUrl) else base64.b64decode(url.partition(",")[2], validate=True)
     except (binascii.Error, ValueError):
-        raise ModuleError("the `contentUrl` of an image is no base64: it is not looked at") from None
+        raise ModuleError("an image is ignored: its `contentUrl` is not base64") from None
     time = body.get("time")
     return Frame(_grey(data), float(time) if isinstance(time, int | float) else None)
 
@@ -50,7 +50,7 @@ def _grey(data: bytes) -> "Grey":
     except ModuleError:
         raise
     except Exception as error:  # Pillow raises whatever its decoders do
-        raise ModuleError(f"an image can't be read, {type(error).__name__}: it is not looked at") from None
+        raise ModuleError(f"an image is ignored: it cannot be read ({type(error).__name__})") from None
     return grey
 
 
@@ -58,4 +58,4 @@ def check_size(width: int, height: int) -> None:
     """Raises ModuleError where nobody could be found in a picture of that size [px], or it would take too long."""
     if not (MIN_PICTURE_SIZE <= width <= MAX_PICTURE_SIZE and MIN_PICTURE_SIZE <= height <= MAX_PICTURE_SIZE):
         bounds = f"between {MIN_PICTURE_SIZE} and {MAX_PICTURE_SIZE}"
-        raise ModuleError(f"an image is {width} x {height} px, and has to lie {bounds} either way")
+        raise ModuleError(f"an image is {width} x {height} px: its width and height must be {bounds}")

@@ -22,12 +22,16 @@ class VideoSource:
         self.live = isinstance(camera, int)
         what: Any = camera if isinstance(camera, int) else str(root / camera)
         if not self.live and not Path(what).is_file():
-            raise ModuleError(f"there is no video {what}: `camera` is `robot`, the number of a webcam or a video file")
+            raise ModuleError(
+                f"there is no video {what}: set `camera` to `robot`, the number of a webcam, or a video file"
+            )
         self._what = f"webcam {camera}" if self.live else what
         self._capture = cv2.VideoCapture(what)
         if not self._capture.isOpened():
             self._capture.release()
-            raise ModuleError(f"{self._what} can't be opened" + ("" if self.live else ": it is no video that is known"))
+            raise ModuleError(
+                f"{self._what} cannot be opened" + ("" if self.live else ": its video format is not supported")
+            )
         rate = self._capture.get(cv2.CAP_PROP_FPS)
         self.period = 1.0 / rate if 1.0 <= rate <= 240.0 else 1.0 / 30.0
 

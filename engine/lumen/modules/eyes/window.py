@@ -33,7 +33,7 @@ class Window:
         try:
             self._server = WindowServer(port, self.serve)
         except (OSError, OverflowError) as error:
-            raise ModuleError(f"the eyes' window can't be opened on port {port}: {error}") from None
+            raise ModuleError(f"the eyes' window cannot be opened on port {port}: {error}") from None
         self.address = self._server.address
         self._thread = WatchedThread("lumen-window", self._server.serve_forever)
         self._thread.start()

@@ -148,7 +148,7 @@ class Store:
         busy = self._do(lambda db: db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0])
         if busy:
             raise ModuleError(
-                f"{self._file} is read by another program, and keeps what was deleted until that is closed"
+                f"{self._file} is open in another program: close that program to remove the deleted entries from the file"
             )
         self._unclean = False
 
@@ -178,19 +178,19 @@ class Store:
         file = self._file or "the database"
         text = str(error)
         if "locked" in text or "busy" in text:
-            return f"{file} is locked by another program: close that, what happens meanwhile is kept and written then"
+            return f"{file} is locked by another program: close that program; Lumen keeps new entries and writes them afterwards"
         if text.startswith(NEWER_TABLES):
-            return f"{file} was written by a newer Lumen: use that one, or move the file away, and a new one is begun"
+            return f"{file} was written by a newer Lumen: use that version, or move the file away to start a new one"
         if "not a database" in text or "malformed" in text:
-            return f"{file} is no SQLite database, or is damaged: move it away, and a new one is begun"
+            return f"{file} is not an SQLite database or is damaged: move it away to start a new one"
         if (
             "no such column" in text
             or "has no column" in text
             or "values for" in text
             or "values were supplied" in text
         ):
-            return f"{file} is a database of something else: move it away, and a new one is begun"
-        return f"{file} can't be written: {getattr(error, 'strerror', None) or text}"
+            return f"{file} is a database of another program: move it away to start a new one"
+        return f"{file} cannot be written: {getattr(error, 'strerror', None) or text}"
 
 
 def _delete(db: sqlite3.Connection, key: str) -> Forgotten:

@@ -22,7 +22,7 @@ def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
     try:
         return bytes(builder.build().dgram)
     except (BuildError, UnicodeEncodeError, OverflowError) as error:
-        raise ModuleError(f"it can't be written as OSC: {error}") from None
+        raise ModuleError(f"it cannot be written as OSC: {error}") from None
 
 
 def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
@@ -30,7 +30,7 @@ def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
     try:
         return [(timed.message.address, list(timed.message.params)) for timed in OscPacket(data).messages]
     except (ParseError, RecursionError, ValueError, IndexError, OverflowError) as error:
-        raise ModuleError(f"it is no OSC: {error}") from None
+        raise ModuleError(f"it is not OSC: {error}") from None
 
 
 def body_of_arguments(arguments: Sequence[Any], fields: Sequence[SchemaField]) -> dict[str, Any]:
@@ -54,7 +54,7 @@ def _argument(field: SchemaField, value: Any) -> tuple[str, Any]:
         case FieldKind.STRING if isinstance(value, str) and "\0" not in value:
             return OscMessageBuilder.ARG_TYPE_STRING, value
     raise ModuleError(
-        f"`{field.name}` can't be an argument of OSC: it is no {field.kind or 'number, text or yes or no'}"
+        f"`{field.name}` cannot be an OSC argument: its type must be {field.kind or 'number, string or boolean'}"
     )
 
 
@@ -70,4 +70,6 @@ def _value(field: SchemaField, value: Any) -> Any:
             return bool(value)
         case FieldKind.STRING if isinstance(value, str):
             return value
-    raise ModuleError(f"its argument for `{field.name}` is no {field.kind or 'value that the route can have'}")
+    raise ModuleError(
+        f"its argument for `{field.name}` has the wrong type: it must be {field.kind or 'number, string or boolean'}"
+    )

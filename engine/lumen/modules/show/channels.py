@@ -21,7 +21,7 @@ def channel_level(value: Any, field: SchemaField) -> int:
     if isinstance(value, bool):
         return FULL * value
     if not isinstance(value, int | float):
-        raise ModuleError(f"`{field.name}` is no number")
+        raise ModuleError(f"`{field.name}` must be a number")
     low, high = field.low or 0.0, FULL if field.high is None else field.high
     return round(FULL * min(max((value - low) / (high - low), 0.0), 1.0))
 

@@ -85,7 +85,7 @@ class DmxUniverse:
             self._opened().sendto(packet, (self._link.host or multicast_group(self._link.universe), PORT))
         except (OSError, UnicodeError) as error:
             why = getattr(error, "strerror", None) or error
-            self._health.down(f"can't be sent to ({why}): it is tried again")
+            self._health.down(f"cannot be sent to ({why}): Lumen tries again")
         else:
             self._health.up()
 

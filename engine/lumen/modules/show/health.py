@@ -33,4 +33,4 @@ class LinkHealth:
         if self._ill and self._up_since is not None and self._clock() - self._up_since >= STEADY:
             self._ill = False
             self._well()
-            self._tell(f"{self.device} is there again")
+            self._tell(f"{self.device} is back")

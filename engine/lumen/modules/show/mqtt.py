@@ -110,22 +110,22 @@ class MqttBroker:
             try:
                 self._client.loop_forever(retry_first_connection=True)
             except UnicodeError:
-                self._health.down("can't be reached, because its name is not valid: correct `host`")
+                self._health.down("cannot be reached, because its name is not valid: correct `host`")
 
     def _publish(self, topic: str, payload: bytes, row: Route, *, retain: bool) -> None:
         quality = 0 if row.carried is Carried.TELEMETRY else 1
         try:
             done = self._client.publish(topic, payload, quality, retain)
         except ValueError as error:
-            raise ModuleError(f"it can't be published: {error}") from None
+            raise ModuleError(f"it cannot be published: {error}") from None
         if done.rc is not MQTTErrorCode.MQTT_ERR_SUCCESS:
             raise ModuleError(
-                "the broker takes no more" if done.rc is MQTTErrorCode.MQTT_ERR_QUEUE_SIZE else "it is away"
+                "the broker accepts no more messages" if done.rc is MQTTErrorCode.MQTT_ERR_QUEUE_SIZE else "it is away"
             )
 
     def _connected(self, client: Client, data: Any, flags: Any, reason: Any, properties: Any) -> None:
         if reason.is_failure:
-            self._health.down(f"lets nobody in ({str(reason).lower()}): check {CREDENTIALS_VARIABLE}")
+            self._health.down(f"refuses the connection ({str(reason).lower()}): check {CREDENTIALS_VARIABLE}")
             return
         self._health.up()
         for topic in self._incoming:
@@ -134,15 +134,15 @@ class MqttBroker:
             self._publish(self._link.routes[route].topic, payload, self._routes[route], retain=True)
 
     def _unreachable(self, client: Client, data: Any) -> None:
-        self._health.down("can't be reached: it is tried again until it is there")
+        self._health.down("cannot be reached: Lumen keeps trying")
 
     def _disconnected(self, client: Client, data: Any, flags: Any, reason: Any, properties: Any) -> None:
         if not self._closing:
-            self._health.down("is gone: it is tried again until it is there")
+            self._health.down("is gone: Lumen keeps trying to reach it")
 
     def _subscribed(self, client: Client, data: Any, number: int, reasons: Any, properties: Any) -> None:
         if any(reason.is_failure for reason in reasons):
-            self._health.down("does not let us listen to one of our topics")
+            self._health.down("refuses a subscription to one of the topics")
 
     def _message(self, client: Client, data: Any, message: MQTTMessage) -> None:
         try:
@@ -162,7 +162,7 @@ def _credentials(file: str) -> tuple[str, str]:
     try:
         name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
     except (OSError, UnicodeDecodeError) as error:
-        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names can't be read: {error}") from None
+        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names cannot be read: {error}") from None
     if not separator or not name or "\n" in password:
-        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names holds no line `NAME:PASSWORD`")
+        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names must hold one line `NAME:PASSWORD`")
     return name, password

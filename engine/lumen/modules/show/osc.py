@@ -61,8 +61,8 @@ class OscDevice:
         try:
             self._opened().sendto(message, self._device)
         except OSError as error:
-            self._health.down(f"can't be sent to ({error.strerror or error}): it is tried again with the next message")
-            raise ModuleError("the device can't be reached") from None
+            self._health.down(f"cannot be sent to ({error.strerror or error}): Lumen tries again with the next message")
+            raise ModuleError("the device cannot be reached") from None
 
     def tick(self) -> None:
         if self._socket is None and self._link.listen and self._clock() >= self._again:
@@ -95,7 +95,7 @@ class OscDevice:
                 raise
         except (OSError, UnicodeError) as error:
             why = getattr(error, "strerror", None) or error
-            self._health.down(f"can't be reached ({why}): it is tried again")
+            self._health.down(f"cannot be reached ({why}): Lumen tries again")
             raise OSError(str(why)) from None
         self._socket, self._device = opened, found[4]
         self._health.up()

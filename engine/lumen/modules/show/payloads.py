@@ -18,7 +18,7 @@ def payload_of(body: Any, field: SchemaField | None) -> bytes:
     try:
         return value.encode() if isinstance(value, str) else _json(value)
     except UnicodeEncodeError:
-        raise ModuleError(f"`{field.name}` holds half a character") from None
+        raise ModuleError(f"`{field.name}` holds half a surrogate pair") from None
 
 
 def body_of_payload(payload: bytes, field: SchemaField | None) -> Any:
@@ -27,11 +27,11 @@ def body_of_payload(payload: bytes, field: SchemaField | None) -> Any:
         try:
             return {field.name: payload.decode()}
         except UnicodeDecodeError:
-            raise ModuleError("it is no text in UTF-8") from None
+            raise ModuleError("it is not UTF-8 text") from None
     try:
         value = orjson.loads(payload)
     except orjson.JSONDecodeError:
-        raise ModuleError("it is no JSON") from None
+        raise ModuleError("it is not JSON") from None
     return {field.name: value} if field else value
 
 
@@ -39,4 +39,4 @@ def _json(value: Any) -> bytes:
     try:
         return orjson.dumps(value)
     except TypeError as error:
-        raise ModuleError(f"it can't be written as JSON: {error}") from None
+        raise ModuleError(f"it cannot be written as JSON: {error}") from None

@@ -74,12 +74,12 @@ class ShowControl(Module):
         """What a device sent; called on the threads of the links."""
         row = self.project.routes.get(route)
         if row is None or not may_come_from_devices(row):
-            self._refusals.add(place, f"devices may not send on the route `{route}`")
+            self._refusals.add(place, f"devices may not send to the route `{route}`")
             return
         with self._counting:
             rate = row.rate
             if rate and self._limiter.wait(route, rate):
-                self._refusals.add(place, f"more than {rate:g} a second")
+                self._refusals.add(place, f"more than {rate:g} messages a second")
                 return
             self.handled += 1
         try:
@@ -154,7 +154,7 @@ class ShowControl(Module):
         for name, row in link.routes.items():
             if name in project.routes and row.topic.replace("/", ".") == project.routes[name].key_for(project.robot):
                 del routes[name]
-                self.tell(f"RabbitMQ carries `{name}` to and from {row.topic} by itself: take it out of `mqtt`")
+                self.tell(f"RabbitMQ already carries `{name}` to and from {row.topic}: delete it from `mqtt`")
         return routes
 
     def _health(self, device: str) -> LinkHealth:

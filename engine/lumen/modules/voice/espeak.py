@@ -40,14 +40,14 @@ class Espeak:
         try:
             self._library = ctypes.CDLL(library)
         except OSError as error:
-            raise ModuleError(f"espeak-ng can't be loaded ({error}): {INSTALL_VOICE}") from None
+            raise ModuleError(f"espeak-ng cannot be loaded ({error}): {INSTALL_VOICE}") from None
         self._lock = threading.Lock()
         self._parts: list[bytes] = []
         self._words: list[WordTime] = []
         self._heard = _Callback(self._hear)
         self.rate = self._library.espeak_Initialize(_SYNCHRONOUS, 0, data and data.encode(), _DONT_EXIT)
         if self.rate <= 0:
-            raise ModuleError(f"espeak-ng can't read its data in {data or 'its usual folder'}: {INSTALL_VOICE}")
+            raise ModuleError(f"espeak-ng cannot read its data in {data or 'its usual folder'}: {INSTALL_VOICE}")
         self._library.espeak_SetSynthCallback(self._heard)
         self._library.espeak_Synth.argtypes = [
             ctypes.c_char_p, ctypes.c_size_t, ctypes.c_uint, ctypes.c_int, ctypes.c_uint, ctypes.c_uint,

@@ -72,7 +72,7 @@ class CallSequence:
         if (call is None or call.done) and all(c.done for c in self._aborting):
             return True
         if now >= self._until:
-            raise RobotFailedError(f"it was cancelled, and has not ended within {self._patience:g} s")
+            raise RobotFailedError(f"it was cancelled but did not end within {self._patience:g} s")
         if now >= self._again:
             self._again = now + ABORT_RETRY_PERIOD
             self._aborting = [c for c in self._aborting if not c.done] or list(self._abort())

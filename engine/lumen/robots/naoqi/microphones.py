@@ -45,7 +45,7 @@ class Microphones:
                 self._hush()
                 raise RobotFailedError(
                     f"{len(self._heard) / (2 * RECORDING_RATE):.1f} of {command.duration:g} s came from the "
-                    "microphones: can the robot reach this machine, or is there a firewall?"
+                    "microphones: check that the robot can reach this machine and that no firewall is in between"
                 )
             yield None
         yield from self._hush()

@@ -36,7 +36,7 @@ def fitted(motion: MotionDefinition, body: Body, start: Mapping[str, float]) -> 
         if joint not in body.joints:
             raise BadCommandError(f"`{joint}` is not a joint of this robot: {did_you_mean(joint, body.joints)}")
         if not all(isfinite(x) for key in keys for x in (key.time, key.angle, *key.handle_in, *key.handle_out)):
-            raise BadCommandError(f"`{motion.name}` holds an angle or a time that is no number")
+            raise BadCommandError(f"`{motion.name}` has an angle or a time that is not a number")
     if not isfinite(motion.duration):
         raise BadCommandError(f"`{motion.name}` has no duration")
     late = max((_late(track, motion, body) for track in Trajectory(motion, start).tracks), default=0.0)

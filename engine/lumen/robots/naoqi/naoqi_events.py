@@ -59,14 +59,14 @@ class NaoqiEvents:
             try:
                 self._kept.append(session.subscribe(event, partial(self._hear, name)))
             except RobotError as error:
-                _log.warning("the robot will not raise `%s`: %s", event, error)
+                _log.warning("the robot does not raise `%s`: %s", event, error)
 
         if session.has("ALSoundLocalization"):
             session.post("ALSoundLocalization", "subscribe", "lumen")
             try:
                 self._kept.append(session.subscribe(SOUND, self._locate))
             except RobotError as error:
-                _log.warning("the robot will not look towards sounds: %s", error)
+                _log.warning("the robot does not look towards sounds: %s", error)
 
     def sounds(self) -> list[tuple[float, float]]:
         """Where the newest sound came from: how far to the left and below of where the head points [rad]."""

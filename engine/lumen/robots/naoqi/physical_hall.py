@@ -15,10 +15,10 @@ class PhysicalHall:
         return None
 
     def touch(self, sensor: str, pressed: bool) -> None:
-        raise UsageError(f"`{sensor}` of a real robot is touched with a hand")
+        raise UsageError(f"touch `{sensor}` of a real robot by hand")
 
     def sound(self) -> None:
         """Whoever types is not heard."""
 
     def plug(self, plugged: bool) -> None:
-        raise UsageError("a real robot is plugged in by hand")
+        raise UsageError("plug in a real robot by hand")

@@ -11,17 +11,17 @@ from lumen.robots.naoqi.session import NaoqiSession
 
 REQUIRED_SERVICES = ("ALMotion", "ALRobotPosture", "ALMemory")
 OPTIONAL_SERVICES = {
-    "ALTextToSpeech": "it will not speak",
-    "ALVideoDevice": "it has no images",
-    "ALSonar": "nothing but its bumpers stops it before a wall",
+    "ALTextToSpeech": "it does not speak",
+    "ALVideoDevice": "it has no camera images",
+    "ALSonar": "only its bumpers stop it at a wall",
     "ALLeds": "its lights stay as they are",
     "ALSoundLocalization": "it does not look towards sounds",
-    "ALAnimatedSpeech": "it speaks with our gestures alone",
-    "ALAutonomousBlinking": "it blinks as we have it",
+    "ALAnimatedSpeech": "it speaks with Lumen's gestures only",
+    "ALAutonomousBlinking": "Lumen makes it blink",
     "ALAudioPlayer": "it plays no sounds",
     "ALAudioDevice": "its microphones hear nothing",
-    "ALAutonomousLife": "see that nothing else moves it",
-    "ALSystem": "its version is not known",
+    "ALAutonomousLife": "make sure that no other program moves it",
+    "ALSystem": "its version is unknown",
 }
 """Services that a tour can do without, and what is missing then."""
 OLDEST_NAOQI, TESTED_NAOQI = (2, 1), ((2, 1), (2, 8))
@@ -56,7 +56,9 @@ def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
 
 def _find(session: NaoqiSession) -> None:
     if missing := session.find(REQUIRED_SERVICES):
-        raise RobotUnreachableError(f"at {session.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
+        raise RobotUnreachableError(
+            f"there is no {missing[0]} at {session.url}: check that NAOqi has started and that this is a NAO"
+        )
     for name in session.find(OPTIONAL_SERVICES):
         _log.warning("this robot has no %s: %s", name, OPTIONAL_SERVICES[name])
 
@@ -67,7 +69,7 @@ def _check_version(session: NaoqiSession) -> None:
     text = str(session.ask("ALSystem", "systemVersion"))
     found = re.match(r"(\d+)\.(\d+)", text)
     if found is None:
-        _log.warning("the robot says it has NAOqi `%s`, which nobody here knows", text[:40])
+        _log.warning("the robot reports the NAOqi version `%s`, which Lumen cannot read", text[:40])
         return
     version = int(found[1]), int(found[2])
     if version < OLDEST_NAOQI:
@@ -82,7 +84,7 @@ def _check_joints(session: NaoqiSession, body: Body) -> None:
     for joint in body.joints:
         if joint not in names:
             raise RobotModelError(
-                f"this robot has no {joint}, and models/{body.name} has: {did_you_mean(joint, names)}"
+                f"this robot has no {joint}, but models/{body.name} does: {did_you_mean(joint, names)}"
             )
 
 

@@ -53,7 +53,7 @@ class Reconnector:
         self._lost_at = time.monotonic()
         self._changes.append(ConnectionChange("robot.lost", 0.0, reason))
         if not self._ending.is_set():
-            _log.warning("the robot is lost: %s; trying to reach it again", reason)
+            _log.warning("the robot is lost: %s; Lumen tries to reach it again", reason)
         self._broken.set()
 
     def changes(self) -> list[ConnectionChange]:

@@ -106,7 +106,7 @@ class NaoqiSensors:
         now = self._clock()
         left, right = self._memory(self._sonars)
         if not isinstance(left, int | float) or not isinstance(right, int | float):
-            raise SenseError("ALMemory knows of no sonars")
+            raise SenseError("ALMemory has no sonar values")
         return Sonar(now, float(left), float(right))
 
     def tactile(self) -> Tactile:
@@ -119,7 +119,7 @@ class NaoqiSensors:
         now = self._clock()
         charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])
         if not isinstance(charge, int | float):
-            raise SenseError("ALMemory does not know how full the battery is")
+            raise SenseError("ALMemory has no battery level")
         percentage = round(100 * min(max(float(charge), 0.0), 1.0))
         return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
 
@@ -154,7 +154,9 @@ class NaoqiSensors:
         except RobotError as error:
             if self._session.up and not self._numb:
                 self._numb = True
-                _log.warning("the robot does not feel its heat, balance and weight: %s", error)
+                _log.warning(
+                    "the robot does not report its temperatures, its balance and the weight on its feet: %s", error
+                )
             return (), {}, {}
         inertial, soles = found[motors : motors + len(INERTIAL)], found[motors + len(INERTIAL) :]
         self.heat = _known(n for n in zip(self._names, found, strict=False) if n[0] not in self._body.shared)
@@ -182,13 +184,13 @@ class NaoqiSensors:
         arguments = (SUBSCRIBER_NAME, TOP_CAMERA, RESOLUTIONS[self._size], RGB_COLOUR_SPACE, CAMERA_RATE)
         self._handle = str(self._session.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
         if not self._handle:
-            raise SenseError("the camera can't be subscribed to: too many others have it")
+            raise SenseError("cannot subscribe to the camera: too many programs use it")
         return self._handle
 
     def _pixels(self, found: Any) -> tuple[bytes, float]:
         """The bytes of a frame, and its time on the robot's clock [s]."""
         if not isinstance(found, Sequence) or len(found) < 7:
-            raise SenseError("the camera gave no image: somebody else has unsubscribed it, or it is not there")
+            raise SenseError("the camera gave no image: another program has unsubscribed it, or there is no camera")
         width, height, layers, _, seconds, microseconds, pixels = found[:7]
         if (width, height, layers) != (*self._size, 3):
             raise SenseError(f"the camera gave an image of {width} x {height} x {layers}, not of {self._size} x 3")

@@ -44,7 +44,7 @@ def address(url: str) -> str:
     if not colon:
         host, port, whole = port, str(NAOQI_PORT), f"{whole}:{NAOQI_PORT}"
     if not host or not port.isdecimal() or not whole.startswith(("tcp://", "tcps://")):
-        raise RobotUnreachableError(f"`{url}` is no address of a robot: write tcp://nao.local:{NAOQI_PORT}")
+        raise RobotUnreachableError(f"`{url}` is not the address of a robot: write tcp://nao.local:{NAOQI_PORT}")
     return whole
 
 
@@ -53,7 +53,7 @@ def plain(error: object) -> str:
     text = " ".join(str(error).partition("\n\nAt:")[0].split())
     if text in _QI_CONNECTION_LOST:
         return CONNECTION_LOST
-    return text.removeprefix("RuntimeError: ")[:MAX_ERROR_LENGTH] or "it said nothing about it"
+    return text.removeprefix("RuntimeError: ")[:MAX_ERROR_LENGTH] or "it gave no reason"
 
 
 def _error_of(reason: str) -> RobotError:
@@ -154,7 +154,7 @@ class NaoqiSession:
         try:
             future = getattr(proxy, method)(*arguments, _async=True)
         except (AttributeError, RuntimeError) as error:
-            return NaoqiCall(error=f"{service}.{method} can't be called: {plain(error)}")
+            return NaoqiCall(error=f"{service}.{method} cannot be called: {plain(error)}")
         return self._called(future)
 
     def serve(self, name: str, make: Callable[[Any], object]) -> NaoqiCall:
@@ -187,7 +187,7 @@ class NaoqiSession:
         try:
             subscriber.signal.connect(heard)
         except (AttributeError, RuntimeError) as error:
-            raise SenseError(f"`{event}` can't be heard: {plain(error)}") from error
+            raise SenseError(f"`{event}` cannot be subscribed to: {plain(error)}") from error
         return subscriber
 
     def close(self) -> None:

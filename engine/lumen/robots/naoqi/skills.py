@@ -74,7 +74,7 @@ class NaoqiSkills:
             case PlaySound(file):
                 return CallSequence(self._sound(file), lambda: [self._post("ALAudioPlayer", "stopAll")])
             case Stop() | Aim() | Live():
-                raise BadCommandError(f"{type(command).__name__} does not last")
+                raise BadCommandError(f"{type(command).__name__} has no duration")
         if self.fallen:
             raise RobotRefusedError("the robot has fallen: `wake` it first")
         match command:
@@ -94,7 +94,7 @@ class NaoqiSkills:
             if name not in self._body.joints:
                 raise BadCommandError(f"`{name}` is not a joint of this robot: {did_you_mean(name, self._body.joints)}")
             if not isfinite(angle):
-                raise BadCommandError(f"`{name}` can't be moved to {angle}")
+                raise BadCommandError(f"`{name}` cannot move to {angle}")
         return nearest_angles({name: float(angle) for name, angle in angles.items()}, self._body)
 
     def _say(self, said: Say) -> CallSteps:
@@ -142,13 +142,15 @@ class NaoqiSkills:
 
     def _go(self, name: str, speed: float) -> CallSteps:
         if self.fallen and not hardware_of(self._body).gets_up:
-            raise RobotRefusedError("the robot has fallen, and can't get up by itself: set it up and `wake` it")
+            raise RobotRefusedError(
+                "the robot has fallen and cannot get up by itself: set it on its feet, then `wake` it"
+            )
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             if not self.fallen:
                 raise RobotRefusedError("the motors are off: `wake` first")
             yield self._post("ALMotion", "setStiffnesses", "Body", 1.0)  # the fall manager had let go of the motors
         if not (yield self._post("ALRobotPosture", "goToPosture", name, float(speed))):
-            raise RobotFailedError(f"the robot could not get into the posture {name}")
+            raise RobotFailedError(f"the robot could not reach the posture {name}")
         self.fallen = False
 
     def _wake(self) -> CallSteps:

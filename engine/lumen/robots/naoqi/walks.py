@@ -55,7 +55,7 @@ class WalkMonitor:
         try:
             return self._area.outside(found.result(), self._here, MAX_STAGE_DRIFT)
         except RobotError as error:
-            return f"nobody knows where the robot is ({error})"
+            return f"the position of the robot is unknown ({error})"
 
 
 class NaoqiWalks:
@@ -71,9 +71,7 @@ class NaoqiWalks:
         if not all(map(isfinite, numbers)):
             raise BadCommandError(f"there is no way to {numbers}")
         if isinstance(command, Walk) and hypot(command.x, command.y) > MAX_WALK_DISTANCE:
-            raise BadCommandError(
-                f"({command.x:g}, {command.y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most"
-            )
+            raise BadCommandError(f"({command.x:g}, {command.y:g}) is too far: walk at most {MAX_WALK_DISTANCE:g} m")
         if reason := self._area.danger():
             raise RobotRefusedError(f"{reason}: the robot did not set out")
         doing = self._walk(numbers) if isinstance(command, Walk) else self._move(numbers)
@@ -100,7 +98,7 @@ class NaoqiWalks:
         if arrived is None:
             arrived = yield from self._arrived(here, way)
         if not arrived:
-            raise RobotFailedError("the robot stopped before it was there: something is in its way")
+            raise RobotFailedError("the robot stopped before it arrived: something is in its way")
 
     def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
         """Whether it is where it should be, by its odometry: `moveTo` of NAOqi 2.1 does not say."""

@@ -66,7 +66,7 @@ class RemoteHall:
         try:
             publish_on(self._bus, self._project, HALL_ROUTE, body, ttl=HALL_MESSAGE_TTL)
         except BusError as error:
-            _log.warning("what the visitor does was not sent: %s", error)
+            _log.warning("an action of the visitor was not sent: %s", error)
 
     def _see(self, message: Message) -> None:
         place = message.body.get("face") if isinstance(message.body, dict) else None

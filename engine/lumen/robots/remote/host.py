@@ -70,7 +70,7 @@ class RobotHost:
                 try:
                     self._apply(self._hall, message.body, now)
                 except LumenError as error:
-                    _log.warning("what a visitor does was refused: %s", error)
+                    _log.warning("an action of the visitor was refused: %s", error)
         self.server.sample(now)
         events = [*self._robot.poll(), *self._happened]
         self._happened = []
@@ -108,7 +108,7 @@ class RobotHost:
             case {"event": str(name)} if name in ROBOT_EVENTS:
                 self.notice(Event(name, body.get("data"), now))
             case _:
-                _log.warning("what a visitor does was refused: nobody understands %s", str(body)[:80])
+                _log.warning("an action of the visitor was refused: unknown action %s", str(body)[:80])
 
     def _look(self, hall: Hall, now: float) -> None:
         face = hall.face()
@@ -120,7 +120,7 @@ class RobotHost:
                 self._bus, self._project, SEEN_ROUTE, {"face": list(face) if face else None, "time": now}, ttl=1.0
             )
         except BusError as error:
-            _log.warning("how the robot sees the visitor was not sent: %s", error)
+            _log.warning("the visitor's face was not sent: %s", error)
 
 
 def _visitor(place: Mapping[str, Any]) -> Visitor | None:

@@ -42,7 +42,7 @@ COMMAND_TTL = 2.0
 MAX_PENDING_REPORTS = 10_000
 
 _ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN_COMMAND: "lost"}
-_FORGOTTEN = "the robot has forgotten it: it was restarted"
+_FORGOTTEN = "the robot has restarted and forgotten the command"
 
 _log = logging.getLogger(__name__)
 

@@ -18,7 +18,7 @@ class AimController:
         """Begin. Raises RobotError, and changes nothing, for an unknown joint or what is no number."""
         self._motors.check(aim.angles)
         if not 0 < aim.speed <= 1:
-            raise BadCommandError(f"a speed lies above 0 and up to 1, not at {aim.speed}")
+            raise BadCommandError(f"a speed must be above 0 and at most 1, not {aim.speed}")
         speeds = self._motors.envelope.speed
         for name, angle in aim.angles.items():
             speed = float(speeds[self._motors.index[name]]) * aim.speed

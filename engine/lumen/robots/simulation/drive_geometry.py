@@ -53,12 +53,12 @@ def read_drive(world: World) -> DriveGeometry:
     radii = [_radius(model, int(joint.bodyid[0])) for joint in joints]
     for name, joint, way, radius in zip(names, joints, ways, radii, strict=True):
         if joint.type[0] != mujoco.mjtJoint.mjJNT_HINGE or abs(way[1]) < 0.99:
-            raise _refused(f"`{name}` is no hinge whose axis points straight aside")
+            raise _refused(f"`{name}` is not a hinge with an axis that points straight to the side")
         if radius <= 0.0:
             raise _refused(f"the wheel of `{name}` has no round geom that touches the ground")
     track = float(places[0][1] - places[1][1])
     if abs(radii[0] - radii[1]) > 1e-3 or abs(places[0][0] - places[1][0]) > 1e-3 or track <= 0.0:
-        raise _refused("the wheels differ in size, or do not stand side by side, the left one on the left")
+        raise _refused("the wheels must be of one size and side by side, the left one on the left")
     radius = radii[0]
     fastest = min(float(model.actuator_ctrlrange[motor, 1]) or np.inf for motor in motors) * radius
     force = sum(float(model.actuator_forcerange[motor, 1]) or np.inf for motor in motors) / radius
@@ -67,7 +67,7 @@ def read_drive(world: World) -> DriveGeometry:
     height = float(centre[2] - places[0][2] + radius)
     near = min(float(carried[:, 0].max() - centre[0]), float(centre[0] - carried[:, 0].min()))
     if near <= 0.0:
-        raise _refused("its centre of mass is not above what it stands on")
+        raise _refused("its centre of mass is not above its wheels and casters")
     acceleration = TIPPING_SHARE * min(GRAVITY * near / height, force / mass)
     return DriveGeometry(
         np.array([joint.qposadr[0] for joint in joints]),
@@ -120,4 +120,4 @@ def _mass(world: World) -> tuple[float, NDArray[np.float64]]:
 
 
 def _refused(reason: str) -> RobotModelError:
-    return RobotModelError(f"the robot can't drive on its wheels: {reason}")
+    return RobotModelError(f"the robot cannot drive on its wheels: {reason}")

@@ -235,7 +235,7 @@ def _writer(path: Path, size: FilmSize) -> Generator[None, bytes, None]:
     except (OSError, RuntimeError) as error:
         chosen = os.environ.get("IMAGEIO_FFMPEG_EXE", "")
         remedy = (
-            f"IMAGEIO_FFMPEG_EXE={chosen} is no ffmpeg: unset it" if chosen else "install `lumen-robot[simulation]`"
+            f"IMAGEIO_FFMPEG_EXE={chosen} is not ffmpeg: unset it" if chosen else "install `lumen-robot[simulation]`"
         )
-        raise RobotModelError(f"ffmpeg, which writes films, can't be started ({error}): {remedy}") from None
+        raise RobotModelError(f"ffmpeg, which writes films, cannot be started ({error}): {remedy}") from None
     return writer

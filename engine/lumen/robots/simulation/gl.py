@@ -55,7 +55,7 @@ def _fault(backend: str) -> str:
     """The reason why mujoco and dm_control can't be imported with that backend; empty if not installed, or none."""
     screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform != "linux"
     if backend in _WITH_SCREEN and not screen:
-        return f"MUJOCO_GL={backend} draws on a screen, and there is none: {_REMEDY}"
+        return f"MUJOCO_GL={backend} draws on a screen, but this machine has none: {_REMEDY}"
     if backend in _LIBRARIES:
         if not _there(backend):
             return f"MUJOCO_GL={backend} needs {_LIBRARIES[backend][0]}, which is not installed: {_REMEDY}"

@@ -9,5 +9,5 @@ demand(
     "dm_control",
     "PIL",
     "imageio_ffmpeg",
-    instead="lint, stories, the editor and `--robot recording` go without",
+    instead="lint, stories, the editor and `--robot recording` work without it",
 )

@@ -52,7 +52,7 @@ def read_legs(model: mujoco.MjModel, body: Body) -> LegGeometry:
     _compare(left, right)
     shared = body.shared.get(names["R"][0]) == names["L"][0] or body.shared.get(names["L"][0]) == names["R"][0]
     if shared and left.signs[0] == right.signs[0]:
-        raise _refused("both hip yaws share a motor that turns both to the same side")
+        raise _refused("both hip yaws share a motor, so it must turn them to opposite sides")
     thigh, tibia = _turned(left.thigh), _turned(left.tibia)
     offsets = tuple(round(angle, NANOMETRES) for angle in (0.0, 0.0, thigh, tibia - thigh, -tibia, 0.0))
     return LegGeometry(
@@ -98,7 +98,7 @@ class _LegReader:
         if abs(up[0]) > STRAIGHT_TOLERANCE or up[2] < STRAIGHT_TOLERANCE:
             raise _refused(f"the axis of `{names[0]}` does not point upwards with all joints at zero")
         if not self._chained(names):
-            raise _refused(f"the joints of {which} do not follow each other as {', '.join(LEG_ROLES)}")
+            raise _refused(f"the joints of {which} are not in the order {', '.join(LEG_ROLES)}")
         hip = _meet(places[2], places[1], (names[2], names[1]))
         away = np.cross(up, hip - places[0])
         if float(np.linalg.norm(away)) > MEETING_TOLERANCE:
@@ -107,7 +107,7 @@ class _LegReader:
         if abs(ankle[1] - hip[1]) > MEETING_TOLERANCE:
             raise _refused(f"the ankle of {which} is {_mm(ankle[1] - hip[1])} beside its hip with all joints at zero")
         if self._knee(names[3]) * signs[3] <= 0:
-            raise _refused(f"`{names[3]}` bends backwards: knees have to bend forwards")
+            raise _refused(f"`{names[3]}` bends backwards: knees must bend forwards")
         foot, sole = self._sole(side, ankle, names[5])
         knee = np.array((places[3][0], hip[1], places[3][2]))
         inclination = atan2(-sign(side) * up[1], up[2])
@@ -145,18 +145,18 @@ class _LegReader:
         site = self._data.site(name)
         place, axes = self._place(site.xpos), self._axes.T @ site.xmat.reshape(3, 3)
         if float(np.abs(axes - np.eye(3)).max()) > STRAIGHT_TOLERANCE:
-            raise _refused(f"the site `{name}` does not lie flat, x ahead and z up, with all joints at zero")
+            raise _refused(f"the site `{name}` must be flat, with x ahead and z up, when all joints are at zero")
         beside = place - ankle
         if max(abs(beside[0]), abs(beside[1])) > MEETING_TOLERANCE or beside[2] > -MEETING_TOLERANCE:
             raise _refused(
-                f"the site `{name}` is {_mm(beside[0])} ahead of the ankle and {_mm(beside[1])} beside it: put it below"
+                f"the site `{name}` is {_mm(beside[0])} ahead of the ankle and {_mm(beside[1])} beside it: put it below the ankle"
             )
         link = int(self._model.joint(joint).bodyid[0])
         points = [point for geom in self._touching(link) for point in _outline(self._model, self._data, geom)]
         seen = np.array([self._place(point) for point in points]).reshape(-1, 3) - place
         touching = seen[np.abs(seen[:, 2]) < TOUCHES]
         if len(touching) < 2 or np.ptp(touching[:, 0]) < TOUCHES or np.ptp(touching[:, 1]) < TOUCHES:
-            raise _refused(f"nothing flat of `{self._model.body(link).name}` touches the ground at the site `{name}`")
+            raise _refused(f"no flat part of `{self._model.body(link).name}` touches the ground at the site `{name}`")
         out = sign(side) * touching[:, 1]
         toe, heel, outer, inner = touching[:, 0].max(), -touching[:, 0].min(), out.max(), -out.min()
         return -beside[2], SoleSize(_rounded(toe), _rounded(heel), _rounded(outer), _rounded(inner))
@@ -205,7 +205,7 @@ def _compare(left: _Leg, right: _Leg) -> None:
         if (differs := float(np.abs(one - other).max())) > MEETING_TOLERANCE:
             raise _refused(f"the two {what} differ by {_mm(differs)}")
     if abs(left.inclination - right.inclination) > STRAIGHT_TOLERANCE:
-        raise _refused("the axes of the hip yaws do not lean alike")
+        raise _refused("the axes of the hip yaws are not tilted by the same angle")
 
 
 def _meet(pitch: LegVector, roll: LegVector, names: tuple[str, str]) -> LegVector:
@@ -229,8 +229,8 @@ def _mm(length: float) -> str:
 
 
 def _apart(one: str, other: str, length: float) -> RobotModelError:
-    return _refused(f"the axes of `{one}` and `{other}` pass each other by {_mm(length)}: they have to meet")
+    return _refused(f"the axes of `{one}` and `{other}` pass each other by {_mm(length)}: they must meet")
 
 
 def _refused(reason: str) -> RobotModelError:
-    return RobotModelError(f"the robot can't walk on its legs: {reason}")
+    return RobotModelError(f"the robot cannot walk on its legs: {reason}")

@@ -61,13 +61,13 @@ def place(
             frame.add("freejoint")
     except ValueError as error:
         reason = " ".join(str(error).split())
-        raise RobotModelError(f"{Path(hall).name} does not go with the robot's {body.mjcf}: {reason}") from error
+        raise RobotModelError(f"{Path(hall).name} does not fit the robot's {body.mjcf}: {reason}") from error
 
 
 def alone(body: Body, models: Path) -> mjcf.RootElement:
     """The robot without a world and without a free joint, to be attached to one; raises RobotError as `load` does."""
     if not body.mjcf:
-        raise RobotModelError(f"{body.name} has no MJCF: it can be run with --robot naoqi or --robot recording")
+        raise RobotModelError(f"{body.name} has no MJCF: run it with --robot naoqi or --robot recording")
     _complain("the description of the robot's body", lacks_of_body(body))
     robot = _read(mjcf_path(body.mjcf, models))
     add_servos(robot, body)
@@ -82,7 +82,7 @@ def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
     try:
         return mjcf.Physics.from_mjcf_model(world).model.ptr
     except Exception as error:  # the compiler raises whatever it stumbles over
-        raise RobotModelError(f"MuJoCo can't build the robot in its hall: {_plain(error)}") from error
+        raise RobotModelError(f"MuJoCo cannot build the robot in its hall: {_plain(error)}") from error
 
 
 def _plain(error: Exception) -> str:

@@ -66,7 +66,7 @@ class Motors:
             if name not in self.index:
                 raise BadCommandError(f"`{name}` is not a joint of this robot")
             if not isfinite(angle):
-                raise BadCommandError(f"`{name}` can't be moved to {angle}")
+                raise BadCommandError(f"`{name}` cannot move to {angle}")
 
     def inside(self, name: str, angle: float) -> float:
         """The nearest angle inside that joint's limits."""

@@ -103,11 +103,11 @@ class Odometry:
                     farthest = min(after) if min(after) < least else max(after)
                     raise RobotRefusedError(
                         f"the {_FEET[step.side]} foot {'might' if self.doubt else 'would'} leave the stage: "
-                        f"it would reach {axis} = {farthest:.2f} m, and the stage is {low:g} to {high:g} m{self._but()}"
+                        f"it would reach {axis} = {farthest:.2f} m, but the stage goes from {low:g} to {high:g} m{self._but()}"
                     )
 
     def _but(self) -> str:
-        return f"; the robot has been down since, and may be {self.doubt:g} m off" if self.doubt else ""
+        return f"; the robot has fallen since, so its position may be wrong by {self.doubt:g} m" if self.doubt else ""
 
 
 def drift_after(posture: str) -> float:

@@ -54,7 +54,7 @@ class MotionPlayback:
     def missed(self) -> str:
         """The joints that missed their keys, with the largest distance and its time; empty if none did."""
         far = sorted(self._missed.items(), key=lambda item: -item[1][0])
-        parts = (f"`{joint}` was {by:.2g} {self._motors.unit(joint)}away at {at:.2f} s" for joint, (by, at) in far)
+        parts = (f"`{joint}` was {by:.2g} {self._motors.unit(joint)}off at {at:.2f} s" for joint, (by, at) in far)
         return f"in `{self._motion.name}` a joint missed its goal: {', '.join(parts)}" if far else ""
 
     @property
@@ -145,5 +145,5 @@ class SpeechActivity:
 def _check(motors: Motors, motion: MotionDefinition) -> None:
     numbers = (x for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle))
     if not (isfinite(motion.duration) and all(map(isfinite, numbers))):
-        raise BadCommandError(f"`{motion.name}` holds an angle or a time that is no number")
+        raise BadCommandError(f"`{motion.name}` has an angle or a time that is not a number")
     motors.check(dict.fromkeys(motion.tracks, 0.0))

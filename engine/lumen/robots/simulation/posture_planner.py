@@ -117,7 +117,7 @@ class PosturePlanner:
             return True
         self._left -= 1
         if not self._left or not down:
-            raise RobotFailedError(f"the robot did not come to {state.posture}" + (": it lies" if down else ""))
+            raise RobotFailedError(f"the robot did not reach {state.posture}" + (": it lies" if down else ""))
         state.posture = down
         return False
 
@@ -127,7 +127,7 @@ class PosturePlanner:
             return _Passing(self._motors, state.passage, now, state.reached)
         path = route(self._body, state.posture, *self._goals)
         if path is None:
-            raise RobotRefusedError(f"no way leads from {state.posture} to {' or '.join(self._goals)}")
+            raise RobotRefusedError(f"there is no way from {state.posture} to {' or '.join(self._goals)}")
         if not path:
             return None
         motion = passage(self._body, state.posture, path[0])

@@ -35,7 +35,7 @@ def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
     ]
     found = list(_lacks(robot, dict.fromkeys(need for need in named if need[1])))
     wheels = [name for name in (base.left, base.right) if name and robot.find("joint", name) is not None]
-    return found + [f"a velocity actuator of the wheel `{name}`" for name in wheels if not wheel_motor(robot, name)]
+    return found + [f"a velocity actuator for the wheel `{name}`" for name in wheels if not wheel_motor(robot, name)]
 
 
 def wheel_motor(robot: mjcf.RootElement, wheel: str) -> str:
@@ -56,7 +56,7 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
     if not MIN_TIMESTEP <= timestep <= MAX_TIMESTEP:
         found.append(f"a timestep from {MIN_TIMESTEP:g} to {MAX_TIMESTEP:g} s")
     elif abs(MAX_TIMESTEP / timestep - round(MAX_TIMESTEP / timestep)) > 1e-6:
-        found.append(f"a timestep that fits into {MAX_TIMESTEP:g} s a whole number of times")
+        found.append(f"a timestep that divides {MAX_TIMESTEP:g} s evenly")
     return found
 
 

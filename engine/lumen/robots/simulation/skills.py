@@ -137,7 +137,7 @@ class SimulatedSkills:
                     raise RobotRefusedError(f"the robot is in {self._posture_state.posture}: send it to Stand first")
                 return self._base.walk(command, now)
             case Stop() | Aim() | Live():
-                raise BadCommandError(f"{type(command).__name__} does not last")
+                raise BadCommandError(f"{type(command).__name__} has no duration")
             case _:
                 assert_never(command)
 
@@ -191,7 +191,7 @@ class SimulatedSkills:
             self._posture_state = PostureState(down, self._standing)
         elif self.fallen:
             if self._world.tilt > _UPRIGHT:
-                raise RobotRefusedError("the robot has fallen, but does not lie: put it on its feet first")
+                raise RobotRefusedError("the robot has fallen but is not lying down: set it on its feet first")
             self._posture_state = PostureState(FIRST_POSTURE, self._standing)
         if limp:
             self._motors.stiffen(1.0)

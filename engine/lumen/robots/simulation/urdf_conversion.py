@@ -52,7 +52,7 @@ def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
         text = spec.to_xml()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
-        raise RobotModelError(f"MuJoCo can't build it: {reason[:200]}") from error
+        raise RobotModelError(f"MuJoCo cannot build it: {reason[:200]}") from error
     return ConvertedRobot(text, meshes, lost)
 
 
@@ -109,7 +109,7 @@ def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
                 return path.resolve(), ""
         except OSError:
             continue
-    return None, "there is no such file here, in `meshes/`, or in a folder above"
+    return None, "there is no such file in this folder, in `meshes/`, or in a folder above"
 
 
 def _candidates(inner: str, folder: Path) -> Iterator[Path]:

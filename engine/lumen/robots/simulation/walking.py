@@ -54,13 +54,13 @@ def way_of(command: Walk | Move) -> Pose | Velocity:
     if isinstance(command, Move):
         velocity = Velocity(command.vx, command.vy, command.vtheta)
         if not all(map(isfinite, velocity)):
-            raise BadCommandError(f"there is no walking at ({velocity.x}, {velocity.y}, {velocity.theta})")
+            raise BadCommandError(f"the robot cannot walk at ({velocity.x}, {velocity.y}, {velocity.theta})")
         return velocity
     x, y, theta = command.x, command.y, command.theta
     if not all(map(isfinite, (x, y, theta))):
         raise BadCommandError(f"there is no way to ({x}, {y}, {theta})")
     if abs(complex(x, y)) > MAX_WALK_DISTANCE:
-        raise BadCommandError(f"({x:g}, {y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
+        raise BadCommandError(f"({x:g}, {y:g}) is too far: walk at most {MAX_WALK_DISTANCE:g} m")
     return Pose(x, y, theta)
 
 

@@ -79,13 +79,16 @@ class WheelOdometry:
             ("x", self._stage.x, self.here.x, [place.x for place in places]),
             ("y", self._stage.y, self.here.y, [place.y for place in places]),
         ):
-            room, doubt = self._drive.reach + self.doubt, f", and may be {self.doubt:g} m off" if self.doubt else ""
+            room, doubt = (
+                self._drive.reach + self.doubt,
+                f"; its position may be wrong by {self.doubt:g} m" if self.doubt else "",
+            )
             least, most = min(low + room, now), max(high - room, now)
             for place in to:
                 if not least <= place <= most:
                     reached = place + (self._drive.reach if place > most else -self._drive.reach)
                     raise RobotRefusedError(
-                        f"the base would leave the stage: it would reach {axis} = {reached:.2f} m, and the stage is "
+                        f"the base would leave the stage: it would reach {axis} = {reached:.2f} m, but the stage goes from "
                         f"{low:g} to {high:g} m{doubt}"
                     )
 

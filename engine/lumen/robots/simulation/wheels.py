@@ -67,7 +67,7 @@ class Wheels:
 
     def _move(self, wanted: Velocity, now: float) -> Activity:
         if wanted.y:
-            raise RobotRefusedError("wheels don't drive aside: turn first")
+            raise RobotRefusedError("a robot on wheels cannot drive sideways: turn first")
         if self._on and self._on.change(wanted, now):
             return self._on
         self._ready()

@@ -86,7 +86,9 @@ class World:
     def check(self) -> None:
         """Raises RobotError where MuJoCo has met numbers that are none, or too large to be true."""
         if self._warnings[_UNSTABLE].any():
-            raise RobotModelError("the simulation has become unstable: look at the places, sizes and forces in models/")
+            raise RobotModelError(
+                "the simulation has become unstable: check the positions, sizes and forces in models/"
+            )
 
     @property
     def angles(self) -> JointVector:
@@ -160,9 +162,9 @@ class World:
             data.qpos[root : root + 3] += self._start[:3] - middle
         data.ctrl[self.actuators] = data.qpos[self._angles][self.driven]
         self.physics.forward()
-        lost = [self.model.geom(i).name or "one without a name" for i in _nowhere(data.geom_xpos)]
+        lost = [self.model.geom(i).name or "a geom without a name" for i in _nowhere(data.geom_xpos)]
         if lost:
-            raise RobotModelError(f"these geoms in models/ stand at no place that is a number: {', '.join(lost)}")
+            raise RobotModelError(f"geoms in models/ have a position that is not a number: {', '.join(lost)}")
 
     def _lowest(self) -> float:
         """How low what touches of the robot reaches [m]."""
