@@ -131,7 +131,10 @@ def test_a_robot_that_feels_nothing_has_its_joints_all_the_same(
     assert (joints.temperature, joints.inertial, joints.fsr) == ((), {}, {})
     lines = [record.getMessage() for record in caplog.records]
     assert lines == [
-        "the robot does not report its temperatures, its balance and the weight on its feet: ALMemory::getListData no such key"
+        (
+            "the robot does not report its temperatures, its balance and the weight on its feet: "
+            "ALMemory::getListData no such key"
+        )
     ]
 
 

@@ -265,7 +265,13 @@ def test_a_plain_body_is_read_with_any_declared_encoding(encoding: str) -> None:
 @for_each(
     ("body", "says"),
     [
-        (BODY, "it is a text that holds JSON: encode it once, and send it with the content type application/json, not text/plain"),
+        (
+            BODY,
+            (
+                "it is a text that holds JSON: encode it once, and send it with the content type "
+                "application/json, not text/plain"
+            ),
+        ),
         ("[1, 2]", "it is a text that holds JSON"),
         ("hello", "'hello' is not of type 'object'"),
         ("{hello}", "'{hello}' is not of type 'object'"),

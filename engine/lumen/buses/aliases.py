@@ -98,7 +98,10 @@ class Aliases:
         if project.aliases:
             what = f"lumen.yaml of {project.robot} has `aliases: true`: no other robot may have it"
         else:
-            what = "while it is there, Lumen neither accepts nor sends messages under an `alias` (see `aliases` in lumen.yaml)"
+            what = (
+                "while it is there, Lumen neither accepts nor sends messages under an `alias` (see "
+                "`aliases` in lumen.yaml)"
+            )
         _log.warning("another robot, %.100s, is on this bus: %s%s", robot, what, both)
 
 

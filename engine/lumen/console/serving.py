@@ -45,8 +45,9 @@ class Console:
         local = is_loopback(host)
         if not local and not pins:
             raise UsageError(
-                f"other machines can reach the console on {host}, but no PINs are set: write `console: {{pins: {{operator: "
-                "$LUMEN_PIN}}` into lumen.yaml and the PIN into that environment variable, or leave out --host"
+                f"other machines can reach the console on {host}, but no PINs are set: write `console: "
+                "{pins: {operator: $LUMEN_PIN}}` into lumen.yaml, and the PIN into that environment variable; or leave "
+                "out --host"
             )
         self._listener = _listen(host, port)
         shown = f"[{host}]" if ":" in host else host
@@ -111,5 +112,6 @@ def _listen(host: str, port: int) -> socket.socket:
     except (OSError, OverflowError) as error:
         why = (getattr(error, "strerror", "") or str(error)).lower()
         raise UsageError(
-            f"port {port} of {host} is not available: {why}; choose another with --port, or find the program that has it with `ss -ltnp`"
+            f"port {port} of {host} is not available: {why}; choose another with --port, or find "
+            "the program that has it with `ss -ltnp`"
         ) from None

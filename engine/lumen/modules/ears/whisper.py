@@ -80,7 +80,8 @@ def _loaded(folder: Path) -> Any:
     if missing:
         how = "ct2-transformers-converter --model NAME --copy_files tokenizer.json preprocessor_config.json"
         raise ModuleError(
-            f"{folder} is not a Whisper model for CTranslate2, because it has no {', '.join(missing)}: make one with `{how}`"
+            f"{folder} is not a Whisper model for CTranslate2, because it has no "
+            f"{', '.join(missing)}: make one with `{how}`"
         )
     try:
         from faster_whisper import WhisperModel

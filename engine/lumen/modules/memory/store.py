@@ -148,7 +148,8 @@ class Store:
         busy = self._do(lambda db: db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0])
         if busy:
             raise ModuleError(
-                f"{self._file} is open in another program: close that program to remove the deleted entries from the file"
+                f"{self._file} is open in another program: close that program to remove the deleted "
+                "entries from the file"
             )
         self._unclean = False
 
@@ -178,7 +179,10 @@ class Store:
         file = self._file or "the database"
         text = str(error)
         if "locked" in text or "busy" in text:
-            return f"{file} is locked by another program: close that program; Lumen keeps new entries and writes them afterwards"
+            return (
+                f"{file} is locked by another program: close that program; Lumen keeps new entries and "
+                "writes them afterwards"
+            )
         if text.startswith(NEWER_TABLES):
             return f"{file} was written by a newer Lumen: use that version, or move the file away to start a new one"
         if "not a database" in text or "malformed" in text:

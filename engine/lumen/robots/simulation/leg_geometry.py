@@ -149,7 +149,8 @@ class _LegReader:
         beside = place - ankle
         if max(abs(beside[0]), abs(beside[1])) > MEETING_TOLERANCE or beside[2] > -MEETING_TOLERANCE:
             raise _refused(
-                f"the site `{name}` is {_mm(beside[0])} ahead of the ankle and {_mm(beside[1])} beside it: put it below the ankle"
+                f"the site `{name}` is {_mm(beside[0])} ahead of the ankle and {_mm(beside[1])} beside "
+                "it: put it below the ankle"
             )
         link = int(self._model.joint(joint).bodyid[0])
         points = [point for geom in self._touching(link) for point in _outline(self._model, self._data, geom)]

@@ -103,7 +103,8 @@ class Odometry:
                     farthest = min(after) if min(after) < least else max(after)
                     raise RobotRefusedError(
                         f"the {_FEET[step.side]} foot {'might' if self.doubt else 'would'} leave the stage: "
-                        f"it would reach {axis} = {farthest:.2f} m, but the stage goes from {low:g} to {high:g} m{self._but()}"
+                        f"it would reach {axis} = {farthest:.2f} m, but the stage "
+                        f"goes from {low:g} to {high:g} m{self._but()}"
                     )
 
     def _but(self) -> str:

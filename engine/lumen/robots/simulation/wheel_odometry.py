@@ -88,8 +88,8 @@ class WheelOdometry:
                 if not least <= place <= most:
                     reached = place + (self._drive.reach if place > most else -self._drive.reach)
                     raise RobotRefusedError(
-                        f"the base would leave the stage: it would reach {axis} = {reached:.2f} m, but the stage goes from "
-                        f"{low:g} to {high:g} m{doubt}"
+                        f"the base would leave the stage: it would reach {axis} = {reached:.2f} m, but the stage "
+                        f"goes from {low:g} to {high:g} m{doubt}"
                     )
 
     def _encoders(self) -> NDArray[np.float64]:
