@@ -91,6 +91,6 @@ def test_the_language_model_is_silenced(viewer: Viewer, asked: Hosted, console: 
 def test_whether_the_ears_listen_is_shown_with_the_reason(viewer: Viewer, asked: Hosted, console: str) -> None:
     asked.send("listening", {"listening": False, "because": "nobody"})
     viewer.open(console, "robot/NAO", ready=".body-facts")
-    viewer.shows("deaf: nobody looks or touches", ".body")
+    viewer.shows("not listening: no visitor looks at or touches the robot", ".body")
     asked.send("listening", {"listening": True, "because": "face"})
-    viewer.shows("listen: a face is near and looks", ".body")
+    viewer.shows("listening: a face is near and looks", ".body")

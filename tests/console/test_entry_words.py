@@ -22,7 +22,7 @@ SAID = {"Start": {"id": "d1", "command": {"Say": {"text": "Selamat datang", "lan
         ({"goto": "goto", "data": {"state": "offer"}, "cause": PERSON}, "sent to offer, by Aisyah",
          "dikirim ke offer, oleh Aisyah"),
         ({"jump": "start"}, "the behaviour begins", "perilaku dimulai"),
-        ({"jump": "dropped timer"}, "a timer is dropped", "sebuah pewaktu dilepas"),
+        ({"jump": "dropped timer"}, "a timer is dropped", "sebuah pewaktu dibatalkan"),
         ({"jump": "keyframe", "said": {"mark": "he waved", "by": "Budi"}}, "mark: he waved, by Budi",
          "tanda: he waved, oleh Budi"),
     ],

@@ -112,9 +112,11 @@ def a_bad_edit(house: House, operator: Operator) -> None:
     assert LEFT in good
     tour.write_text(good.replace(LEFT, LEFT.replace("goodbye", "godbye")), "utf-8")
     line = good[: good.index(LEFT)].count("\n") + 1
-    operator.sees("refused", f"behaviors/tour.yaml:{line}", "The robot goes on with the files before")
+    operator.sees("refused", f"behaviors/tour.yaml:{line}", "The robot continues with the previous files")
     operator.looks_at("/files")
-    operator.sees("there is no state `godbye`", "did you mean `goodbye`?", "The robot goes on with the files before")
+    operator.sees(
+        "there is no state `godbye`", "did you mean `goodbye`?", "The robot continues with the previous files"
+    )
     tour.write_text(good, "utf-8")
     operator.sees("No findings.", "The saved files are those that run")
     operator.looks_at()

@@ -125,7 +125,7 @@ def test_who_signs_in_sees_what_the_role_may_use(viewer: Viewer, console: str, r
     assert {name for name, selector in SEEN.items() if viewer.all(selector)} == MAY[role]
     viewer.click(".settings > button")
     viewer.click("#settings > button:last-child")
-    viewer.shows("Who is there?", "main")
+    viewer.shows("Sign in to use this console", "main")
     assert not viewer.all(", ".join(SEEN.values()))
     assert viewer.all("rest-button[main] .rest")
 
@@ -185,7 +185,7 @@ def test_what_waits_for_go_is_asked_about_and_goes_or_stays(viewer: Viewer, hall
 
 def test_a_time_that_runs_out_decides_and_is_seen_coming(viewer: Viewer, hall: Hosted) -> None:
     says(hall, "rest")
-    viewer.shows("Stays, if nobody says GO, in", ".countdown")
+    viewer.shows("Stays without a GO in", ".countdown")
     until(lambda: not viewer.all(".approval"), HANG)
     assert hall.exhibition.configuration == {"hall"}
     says(hall, "sing")
@@ -239,7 +239,7 @@ def test_radio_buttons_are_chosen_by_arrows_and_the_hall_without_webgl_gives_way
         flat.run("document.querySelector('input[name=view]:checked').focus()")
         flat.type(Keys.ARROW_RIGHT)
         until(lambda: flat.all("input[name=view][value=hall]:checked"), HANG)
-        flat.shows("draws no 3-D view", "main .notice")
+        flat.shows("cannot draw the 3-D view", "main .notice")
         until(lambda: flat.all(".part.camera img"), HANG)
         assert not flat.all("canvas")
     finally:

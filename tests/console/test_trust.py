@@ -103,7 +103,7 @@ def test_a_page_of_somebody_else_reads_nothing_and_does_nothing(
 @pytest.mark.slow
 def test_a_name_that_somebody_has_bound_to_this_address_is_refused(served: Served, chromium: Chromium) -> None:
     chromium.open(f"http://{EVIL}:{served.browser.port}/")
-    until(lambda: chromium.shows("this console is not called that"), HANG)
+    until(lambda: chromium.shows("unknown host"), HANG)
     assert chromium.all("rest-button") == []
 
 

@@ -22,6 +22,7 @@ class EntryPhrases:
     """What lines about entries are made of, in one language."""
 
     says: str = "says “{}”"
+    heard: str = "heard “{}”"
     plays: str = "plays {}"
     by: str = "{}, by {}"
     sent: str = "sent to {}"
@@ -37,6 +38,15 @@ class EntryPhrases:
     dropped_event: str = "an event is dropped"
     gap: str = "some entries are lost"
     keyframe: str = ""
+    code: str = "en"
+
+    def deed(self, kind: str) -> str:
+        """A command that is not spoken, by its class."""
+        return DEEDS.get(self.code, {}).get(kind, kind.lower())
+
+    def person(self, by: str) -> str:
+        """A person as named in the journal: a name, or a role in the language of the page."""
+        return PEOPLE.get(self.code, {}).get(by, by)
 
     def jump(self, kind: str) -> str:
         """A jump of that kind; the kind itself where it is one that is not known here."""
@@ -44,15 +54,27 @@ class EntryPhrases:
         return str(getattr(self, name)) if name in KNOWN else kind
 
 
+DEEDS: Mapping[str, Mapping[str, str]] = {
+    "id": {
+        "Play": "gerakan", "Posture": "sikap tubuh", "GoTo": "berjalan ke", "Walk": "berjalan", "Move": "bergerak",
+        "Look": "menoleh", "Leds": "lampu", "Volume": "volume", "PlaySound": "memutar suara",
+        "Track": "mengikuti wajah", "Stop": "berhenti", "Rest": "beristirahat",
+        "Wake": "bangun", "Language": "bahasa", "Ask": "bertanya",
+    },
+}  # fmt: skip
+PEOPLE: Mapping[str, Mapping[str, str]] = {
+    "id": {"author": "penulis", "show": "peragaan", "a person at the console": "seseorang di konsol"},
+}
 KNOWN = frozenset(field.name for field in fields(EntryPhrases))
 ENGLISH = EntryPhrases()
 OTHERS = {
     "id": EntryPhrases(
-        says="berkata “{}”", plays="memainkan {}", by="{}, oleh {}", sent="dikirim ke {}", late="waktu habis",
-        refused="ditolak", mark="tanda", start="perilaku dimulai", reload="mulai sini berkas lain yang berjalan",
-        rollback="berkas sebelumnya berjalan lagi", resume="melanjutkan dari akhir jalannya yang lalu",
-        forget="seseorang dilupakan", dropped_timer="sebuah pewaktu dilepas", dropped_event="sebuah peristiwa dilepas",
-        gap="sebagian dari yang terjadi hilang",
+        says="berkata “{}”", heard="mendengar “{}”", plays="memainkan {}", by="{}, oleh {}",
+        sent="dikirim ke {}", late="waktu habis", refused="ditolak", mark="tanda", start="perilaku dimulai",
+        reload="berkas lain berjalan mulai sekarang",
+        rollback="berkas sebelumnya berjalan lagi", resume="melanjutkan dari tempat berhenti terakhir",
+        forget="seorang pengunjung dilupakan", dropped_timer="sebuah pewaktu dibatalkan",
+        dropped_event="sebuah peristiwa dibatalkan", gap="sebagian catatan hilang", code="id",
     )
 }  # fmt: skip
 """The languages of the pages besides English."""
@@ -111,7 +133,7 @@ def _noted(said: Mapping[str, Any], words: EntryPhrases) -> str:
     if not what:
         return ""
     text = f"{words.mark}: {said[what]}".removesuffix(": ") if what == MARK else str(said[what])
-    return words.by.format(text, said.get("by", ""))[:MAX_TEXT]
+    return words.by.format(text, words.person(str(said.get("by", ""))))[:MAX_TEXT]
 
 
 def _came(entry: Mapping[str, Any], words: EntryPhrases) -> str:
@@ -120,7 +142,7 @@ def _came(entry: Mapping[str, Any], words: EntryPhrases) -> str:
     cause = entry.get("cause")
     match data:
         case {"result": str(heard)} if how == "heard":
-            text = f"{name} “{heard}”"
+            text = words.heard.format(heard) if name == "heard" else f"{name} “{heard}”"
         case {"state": str(state)} if how == "goto":
             text = words.sent.format(state)
         case {"reason": str(reason)} if reason and name.startswith(ERROR):
@@ -133,7 +155,7 @@ def _came(entry: Mapping[str, Any], words: EntryPhrases) -> str:
 def _by(cause: object, words: EntryPhrases) -> str:
     """Which person it was, as the end of a line."""
     person = isinstance(cause, list) and len(cause) > 3 and cause[0] == PERSON and cause[3]
-    return words.by.format("", person) if person else ""
+    return words.by.format("", words.person(str(person))) if person else ""
 
 
 def _did(entry: Mapping[str, Any], words: EntryPhrases) -> Iterator[str]:
@@ -147,9 +169,9 @@ def _did(entry: Mapping[str, Any], words: EntryPhrases) -> Iterator[str]:
             case {"motion": str(motion)}:
                 yield words.plays.format(motion)
             case {"posture": str(posture)} | {"name": str(posture)}:
-                yield f"{kind.lower()} {posture}"
+                yield f"{words.deed(kind)} {posture}"
             case _:
-                yield kind.lower()
+                yield words.deed(kind)
 
 
 def _begun(entry: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:

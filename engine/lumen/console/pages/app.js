@@ -41,6 +41,7 @@ function Main() {
   return lumen.page in LATER ? html`<${Later} page=${lumen.page} name=${name} />` : html`<${NowPage} name=${name} />`;
 }
 
+document.getElementById("skip").textContent = t("skip");
 document.body.dataset.page = lumen.page || (lumen.robot ? "now" : "home");
 if (lumen.page !== "subtitles") {
   render(html`<${Head} />`, document.getElementById("head"));

@@ -1,5 +1,6 @@
 // What is asked of a robot, and what became of it: told at the page's foot until it is read.
-import { html, redraw, t, useRedraw } from "./ui.js";
+import { Quote } from "./quoted.js";
+import { fixed, html, redraw, t, useRedraw } from "./ui.js";
 
 const LASTS = 5000; // [ms] that good news stays
 const told = [];
@@ -25,8 +26,8 @@ function dismiss(mine) {
 const SIGNS = { sending: "…", sent: "→", finished: "✓", failed: "✕", unsent: "✕", unknown: "?" };
 
 function sentence({ label, state, answer }) {
-  const reason = answer.reason ? `: ${answer.reason}` : "";
-  return `${label}: ${t(`told.${state}`, { seconds: (answer.seconds ?? 0).toFixed(1) })}${state === "finished" ? "" : reason}`;
+  const told = `${label}: ${t(`told.${state}`, { seconds: fixed(answer.seconds ?? 0, 1) })}`;
+  return answer.reason && state !== "finished" ? html`${told}: <${Quote} text=${answer.reason} />` : told;
 }
 
 export function Told() {

@@ -2,6 +2,7 @@
 import { command } from "./commands.js";
 import { live } from "./live.js";
 import { lostBody, waitsForResume } from "./now/troubles.js";
+import { inPageLanguage } from "./quoted.js";
 import { ROLES, askPin, leave, may, mode, show } from "./session.js";
 import { Dialog, LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useState } from "./ui.js";
 
@@ -15,7 +16,7 @@ function Connection({ robot }) {
 
 function Resume({ robot }) {
   const [asking, ask] = useState(false);
-  const waits = robot && waitsForResume(robot), by = robot?.stopped_by ?? "?";
+  const waits = robot && waitsForResume(robot), by = inPageLanguage(robot?.stopped_by ?? "?");
   if (!robot?.stopped && !waits) return null;
   const go = () => { ask(false); command(robot.robot, "resume"); };
   return html`<div class="stopped"><p role="status"><strong>${t(waits ? "waits" : "stopped")}</strong> ${t(waits ? "waits.more" : "stopped.by", { by })}</p>

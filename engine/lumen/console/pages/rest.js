@@ -10,17 +10,17 @@
       unknown: "Sent, but no answer came: look at the robot.",
       failed: "The robot does not rest: {reason}",
       finished: "Rests, after {seconds} s.",
-      after_all: "Rests after all: the robot says so now.",
+      after_all: "Rests after all: the robot reports it now.",
     },
     id: {
       rest: "Istirahat", all: "semua robot", again: "Escape sekali lagi: istirahat", dismiss: "Tutup",
       sending: "Mengirim …",
       unsent: "TIDAK TERKIRIM. Robot tidak menerimanya. Tekan lagi, atau hentikan dengan tangan.",
       sent: "Terkirim; robot belum menjawab.",
-      unknown: "Terkirim, tetapi tidak ada jawaban: lihat robotnya.",
+      unknown: "Terkirim, tetapi tidak ada jawaban: periksa robotnya.",
       failed: "Robot tidak beristirahat: {reason}",
-      finished: "Beristirahat, setelah {seconds} dtk.",
-      after_all: "Akhirnya beristirahat: robot mengatakannya sekarang.",
+      finished: "Beristirahat, setelah {seconds} detik.",
+      after_all: "Akhirnya beristirahat: robot melaporkannya sekarang.",
     },
   };
   const LIMIT = 1000, SILENT = 12000, TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
@@ -158,11 +158,13 @@
 
     show(state, answer = {}) {
       this.told = [state, answer];
-      const text = (words()[state] ?? state).replace("{seconds}", (answer.seconds ?? 0).toFixed(1)).replace("{reason}", answer.reason ?? "");
+      const seconds = (answer.seconds ?? 0).toLocaleString(root.lang, { minimumFractionDigits: 1, maximumFractionDigits: 1 });
+      const reason = globalThis.lumen.inPageLanguage?.(answer.reason ?? "") ?? answer.reason ?? "";
+      const text = (words()[state] ?? state).replace("{seconds}", seconds).replace("{reason}", () => reason);
       const alarming = ALARMS.includes(state);
       this.said.hidden = false, this.said.dataset.state = state, this.sign.textContent = SIGNS[state] ?? "";
       this.calm.textContent = alarming ? "" : text;
-      this.alarm.textContent = alarming ? text + (state === "unsent" && answer.reason ? ` (${answer.reason})` : "") : "";
+      this.alarm.textContent = alarming ? text + (state === "unsent" && reason ? ` (${reason})` : "") : "";
       if (alarming) setTimeout(() => this.heed(), NEW); // the robots may report nothing new meanwhile
       if (RESTS.includes(state)) this.heed();
     }

@@ -1,5 +1,6 @@
 // Who is here: nobody, show, operator or author, and as what of these the page is shown.
 import { connect, live } from "./live.js";
+import { Quote, reasonOf } from "./quoted.js";
 import { Dialog, html, keep, kept, redraw, t, useRedraw, useState } from "./ui.js";
 
 export const ROLES = ["nobody", "show", "operator", "author"];
@@ -30,15 +31,15 @@ export function SignIn() {
       const answer = await fetch("/api/session", { method: "POST", headers: { "Content-Type": "application/json" },
         body: JSON.stringify({ pin, name }), signal: AbortSignal.timeout(20000) });
       const said = await answer.json().catch(() => ({}));
-      if (!answer.ok) return setWrong(said.reason ?? said.detail ?? t("pin.wrong"));
+      if (!answer.ok) return setWrong(said.reason ?? said.detail ?? `${answer.status}`);
       close();
       connect();
-    } catch { setWrong(t("server.away")); }
+    } catch (error) { setWrong(reasonOf(error)); }
   };
   return html`<${Dialog} title=${t("sign.in")} onClose=${close} actions=${html`<button form="pin" class="strong">${t("sign.in")}</button>`}>
     <form id="pin" class="fields" onSubmit=${enter}>
       <label>${t("pin")}<input type="password" inputmode="numeric" autocomplete="current-password" required autofocus
         aria-describedby="pin-wrong" value=${pin} onInput=${(e) => setPin(e.target.value)} /></label>
       <label>${t("your.name")}<input autocomplete="name" maxlength="60" value=${name} onInput=${(e) => setName(e.target.value)} /></label>
-      <p id="pin-wrong" class="bad" role="alert">${wrong}</p></form></${Dialog}>`;
+      <p id="pin-wrong" class="bad" role="alert"><${Quote} text=${wrong} /></p></form></${Dialog}>`;
 }

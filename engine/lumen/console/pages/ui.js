@@ -11,10 +11,10 @@ const redraws = new Set();
 export const language = () => document.documentElement.lang;
 export const LANGUAGES = { en: "English", id: "Bahasa Indonesia" };
 
-/** The text of that name in the page's language; {name} is filled in. */
+/** The text of that name in the page's language; {name} is filled in, and {count|robot|robots} by whether the count is 1. */
 export function t(name, values = {}) {
   const text = TEXTS[language()]?.[name] ?? en[name] ?? name;
-  return text.replace(/\{(\w+)\}/g, (all, key) => values[key] ?? all);
+  return text.replace(/\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (all, key, one, many) => (one === undefined ? values[key] ?? all : `${values[key]}` === "1" ? one : many));
 }
 
 /** A map of texts by language, as YAML writes them: the page's, else the first. */
@@ -51,7 +51,15 @@ export function useRedraw() {
 
 const number = (digits) => ({ minimumFractionDigits: digits, maximumFractionDigits: digits });
 export const fixed = (value, digits = 0) => Number(value).toLocaleString(language(), number(digits));
-export const percent = (value) => `${fixed(value)} %`;
+export const percent = (value) => `${fixed(value)}%`;
+
+/** What people call a language: `en` is English, or Inggris. */
+export function languageName(code) {
+  try { return new Intl.DisplayNames([language()], { type: "language" }).of(code) ?? code; } catch { return code; }
+}
+
+/** A full hour: 9:00, or 9.00. */
+export const fullHour = (hour) => `${hour}${language() === "id" ? "." : ":"}00`;
 
 /** 14:03:20 where the console is looked at. */
 export const clock = (iso, seconds = true) => iso ? new Date(iso).toLocaleTimeString(language() === "id" ? "id-ID" : "en-GB",

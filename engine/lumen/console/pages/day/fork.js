@@ -1,5 +1,7 @@
 // Fork from here: what would have been, with another event or with the saved files; beside what was.
 import { robotOf } from "../live.js";
+import en from "../texts/en.js";
+import { Quote, reasonOf } from "../quoted.js";
 import { Part, clock, html, lineOf, t, useState } from "../ui.js";
 
 async function ask(body) {
@@ -22,9 +24,9 @@ export function Fork({ name, entry }) {
   const go = async (submitted) => {
     submitted.preventDefault();
     let body = null;
-    try { body = event ? { name: event, data: JSON.parse(data || "{}") } : null; } catch { return tell(t("cue.data.wrong")); }
+    try { body = event ? { name: event, data: JSON.parse(data || "{}") } : null; } catch { return tell(en["cue.data.wrong"]); }
     tell(""), wait(true), show(null);
-    try { show({ ...(await ask({ robot: name, position: entry.position, event: body, bundle: saved ? "saved" : null })), from: entry }); } catch (error) { tell(error.message); }
+    try { show({ ...(await ask({ robot: name, position: entry.position, event: body, bundle: saved ? "saved" : null })), from: entry }); } catch (error) { tell(reasonOf(error)); }
     wait(false);
   };
   const same = found && found.was.length === found.would.length && found.was.every((one, n) => one.text === found.would[n].text);
@@ -35,7 +37,7 @@ export function Fork({ name, entry }) {
       <label class="grow"><span>${t("cue.data")}</span><input class="code" value=${data} placeholder='{"result": "dance"}' onInput=${(e) => setData(e.target.value)} autocomplete="off" spellcheck=${false} /></label>
       <label class="check"><input type="checkbox" checked=${saved} onChange=${(e) => setSaved(e.target.checked)} /> ${t("fork.files")}</label>
       <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`}
-    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""} ${found?.trouble ?? ""}</div><p class="bad" role="alert">${wrong}</p>
+    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""} <${Quote} text=${found?.trouble ?? ""} /></div><p class="bad" role="alert"><${Quote} text=${wrong} /></p>
     ${found && html`<div class="beside" tabindex="0" role="group" aria-label=${t("fork")}><${Column} title=${t("fork.was")} entries=${found.was} other=${found.would} from=${found.from} />
       <${Column} title=${t("fork.would")} entries=${found.would} other=${found.was} from=${found.from} /></div>`}</${Part}>`;
 }

@@ -1,5 +1,5 @@
 // The day's numbers: each chart is a table whose rows have a bar, so that everybody reads the same.
-import { Part, fixed, html, span, t } from "../ui.js";
+import { Part, fixed, fullHour, html, languageName, span, t } from "../ui.js";
 import { Said } from "./said.js";
 import { Unanswered } from "./unanswered.js";
 
@@ -18,9 +18,9 @@ export function Numbers({ name, day }) {
   const facts = [["day.count", fixed(numbers.visits)], ["day.mean", length(numbers.mean_seconds)], ["day.longest", length(numbers.longest_seconds)], ["day.falls", fixed(numbers.falls)]];
   const query = new URLSearchParams({ robot: name, date: day.date });
   return html`<${Part} title=${t("day.numbers")} kind="numbers" aside=${html`<a class="button" href="/api/day.csv?${query}" download>${t("day.csv")}</a>`}>
-    <dl class="totals">${facts.map(([label, value]) => html`<div><dd>${value}</dd><dt>${t(label)}</dt></div>`)}</dl>
-    <div class="charts"><${Chart} title=${t("day.hours")} all rows=${(numbers.hours ?? []).map(([hour, count]) => [`${hour}:00`, count])} />
+    <dl class="totals">${facts.map(([label, value]) => html`<div><dd>${value}</dd><dt>${t(label, { n: value })}</dt></div>`)}</dl>
+    <div class="charts"><${Chart} title=${t("day.hours")} all rows=${(numbers.hours ?? []).map(([hour, count]) => [fullHour(hour), count])} />
       <${Chart} title=${t("day.asked")} rows=${numbers.asked ?? []} /><${Chart} title=${t("day.missed")} rows=${numbers.missed ?? []} />
-      <${Chart} title=${t("day.answers")} rows=${numbers.answers ?? []} /><${Chart} title=${t("day.languages")} rows=${numbers.languages ?? []} /></div>
+      <${Chart} title=${t("day.answers")} rows=${numbers.answers ?? []} /><${Chart} title=${t("day.languages")} rows=${(numbers.languages ?? []).map(([code, count]) => [languageName(code), count])} /></div>
     <${Unanswered} name=${name} rows=${numbers.unanswered ?? []} /><${Said} name=${name} said=${numbers.said ?? []} rows=${numbers.rows ?? {}} /></${Part}>`;
 }

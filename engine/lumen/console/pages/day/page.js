@@ -2,8 +2,9 @@
 import { command } from "../commands.js";
 import { JOB, get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
+import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, clock, html, lineOf, span, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Part, clock, html, languageName, lineOf, span, t, useEffect, useRedraw, useState } from "../ui.js";
 import { Fork } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
 import { Numbers } from "./numbers.js";
@@ -16,7 +17,7 @@ function Visits({ day, visit, choose }) {
     ${day.visits.length ? html`<ol class="visit-list bounded" reversed tabindex="0" aria-label=${t("day.visits")}>${[...day.visits].reverse().map((one) => html`<li key=${one.from}>
       <button type="button" aria-current=${one === visit ? "true" : null} onClick=${() => choose(one)}>
         <b>${t("day.visit", { n: one.n })}</b> <time datetime=${one.began}>${clock(one.began, false)}</time>
-        <span>${span(one.seconds ?? 0)}</span><span class="grow">${one.visitor ?? ""}</span><span class="quiet">${one.language ?? ""}</span></button></li>`)}</ol>`
+        <span>${span(one.seconds ?? 0)}</span><span class="grow">${one.visitor ?? ""}</span><span class="quiet">${one.language ? languageName(one.language) : ""}</span></button></li>`)}</ol>`
       : html`<p class="quiet">${t("day.none")}</p>`}</${Part}>`;
 }
 
@@ -33,13 +34,13 @@ function Around({ name, visit, moment, chosen, choose }) {
   useEffect(() => {
     set(null), fail("");
     let gone = false;
-    if (visit) get("/api/entries", { robot: name, from: visit.from, to: visit.to }).then((found) => gone || set(found.entries), (error) => gone || fail(error.message));
+    if (visit) get("/api/entries", { robot: name, from: visit.from, to: visit.to }).then((found) => gone || set(found.entries), (error) => gone || fail(reasonOf(error)));
     return () => { gone = true; };
   }, [visit]);
   const shown = entries ? nearest(entries, moment) : [];
   const now = shown.filter((entry) => Date.parse(entry.at_time) <= moment).at(-1);
   return html`<${Part} title=${t("day.entries")} kind="entries" aside=${html`<b>${visit && !visit.n ? `${t("day.between")}, ` : ""}${t("day.at", { time: clock(new Date(moment).toISOString()) })}</b>`}>
-    ${failed && html`<p class="bad" role="alert">${failed}</p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
+    ${failed && html`<p class="bad" role="alert"><${Quote} text=${failed} /></p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
     <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
       current=${entry === (chosen ?? now)} onOpen=${choose} />`)}</ol>
     ${chosen && html`<div class="chosen"><p><time datetime=${chosen.at_time}>${clock(chosen.at_time)}</time> ${lineOf(chosen)}</p>
@@ -60,7 +61,7 @@ export default function DayPage({ name }) {
       set(found), mark(null);
       const last = found.visits.at(-1) ?? stretches(found).at(-1);
       if (last) look(last); else choose(null);
-    }, (error) => gone || fail(error.message));
+    }, (error) => gone || fail(reasonOf(error)));
     return () => { gone = true; };
   }, [date]);
   useEffect(() => { // what happens counts at once, where the day that is shown is the one that goes on
@@ -81,7 +82,7 @@ export default function DayPage({ name }) {
     const parts = stretches(day), inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
     if (inside && inside !== visit) choose(inside);
   };
-  if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert">${failed}</p>`;
+  if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>
       <label><span>${t("day.date")}</span><input type="date" value=${date || day.date} min=${day.dates?.at(0)} max=${day.dates?.at(-1)} onChange=${(e) => pick(e.target.value)} /></label>

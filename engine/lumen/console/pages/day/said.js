@@ -1,6 +1,7 @@
 // What visitors said, and which row of `hears` took it; an author says which one should have, and it becomes a saying.
+import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { fixed, html, t, useEffect, useRef, useState } from "../ui.js";
+import { fixed, html, languageName, t, useEffect, useRef, useState } from "../ui.js";
 
 /** The rows that could have taken a sentence, as the values of a choice. */
 const choices = (one, rows) => one.states.flatMap(([behavior, state]) => (rows[`${behavior} ${state}`] ?? []).map((row) => ({ behavior, state, row })));
@@ -19,16 +20,16 @@ function Row({ name, one, rows, saved }) {
       const said = await sent.json().catch(() => ({}));
       if (sent.ok) return saved(said.file);
       complain(said.reason ?? `${sent.status}`);
-    } catch (error) { complain(error.message); }
+    } catch (error) { complain(reasonOf(error)); }
     wait(false);
   };
-  return html`<li><span>${one.text}</span> <span class="quiet">${one.states.map(([, state]) => state).join(", ")} · ${one.row || t("day.said.none")} · ${one.language} · ${fixed(one.count)}×</span>
+  return html`<li><span>${one.text}</span> <span class="quiet">${one.states.map(([, state]) => state).join(", ")} · ${one.row || t("day.said.none")} · ${languageName(one.language)} · ${fixed(one.count)}×</span>
     ${may("author") && html`<button type="button" aria-expanded=${open} onClick=${() => setOpen(!open)}>${t("day.said.should")}</button>`}
     ${open && html`<form class="cue" onSubmit=${save}><label><span>${t("day.said.row")}</span><select ref=${field} value=${chosen} onChange=${(e) => choose(e.target.value)} required><option value=""></option>
       ${could.map(({ state, row }, n) => html`<option value=${n} selected=${`${n}` === chosen}>${several ? `${row} (${state})` : row}</option>`)}</select></label>
-      <label class="grow"><span>${t("day.said.text")} (${one.language})</span><input value=${text} onInput=${(e) => setText(e.target.value)} maxlength="1000" required autocomplete="off" /></label>
+      <label class="grow"><span>${t("day.said.text")} (${languageName(one.language)})</span><input value=${text} onInput=${(e) => setText(e.target.value)} maxlength="1000" required autocomplete="off" /></label>
       <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
-    <p class="bad" role="alert">${wrong}</p></li>`;
+    <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;
 }
 
 export function Said({ name, said, rows }) {

@@ -1,6 +1,7 @@
 // What visitors asked and nobody could answer; each becomes a passage of knowledge/ with one edit.
+import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { fixed, html, t, useEffect, useRef, useState } from "../ui.js";
+import { fixed, html, languageName, t, useEffect, useRef, useState } from "../ui.js";
 
 function Row({ name, one, saved }) {
   const [open, setOpen] = useState(false), [answer, setAnswer] = useState(""), [busy, wait] = useState(false), [wrong, complain] = useState("");
@@ -15,14 +16,14 @@ function Row({ name, one, saved }) {
       const said = await sent.json().catch(() => ({}));
       if (sent.ok) return saved(said.file);
       complain(said.reason ?? `${sent.status}`);
-    } catch (error) { complain(error.message); }
+    } catch (error) { complain(reasonOf(error)); }
     wait(false);
   };
-  return html`<li><span>${one.text}</span> <span class="quiet">${one.language} · ${fixed(one.count)}×</span>
+  return html`<li><span>${one.text}</span> <span class="quiet">${languageName(one.language)} · ${fixed(one.count)}×</span>
     ${may("author") && html`<button type="button" aria-expanded=${open} onClick=${() => setOpen(!open)}>${t("day.passage")}</button>`}
-    ${open && html`<form class="cue" onSubmit=${save}><label class="grow"><span>${t("day.passage.answer")} (${one.language})</span>
+    ${open && html`<form class="cue" onSubmit=${save}><label class="grow"><span>${t("day.passage.answer")} (${languageName(one.language)})</span>
       <input ref=${field} value=${answer} onInput=${(e) => setAnswer(e.target.value)} maxlength="1000" required autocomplete="off" /></label><button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
-    <p class="bad" role="alert">${wrong}</p></li>`;
+    <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;
 }
 
 export function Unanswered({ name, rows }) {

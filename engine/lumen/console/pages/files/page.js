@@ -1,6 +1,7 @@
 // Files: what was saved, what is wrong in it, what it changes, and what it would have changed in the last visits.
 import { command } from "../commands.js";
 import { JOB, get, listen, robotOf } from "../live.js";
+import { InEnglish, Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
 
@@ -8,23 +9,23 @@ const LEVELS = { error: "bad", warning: "warn", info: "kind" };
 
 function Findings({ findings }) {
   return html`<${Part} title=${t("files.findings")} kind="findings">${findings.length === 0 ? html`<p class="quiet">${t("files.findings.none")}</p>`
-    : html`<ul class="plain-list">${findings.map((one) => html`<li class="finding">
-      <p><span class="badge" data-state=${LEVELS[one.severity] ?? "kind"}>${one.severity}</span> <span class="place">${place(one.file, one.line)}${one.column ? `:${one.column}` : ""}</span></p>
-      <p><b>${one.message}</b></p>${one.hint && html`<p>${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
+    : html`<${InEnglish} /><ul class="plain-list">${findings.map((one) => html`<li class="finding">
+      <p><span class="badge" data-state=${LEVELS[one.severity] ?? "kind"}>${t(`severity.${one.severity}`)}</span> <span class="place">${place(one.file, one.line)}${one.column ? `:${one.column}` : ""}</span></p>
+      <p lang="en"><b>${one.message}</b></p>${one.hint && html`<p lang="en">${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
 }
 
 function Changes({ report, refused }) {
   const changes = report.changes ?? [];
-  return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: report.risk })}</span>`}>
-    ${changes.length ? html`<ul class="diff">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(refused ? "files.unread" : "files.nothing")}</p>`}
-    ${report.restart?.length > 0 && html`<ul class="diff">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
+  return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`}>
+    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(refused ? "files.unread" : "files.nothing")}</p>`}
+    ${report.restart?.length > 0 && html`<ul class="diff" lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
 }
 
 function Replay({ replay }) {
   if (!replay) return null;
   return html`<${Part} title=${t("files.replay")} kind="replay"><p>${t("files.visits", { visits: fixed(replay.visits), steps: fixed(replay.steps), same: fixed(replay.same) })}</p>
     <ul class="plain-list">${(replay.differ ?? []).map((one) => html`<li class="finding"><p><b>${t("day.visit", { n: one.visit })}</b> <span class="quiet">${clock(one.at)}</span></p>
-      <dl class="differ"><dt>${t("files.was")}</dt><dd>${one.was}</dd><dt>${t("files.here")}</dt><dd>${one.is}</dd></dl></li>`)}</ul></${Part}>`;
+      <dl class="differ"><dt>${t("files.was")}</dt><dd><${Quote} text=${one.was} named=${false} /></dd><dt>${t("files.here")}</dt><dd><${Quote} text=${one.is} named=${false} /></dd></dl></li>`)}</ul></${Part}>`;
 }
 
 function Actions({ name, files }) {
@@ -39,23 +40,23 @@ function Actions({ name, files }) {
     <button type="button" onClick=${() => ask("rollback")}>${t("files.back")}</button></div>
     ${asking && html`<${Dialog} title=${t(asking === "apply" ? "files.apply.ask" : "files.back.ask")} onClose=${() => ask(null)}
       actions=${html`<button type="button" class="strong" onClick=${go}>${t(asking === "apply" ? "files.apply" : "files.back")}</button>`}>
-      <p>${files.waiting || files.reason || ""}</p></${Dialog}>`}`;
+      <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Dialog}>`}`;
 }
 
 export default function FilesPage({ name }) {
   useRedraw();
   const [files, set] = useState(null), [failed, fail] = useState("");
   const known = JSON.stringify([robotOf(name)?.files, robotOf(name)?.last_reload]);
-  const look = () => get("/api/files", { robot: name }, JOB).then((found) => { set(found); fail(""); }, (error) => fail(error.message));
+  const look = () => get("/api/files", { robot: name }, JOB).then((found) => { set(found); fail(""); }, (error) => fail(reasonOf(error)));
   useEffect(() => { look(); }, [known]);
   useEffect(() => listen((kind) => kind === "command" && look()), []);
   if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;
-  if (!files) return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert">${failed}</p>`;
+  if (!files) return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   const report = files.last ?? files, verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
-        ${" "}${files.last?.reason ?? ""} ${report.hint ?? ""} ${verdict === "refused" && t("files.goes.on")}</p>
-      ${files.last?.lines?.length > 0 && html`<ul class="lines">${files.last.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
-      <p class="quiet">${files.reason ?? ""}</p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
+        ${" "}<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} /> ${verdict === "refused" && t("files.goes.on")}</p>
+      ${files.last?.lines?.length > 0 && html`<${InEnglish} /><ul class="lines" lang="en">${files.last.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
+      <p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
     <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report.changes ? report : files} refused=${verdict === "refused"} /><${Replay} replay=${files.replay} /></div>`;
 }

@@ -1,5 +1,6 @@
 // Many houses: their robots, the steps of a rollout, and what stops it.
 import { get } from "../live.js";
+import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Dialog, Part, fixed, html, span, t, useEffect, useState } from "../ui.js";
 
@@ -36,7 +37,7 @@ function Rollout({ rollout, act }) {
   if (!rollout) return html`<${Part} title=${t("fleet.rollout")} kind="rollout"><p class="quiet">${t("fleet.none")}</p></${Part}>`;
   const under = ["going", "paused", "a person decides"].includes(rollout.state);
   return html`<${Part} title=${t("fleet.rollout")} kind="rollout" aside=${html`<span class="badge" data-state=${VERDICTS[rollout.state]}>${t(`fleet.${rollout.state}`)}</span>`}>
-    <p>${t("fleet.bundle")} <span class="place">${rollout.bundle.slice(0, 12)}</span> ${rollout.reason}</p>
+    <p>${t("fleet.bundle")} <span class="place">${rollout.bundle.slice(0, 12)}</span> <${Quote} text=${rollout.reason} /></p>
     <${Steps} rollout=${rollout} />
     ${rollout["abort-if"] && html`<p class="quiet">${t("fleet.abort.if")} <code>${rollout["abort-if"]}</code></p>`}
     ${under && may("operator") && html`<${Actions} rollout=${rollout} act=${act} />`}</${Part}>`;
@@ -47,17 +48,17 @@ function House({ house, robots }) {
     <ul class="plain-list">${robots.map((robot) => html`<li key=${robot.name}><b>${robot.name}</b>
       ${" "}<span class="badge" data-state=${LEVELS[robot.state] ?? "kind"}>${t(`fleet.${robot.state}`)}</span>
       ${" "}<span class="place">${robot.bundle.slice(0, 12)}</span>${robot.pinned && html` <span class="badge" data-state="kind">${t("fleet.pinned")}</span>`}
-      ${robot.trouble && html`<p>${robot.trouble}</p>`}</li>`)}</ul></${Part}>`;
+      ${robot.trouble && html`<p><${Quote} text=${robot.trouble} /></p>`}</li>`)}</ul></${Part}>`;
 }
 
 export default function FleetPage() {
   const [fleet, set] = useState(null), [failed, fail] = useState("");
-  const look = () => get("/api/fleet").then((found) => { set(found); fail(""); }, (error) => fail(error.message));
+  const look = () => get("/api/fleet").then((found) => { set(found); fail(""); }, (error) => fail(reasonOf(error)));
   useEffect(() => { look(); const timer = setInterval(look, PERIOD); return () => clearInterval(timer); }, []);
-  const act = (decision) => decide(decision).then(look, (error) => fail(error.message));
+  const act = (decision) => decide(decision).then(look, (error) => fail(reasonOf(error)));
   const trouble = failed || fleet?.trouble || fleet?.centre?.overruled;
   return html`<h1>${t("page.fleet")}</h1>
-    ${trouble && html`<p class="notice bad" role="alert">${trouble}</p>`}
+    ${trouble && html`<p class="notice bad" role="alert"><${Quote} text=${trouble} /></p>`}
     ${!fleet ? !failed && html`<p class="notice">${t("loading")}</p>` : html`
       <p class="quiet">${t("fleet.here", { here: fixed(fleet.robots.filter((one) => one.here).length), robots: fixed(fleet.robots.length) })}</p>
       <${Rollout} rollout=${fleet.rollout} act=${act} />

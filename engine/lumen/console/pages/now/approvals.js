@@ -1,11 +1,12 @@
 // Transitions that wait for a person's GO, with the time after which they go or don't; and how far the robot goes alone.
 import { command } from "../commands.js";
+import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
 import { Part, Place, Until, html, t } from "../ui.js";
 
 function Waiting({ robot, one }) {
-  const answer = (go) => command(robot.robot, "approve", { approval: one.id, go }, `${one.event} → ${one.targets.join(", ")}: ${t(go ? "approve.go" : "approve.stay")}`);
-  return html`<li class="approval"><p><b>${one.event}</b>: ${one.source} → ${one.targets.join(", ")} <${Place} file=${one.file} line=${one.line} /></p>
+  const answer = (go) => command(robot.robot, "approve", { approval: one.id, go }, `${inPageLanguage(one.event)} → ${one.targets.join(", ")}: ${t(go ? "approve.go" : "approve.stay")}`);
+  return html`<li class="approval"><p><b>${inPageLanguage(one.event)}</b>: ${one.source} → ${one.targets.join(", ")} <${Place} file=${one.file} line=${one.line} /></p>
     ${one.until && html`<p class="countdown">${t(one.else === "go" ? "approve.goes" : "approve.stays")} <strong><${Until} at=${one.until} skew=${robot.skew} /></strong></p>`}
     <div class="actions"><button type="button" class="go" onClick=${() => answer(true)}>${t("approve.go")}</button>
       <button type="button" onClick=${() => answer(false)}>${t("approve.stay")}</button></div></li>`;

@@ -1,5 +1,6 @@
 // How the robot and what runs it are: power, heat, distance, time, processes, modules, queues.
 import { Part, Since, clock, fixed, html, percent, t } from "../ui.js";
+import { Quote, inPageLanguage } from "../quoted.js";
 import { Autonomy, Model } from "./approvals.js";
 import { processesOf } from "./troubles.js";
 
@@ -30,7 +31,7 @@ function Senses({ robot }) {
       state=${heat > HOT ? "bad" : "well"} words=${heat > HOT ? t("heat.high") : ""} />
     <${Fact} name=${t("sonar")} value=${sonar.leftSensor == null && sonar.rightSensor == null ? t("unknown") : `${t("left")} ${metres(sonar.leftSensor)} · ${t("right")} ${metres(sonar.rightSensor)}`} />
     ${robot.ears && html`<${Fact} name=${t("ears")} value=${t(`ears.${robot.ears.because}`)} />`}
-    <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : `${fixed(realtime * 100)} %`}
+    <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : percent(realtime * 100)}
       state=${realtime < SLOW ? "bad" : "well"} words=${realtime < SLOW ? t("realtime.slow") : ""} />
     <${Fact} name=${t("queues")} value=${robot.queues ? t("queues.both", robot.queues) : t("unknown")} /></dl>`;
 }
@@ -41,7 +42,7 @@ function Processes({ robot }) {
     const gone = one.state !== "here";
     return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}><span>${one.parts.join(", ")}</span>
       ${robot.connected === false ? html`<span class="badge">${t("unknown")}</span>` : html`<span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>`}
-      <span class="quiet">${one.word ? `${one.word} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} skew=${0} /></span></li>`;
+      <span class="quiet">${one.word ? `${inPageLanguage(one.word)} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} skew=${0} /></span></li>`;
   })}</ul>` : html`<p class="quiet">${t("processes.none")}</p>`}`;
 }
 
@@ -49,5 +50,5 @@ export function Body({ robot }) {
   const reload = robot.last_reload;
   return html`<${Part} title=${t("body")} kind="body"><${Senses} robot=${robot} /><${Processes} robot=${robot} />
     ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
-      <span class="quiet">${clock(reload.at)}</span> ${reload.text} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}<${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Part}>`;
+      <span class="quiet">${clock(reload.at)}</span> <${Quote} text=${reload.text} /> ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}<${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Part}>`;
 }

@@ -1,5 +1,6 @@
 // The buttons that the behaviour declares for the states it is in; held, asked or pressed at once, as declared.
 import { command } from "../commands.js";
+import { inPageLanguage } from "../quoted.js";
 import { Dialog, Part, html, inLanguage, t, useEffect, useRef, useState } from "../ui.js";
 
 const HELD = 1000; // [ms]
@@ -36,7 +37,7 @@ function Button({ robot, button }) {
     addEventListener("keyup", released);
     return () => { removeEventListener("keydown", typed); removeEventListener("keyup", released); };
   });
-  const describing = !button.enabled ? button.reason : button.confirm === "hold" ? t("button.hold") : "";
+  const describing = !button.enabled ? inPageLanguage(button.reason) : button.confirm === "hold" ? t("button.hold") : "";
   return html`<li><button type="button" class="declared ${held ? "held" : ""}" aria-disabled=${button.enabled ? null : "true"}
       aria-description=${describing} aria-keyshortcuts=${button.key || null} onClick=${click}
       onPointerDown=${begin} onPointerUp=${end} onPointerLeave=${end} onPointerCancel=${end} onKeyDown=${begin} onKeyUp=${end} onBlur=${end}

@@ -1,13 +1,15 @@
 // The latest of what happened; each opens its why.
 import { JOB, get, live } from "../live.js";
+import { InEnglish, Quote, reasonOf, translated } from "../quoted.js";
 import { Dialog, Part, Place, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
+import en from "../texts/en.js";
 import { isTrouble } from "./troubles.js";
 
 const SHOWN = 80;
 
 function Link({ link }) {
   const values = Object.entries(link.values ?? {});
-  return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span> ${link.text}</p>
+  return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span> <${Quote} text=${link.text} named=${false} /></p>
     <p class="place">${clock(link.at)} <${Place} file=${link.file} line=${link.line} /></p>
     ${values.length > 0 && html`<p class="values">${values.map(([name, value]) => html`<span>${name} = <b>${JSON.stringify(value)}</b></span> `)}</p>`}</li>`;
 }
@@ -16,10 +18,10 @@ function Link({ link }) {
 export function Why({ robot, what, at, text, onClose }) {
   const [found, set] = useState(null), [failed, fail] = useState("");
   const then = new Date(Date.parse(at) + 1).toISOString(); // what happened within that millisecond is meant, too
-  useEffect(() => { get("/api/why", { robot, what, at: then }, JOB).then((one) => (one.chain ? set(one) : fail(one.reason ?? t("why.none"))), (error) => fail(error.message)); }, []);
+  useEffect(() => { get("/api/why", { robot, what, at: then }, JOB).then((one) => (one.chain ? set(one) : fail(one.reason ?? en["why.none"])), (error) => fail(reasonOf(error))); }, []);
   return html`<${Dialog} title=${t("why.of", { text })} onClose=${onClose}>
-    ${failed && html`<p class="bad" role="alert">${failed}</p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
-    ${found && html`<ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${found.chain.map((link, n) => html`<${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
+    ${failed && html`<p class="bad" role="alert"><${Quote} text=${failed} /></p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
+    ${found && html`${found.chain.some((link) => translated(link.text) === null) && html`<${InEnglish} />`}<ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${found.chain.map((link, n) => html`<${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
 }
 
 /** What `lumen why` is asked about for an entry: what it said, else what it did, else the state it entered. */

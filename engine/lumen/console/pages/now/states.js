@@ -1,4 +1,5 @@
 // The active states as boxes in boxes, each with how long it has been active, and the timers that run.
+import { inPageLanguage } from "../quoted.js";
 import { Part, Place, Since, Until, html, t } from "../ui.js";
 
 /** The innermost active states of a tree, one for each region. */
@@ -19,6 +20,6 @@ export function States({ robot }) {
   return html`<${Part} title=${t("where")} kind="states">
     <ul class="boxes">${states.map((state) => html`<${Box} key=${state.path} state=${state} skew=${robot.skew} />`)}</ul>
     ${robot.timers?.length > 0 && html`<h3>${t("timers")}</h3><ul class="timers">${robot.timers.map((timer) => html`
-      <li key=${timer.event + timer.due}><span>${timer.event}</span><strong><${Until} at=${timer.due} skew=${robot.skew} /></strong></li>`)}</ul>`}
+      <li key=${timer.event + timer.due}><span>${inPageLanguage(timer.event)}</span><strong><${Until} at=${timer.due} skew=${robot.skew} /></strong></li>`)}</ul>`}
   </${Part}>`;
 }

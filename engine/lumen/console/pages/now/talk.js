@@ -1,7 +1,8 @@
 // The conversation: what the robot says and does, what the visitor said, and a text for it to say.
 import { command } from "../commands.js";
+import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, Since, fixed, html, t, useState } from "../ui.js";
+import { Part, Since, html, languageName, percent, t, useState } from "../ui.js";
 
 function SayForm({ robot }) {
   const languages = robot.languages?.length ? robot.languages : [robot.language ?? "en"];
@@ -16,20 +17,20 @@ function SayForm({ robot }) {
   return html`<form class="say" onSubmit=${say}><label class="grow"><span>${t("say.text")}</span>
       <input value=${text} maxlength="500" lang=${spoken} onInput=${(e) => set(e.target.value)} autocomplete="off" /></label>
     ${languages.length > 1 && html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(e) => choose(e.target.value)}>
-      ${languages.map((one) => html`<option value=${one} selected=${one === spoken}>${one}</option>`)}</select></label>`}
+      ${languages.map((one) => html`<option value=${one} selected=${one === spoken}>${languageName(one)}</option>`)}</select></label>`}
     <button class="strong">${t("say")}</button></form>`;
 }
 
 export function Talk({ robot }) {
   const { saying, visitor_said: heard, motion, skew } = robot;
   return html`<${Part} title=${t("talk")} kind="talk"
-      aside=${html`<p class="visitor"><span>${t("visitor")}: <b>${robot.visitor || t("nobody.here")}</b></span><span>${t("language")}: <b>${robot.language ?? ""}</b></span></p>`}>
+      aside=${html`<p class="visitor"><span>${t("visitor")}: <b>${robot.visitor || t("nobody.here")}</b></span><span>${t("language")}: <b>${robot.language ? languageName(robot.language) : ""}</b></span></p>`}>
     <p class="bubble robot" data-quiet=${!saying}><span class="speaker">${t("robot.says")} ${saying && html`<${Since} at=${saying.since} skew=${skew} />`}</span>
       <span lang=${saying?.language}>${saying ? saying.text : t("says.nothing")}</span></p>
     <p class="bubble visitor-said" data-quiet=${!heard}><span class="speaker">${t("visitor.said")} ${heard && html`<${Since} at=${heard.at} skew=${skew} />`}</span>
       <span>${heard ? heard.text : t("heard.nothing")}</span></p>
-    <div class="doing">${motion ? html`<p><b>${motion.verb}</b> ${motion.name} <${Since} at=${motion.since} skew=${skew} /></p>
-      ${motion.progress != null && html`<progress max="1" value=${motion.progress} aria-label="${motion.verb} ${motion.name}">${fixed(motion.progress * 100)} %</progress>`}`
+    <div class="doing">${motion ? html`<p><b>${inPageLanguage(motion.verb)}</b> ${motion.name} <${Since} at=${motion.since} skew=${skew} /></p>
+      ${motion.progress != null && html`<progress max="1" value=${motion.progress} aria-label="${inPageLanguage(motion.verb)} ${motion.name}">${percent(motion.progress * 100)}</progress>`}`
       : html`<p class="quiet">${t("moves.nothing")}</p>`}</div>
     ${may("operator") && html`<${SayForm} robot=${robot} />`}</${Part}>`;
 }

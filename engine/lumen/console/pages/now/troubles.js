@@ -1,6 +1,7 @@
 // What is wrong with a robot and what helps, above all else on its page: until it is over, or somebody has read it.
 import { get, live } from "../live.js";
-import { Since, clock, html, keep, kept, redraw, t, useEffect, useState } from "../ui.js";
+import { Quote } from "../quoted.js";
+import { Since, clock, fixed, html, keep, kept, redraw, t, useEffect, useState } from "../ui.js";
 
 const PART = "robot"; // that moves it, as `lumen run --only robot` says
 const BODY = { "fallen": "trouble.fallen", "battery.low": "trouble.battery", "motors.hot": "trouble.hot" };
@@ -34,6 +35,9 @@ export const lostBody = (robot) => processesOf(robot).find((one) => one.state !=
 /** Whether the behaviour waits until a person lets it go on, though nobody stopped the robot itself. */
 export const waitsForResume = (robot) => !robot.stopped && (robot.ways ?? []).some((way) => way.event === "resume" && way.open && way.targets?.length);
 
+/** The numbers of an event as people of the page's language write them. */
+const shown = (data) => Object.fromEntries(Object.entries(data ?? {}).map(([key, value]) => [key, typeof value === "number" ? fixed(value) : value]));
+
 /** The last time that the robot felt each of what is wrong with it, as far as nobody has read that. */
 function felt(robot) {
   const last = new Map();
@@ -49,13 +53,13 @@ function Away({ robot }) {
     ask();
     return () => clearInterval(timer);
   }, []);
-  return html`<p class="notice bad" role="alert"><b>${t("robot.away", { name: robot.robot })}</b> ${why || t("robot.away.why")}</p>`;
+  return html`<p class="notice bad" role="alert"><b>${t("robot.away", { name: robot.robot })}</b> ${why ? html`<${Quote} text=${why} />` : t("robot.away.why")}</p>`;
 }
 
 export function Troubles({ robot }) {
   const lost = robot.connected === false ? null : lostBody(robot), name = robot.robot;
   return html`${robot.connected === false && html`<${Away} robot=${robot} />`}
     ${lost && html`<div class="notice bad"><p role="alert"><b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p><p>${t("heard.ago")} <${Since} at=${lost.heard} skew=${0} /></p></div>`}
-    ${felt(robot).map((one) => html`<div class="notice bad" key=${one.position}><p role="alert"><b>${clock(one.at_time)} ${t(BODY[one.heard], one.data ?? {})}</b> ${t(`${BODY[one.heard]}.do`)}</p>
+    ${felt(robot).map((one) => html`<div class="notice bad" key=${one.position}><p role="alert"><b>${clock(one.at_time)} ${t(BODY[one.heard], shown(one.data))}</b> ${t(`${BODY[one.heard]}.do`)}</p>
       <button type="button" onClick=${() => haveRead(one)}>${t("trouble.read")}</button></div>`)}`;
 }

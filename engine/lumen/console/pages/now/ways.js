@@ -1,4 +1,5 @@
 // The ways out of the active states: which are open at this moment, and why not.
+import { Quote, inPageLanguage } from "../quoted.js";
 import { Part, Place, html, t } from "../ui.js";
 
 function Guard({ guard, open }) {
@@ -12,8 +13,8 @@ function Guard({ guard, open }) {
 function Way({ way }) {
   return html`<li class="way" data-open=${way.open}>
     <p class="way-head"><span class="badge" data-state=${way.open ? "open" : "closed"}>${t(way.open ? "way.open" : "way.closed")}</span>
-      <span><b>${way.event || t("way.always")}</b> → ${way.targets?.length ? way.targets.join(", ") : t("way.stays")}</span></p>
-    ${way.why && html`<p class="why-text">${way.why}</p>`}
+      <span><b>${inPageLanguage(way.event) || t("way.always")}</b> → ${way.targets?.length ? way.targets.join(", ") : t("way.stays")}</span></p>
+    ${way.why && html`<p class="why-text"><${Quote} text=${way.why} /></p>`}
     ${way.guard && html`<${Guard} guard=${way.guard} open=${way.open} />`}
     <p class="place">${t("way.from", { state: way.source })} <${Place} file=${way.file} line=${way.line} /></p></li>`;
 }

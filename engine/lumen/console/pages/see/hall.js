@@ -1,4 +1,5 @@
 // The robot in its hall, drawn from poses; where there is no WebGL, or nothing to draw, the camera stands in.
+import { Quote } from "../quoted.js";
 import { Part, html, t, useEffect, useRef, useState } from "../ui.js";
 import { follow, shape } from "./poses.js";
 
@@ -20,6 +21,6 @@ export function Hall({ name, instead }) {
   }, [name, failed]);
   if (failed) return instead(failed, trouble);
   return html`<${Part} title=${t("see.hall")} kind="hall"><div class="picture"><canvas ref=${canvas} role="img" aria-label=${t("see.alt.hall", { name })} data-poses=${moved}></canvas></div>
-    ${trouble && html`<p class="notice" role="status">${trouble}</p>`}
+    ${trouble && html`<p class="notice" role="status"><${Quote} text=${trouble} /></p>`}
     ${moved === 0 && html`<p class="quiet" role="status">${t("see.waiting")}</p>`}</${Part}>`;
 }

@@ -1,5 +1,6 @@
 // See: what the robot's camera sees with what the eyes found in it, and the robot in its hall.
 import { robotOf } from "../live.js";
+import { Quote } from "../quoted.js";
 import { Part, html, kept, keep, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
 import { Hall } from "./hall.js";
 
@@ -32,5 +33,5 @@ export default function SeePage({ name }) {
   const choose = (one) => { keep("lumen.see", one); set(one); };
   return html`<div class="page-head"><h1>${t("page.see")}</h1><fieldset class="choice"><legend class="hidden">${t("page.see")}</legend>${["camera", "hall"].map((one) => html`<label>
       <input type="radio" name="view" value=${one} checked=${view === one} onChange=${() => choose(one)} /><span>${t(`see.${one}`)}</span></label>`)}</fieldset></div>
-    ${view === "camera" ? html`<${Camera} name=${name} />` : html`<${Hall} name=${name} instead=${(why, reason) => html`<p class="notice">${t(why)} ${reason && html`<span lang="en">(${reason})</span>`}</p><${Camera} name=${name} />`} />`}`;
+    ${view === "camera" ? html`<${Camera} name=${name} />` : html`<${Hall} name=${name} instead=${(why, reason) => html`<p class="notice">${t(why)} ${reason && html`(<${Quote} text=${reason} />)`}</p><${Camera} name=${name} />`} />`}`;
 }
