@@ -255,8 +255,8 @@ def test_what_nobody_waits_for_is_told_once_with_the_nearest_key(
     for body in (b'"hello"', b'"hello?"'):
         method, properties, got = read(stranger, nowhere)
         assert (got, method.routing_key) == (body, lost.key)
-        assert properties.headers == {"reason": f"nobody takes `{lost.key}`"}
-    told = [r.getMessage() for r in caplog.records if "nobody takes" in r.getMessage()]
+        assert properties.headers == {"reason": f"no process receives `{lost.key}`"}
+    told = [r.getMessage() for r in caplog.records if "no process receives" in r.getMessage()]
     assert told == [f"no process receives messages on `{lost.key}`: did you mean `lumen.H.speech.recognition`?"]
 
 

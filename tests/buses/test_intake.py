@@ -105,7 +105,7 @@ def test_commands_that_are_too_many_are_refused_some_with_an_answer(monkeypatch:
     line = Line(monkeypatch, route(Carried.COMMAND))
     line.come(2_000)
     assert line.taken == list(range(1, 251))
-    assert line.refused == ["more than 50 a second come"] * 50
+    assert line.refused == ["more than 50 messages a second arrive"] * 50
     assert line.intake.drops.counts == {"lumen.a": 1_750}
     line.pass_time(1.0)
     line.come(1)
@@ -156,4 +156,4 @@ def test_a_flood_on_the_broker_arrives_as_its_newest_and_everything_else_goes_on
         until(lambda: seen.bodies[-1:] == [-1])
     connection.close()
     assert len(seen.bodies) <= USUAL_RATE * (BURST + time.monotonic() - began) + 1
-    assert "messages on `lumen.flood` are dropped: more than 50 a second come" in caplog.text
+    assert "messages on `lumen.flood` are dropped: more than 50 messages a second arrive" in caplog.text

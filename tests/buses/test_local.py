@@ -230,5 +230,5 @@ def test_a_project_deep_in_folders_is_served_too(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("data", [{}, {"path": "", "port": "x", "key": ""}, {"path": "", "port": [], "key": ""}])
 def test_what_is_no_address_is_said(data: dict[str, object]) -> None:
-    with pytest.raises(BusError, match="no address"):
+    with pytest.raises(BusError, match="not an address"):
         LocalAddress.of(json.loads(json.dumps(data)))

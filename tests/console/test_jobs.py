@@ -60,7 +60,7 @@ def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytes
     told = reasons(done(*["slow"] * (MAX_WAITING + 1)))
     late = "this takes longer than 0.5 s: use `lumen` in a terminal"
     assert [reason for _, reason in told].count(late) == MAX_WAITING
-    assert "ask again in a moment" in told[-1][1]
+    assert "try again in a moment" in told[-1][1]
 
 
 @pytest.mark.process

@@ -119,8 +119,8 @@ def _refuses(handler: Handler, body: dict[str, Any]) -> None:
 
 
 FAULTS = {
-    _no_list: "something else",
-    _zeros: "something else",
+    _no_list: "is not a list of embeddings",
+    _zeros: "is not a list of embeddings",
     _uneven: "different",
     _huge: "more than",
     _refuses: "429",

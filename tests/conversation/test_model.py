@@ -102,9 +102,9 @@ FAULTS: list[tuple[str, Reply, list[str], str]] = [
     ("401", status(401), [], "answers 401"),
     ("redirect", redirects, [], "answers 307"),
     ("gone", vanishes, [], "cannot be reached"),
-    ("no JSON", writes(b"data: {oops\n\n"), [], "no JSON"),
-    ("deep JSON", writes(b"data: " + b"[" * 50_000 + b"\n\n"), [], "no JSON"),
-    ("other JSON", writes(b"data: [1]\n\n"), [], "something else than a chat completion"),
+    ("no JSON", writes(b"data: {oops\n\n"), [], "is not JSON"),
+    ("deep JSON", writes(b"data: " + b"[" * 50_000 + b"\n\n"), [], "is not JSON"),
+    ("other JSON", writes(b"data: [1]\n\n"), [], "is not a chat completion"),
     ("odd JSON", writes(b'data: {"choices": [{"delta": {"content": 5, "tool_calls": [7, {}]}}, 3]}\n\n'), [], ""),
     ("no choices", writes(b'data: {"choices": []}\n\ndata: [DONE]\n\n'), [], ""),
     ("no UTF-8", writes(b'data: {"choices": [{"delta": {"content": "\xff\xfe."}}]}\n\n'), [], ""),
@@ -120,10 +120,10 @@ FAULTS: list[tuple[str, Reply, list[str], str]] = [
     ("a fault in the second", says("It is old. It has nine pipes. It is good."), ["It is old."], "the number `nine`"),
     ("unknown tool", calls("walk", "{}"), [], "`walk`, which is not offered"),
     ("route as a tool", calls("avatar_NAO_command", '{"method": "rest"}'), [], "not offered"),
-    ("arguments that do not fit", calls("wish_dance", '{"times": "many"}'), [], "does not fit its schema"),
-    ("arguments too many", calls("wish_dance", '{"motion": "dance"}'), [], "does not fit its schema"),
-    ("malformed arguments", calls("wish_dance", '{"times": '), [], "no JSON object"),
-    ("arguments that are a list", calls("wish_dance", "[]"), [], "no JSON object"),
+    ("arguments that do not fit", calls("wish_dance", '{"times": "many"}'), [], "does not match its schema"),
+    ("arguments too many", calls("wish_dance", '{"motion": "dance"}'), [], "does not match its schema"),
+    ("malformed arguments", calls("wish_dance", '{"times": '), [], "not a JSON object"),
+    ("arguments that are a list", calls("wish_dance", "[]"), [], "not a JSON object"),
 ]
 
 
@@ -164,7 +164,7 @@ def test_the_budget_of_a_visitor_and_of_an_hour(desk: Make) -> None:
     here = desk(says("Yes."), budget={"hour": 3, "visitor": 2})
     assert [here.said(visit=visit) for visit in (1, 1, 1, 2, 3)] == [["Yes."], ["Yes."], [], ["Yes."], []]
     assert len(here.model.requests) == 3
-    assert [line.partition(":")[2] for line in here.told] == [" no more are asked"] * 2
+    assert [line.rpartition(", ")[2] for line in here.told] == ["the most that are allowed"] * 2
 
 
 def test_no_key_no_request(desk: Make, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -93,12 +93,12 @@ def _bare(data: bytearray) -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("no base64 at all!", "is no base64"),
-        (base64.b64encode(b"RIFF, but no wave").decode(), "is no WAV"),
-        ("", "is no WAV"),
+        ("no base64 at all!", "is not base64"),
+        (base64.b64encode(b"RIFF, but no wave").decode(), "is not a WAV"),
+        ("", "is not a WAV"),
         (wav(_stereo), "has 2 channels, 16 bits, 16000 Hz"),
         (wav(_slow), "has 1 channel, 16 bits, 100 Hz"),
-        (wav(_cut), "is no WAV"),
+        (wav(_cut), "is not a WAV"),
         (wav(_bare), "is empty"),
         (Sound(8_000, bytes(2 * 8_000 * 121)).text(), "is longer than 120 s"),
     ],

@@ -156,7 +156,7 @@ def test_learns_who_somebody_is_and_tells_them_from_others(
     here.bus.publish("lumen.visual.command", "Eileen")
     for number in range(8):
         look(1.0 + number / 5, np.roll(photographed, number, axis=1))
-    assert here.told == ["knows Eileen by now"]
+    assert here.told == ["has learnt the face of Eileen"]
     assert look(10.0, np.roll(photographed, 9, axis=1)) == "Eileen"
     assert look(20.0, drawn[1.5, 0.0][0]) == "unknown"
     assert FaceGallery(file, lambda: 0.0).names == ["Eileen"]
@@ -207,7 +207,7 @@ def test_a_name_that_is_none(eyes: Make, name: object) -> None:
     here = eyes()
     here.bus.publish("lumen.visual.command", name)
     here.settle()
-    assert "a name of up to 60 characters is expected" in here.told[0]
+    assert "a name of up to 60 characters is required" in here.told[0]
 
 
 def test_a_model_that_does_not_load(tmp_path: Path) -> None:
@@ -220,7 +220,7 @@ def test_a_model_that_does_not_load(tmp_path: Path) -> None:
 
 def test_faces_that_are_damaged(tmp_path: Path) -> None:
     (tmp_path / "faces.npz").write_bytes(b"no faces")
-    with pytest.raises(ModuleError, match="holds no faces, or is damaged"):
+    with pytest.raises(ModuleError, match="holds no faces or is damaged"):
         FaceGallery(tmp_path / "faces.npz", lambda: 0.0)
 
 

@@ -190,13 +190,13 @@ def test_a_file_of_a_newer_lumen_is_left_as_it_is(stand: Make, tmp_path: Path) -
     remembering(here, file)
     talk(here.bus, "Ani")
     until(lambda: here.told)
-    assert "was written by a newer Lumen: use that one, or move the file away" in here.told[0]
+    assert "was written by a newer Lumen: use that version, or move the file away" in here.told[0]
     assert file.read_bytes() == before
 
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [(b"what is this?" * 100, "is no SQLite database, or is damaged"), (None, "is a database of something else")],
+    [(b"what is this?" * 100, "is not an SQLite database or is damaged"), (None, "is a database of another program")],
 )
 def test_a_file_that_is_something_else(stand: Make, tmp_path: Path, content: bytes | None, said: str) -> None:
     file = tmp_path / "memory.db"

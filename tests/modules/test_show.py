@@ -158,7 +158,7 @@ def test_a_lamp_and_a_button_by_mqtt(
     for payload in ("no json", '{"number": 10}', '{"number": "x"}', "9" * (mqtt.MAX_PAYLOAD + 1)):
         there.send("hall/button", payload)
     until(lambda: module.refused == before + 4)
-    assert any("hall/button (MQTT) is dropped: it is no JSON" in line for line in here.told)
+    assert any("hall/button (MQTT) is dropped: it is not JSON" in line for line in here.told)
     assert len([line for line in here.told if "hall/button" in line]) == 1
     for _ in range(200):
         there.send("hall/button", '{"number": 4}')
@@ -416,8 +416,8 @@ def test_a_flood_is_a_line_and_then_a_count() -> None:
     now[0] = refusals.TELL_PERIOD
     found.tick()
     assert told == [
-        "a message on hall/button (MQTT) is dropped: it is no JSON",
-        "499 more on hall/button (MQTT) were dropped: it is no JSON",
+        "a message on hall/button (MQTT) is dropped: it is not JSON",
+        "499 more on hall/button (MQTT) were dropped: it is not JSON",
     ]
     for i in range(2 * refusals.MAX_PLACES):
         found.add(f"topic {i}", "it is no JSON")

@@ -67,7 +67,7 @@ def test_a_folder_that_is_none_says_what_it_should_hold(tmp_path: Path) -> None:
         Whisper(tmp_path / "nowhere", ["en"])
     (tmp_path / "config.json").write_text("{}")
     with pytest.raises(
-        ModuleError, match=r"it has no model\.bin, tokenizer\.json: make one by `ct2-transformers-converter"
+        ModuleError, match=r"it has no model\.bin, tokenizer\.json: make one with `ct2-transformers-converter"
     ):
         Whisper(tmp_path, ["en"])
 
@@ -89,12 +89,12 @@ def test_a_model_that_can_not_be_loaded_is_a_line(tmp_path: Path, monkeypatch: p
         raise RuntimeError("Unsupported model binary version\nat line 3")
 
     monkeypatch.setitem(sys.modules, "faster_whisper", SimpleNamespace(WhisperModel=broken))
-    with pytest.raises(ModuleError, match=r"can't load the model in .*: Unsupported model binary version$"):
+    with pytest.raises(ModuleError, match=r"cannot load the model in .*: Unsupported model binary version$"):
         Whisper(tmp_path, ["en"])
 
 
 def test_the_ears_take_the_folder_of_the_settings(stand: Callable[..., Stand], tmp_path: Path) -> None:
     here = stand()
     project = with_options(here.project, "ears", whisper=str(tmp_path / "whisper-base"))
-    with pytest.raises(ModuleError, match="whisper-base, which is not there"):
+    with pytest.raises(ModuleError, match="whisper-base, which `whisper` names, does not exist"):
         Ears(project, here.bus, here.told.append)

@@ -58,7 +58,7 @@ def test_a_first_key_that_is_too_soon_comes_later(robot: Lockstep, live: Live) -
     [
         ((Keyframe(1.0, 3.0),), "HeadYaw to 3.000 rad"),
         ((Keyframe(1.0, 1.0), Keyframe(1.05, -1.0)), "turns HeadYaw at"),
-        ((Keyframe(1.0, nan),), "no number"),
+        ((Keyframe(1.0, nan),), "not a number"),
     ],
 )
 def test_what_a_joint_can_not_do_is_never_sent(robot: Lockstep, live: Live, keys: tuple, why: str) -> None:  # type: ignore[type-arg]

@@ -83,7 +83,7 @@ def test_services_that_are_missing_are_told_and_gone_without(
     lines = [record.getMessage() for record in caplog.records]
     robot.close()
     assert [(e.name, e.data) for e in events] == [("error.command.a", {"reason": "this robot has no ALTextToSpeech"})]
-    assert any("no ALSonar: nothing but its bumpers" in line for line in lines)
+    assert any("no ALSonar: only its bumpers" in line for line in lines)
     assert any("sense `image` is gone" in line for line in lines)
 
 

@@ -59,7 +59,7 @@ def test_microphones_that_nothing_comes_from(robot: Lockstep, live: Live) -> Non
     robot.nao.world.listens = False
     robot.start("a", Record("r1", 1.0))
     [reason] = reasons(live(5.0))
-    assert reason.startswith("0.0 of 1 s came from the microphones: can the robot reach this machine")
+    assert reason.startswith("0.0 of 1 s came from the microphones: check that the robot can reach this machine")
     assert not robot.nao.microphones.subscribers
 
 

@@ -241,7 +241,7 @@ def test_a_refused_body_costs_that_body_alone_and_a_repaired_schema_is_enough(
     assert (counts["joint"].published, counts["joint"].refused, counts["joint"].off) == (0, 10, "")
     assert counts["sonar"].published == 6
     assert [r.getMessage() for r in caplog.records] == [
-        "a reading of the sense `joint` was refused: a message on `avatar.NAO.data.joint` can't be sent:"
+        "a reading of the sense `joint` was refused: a message on `avatar.NAO.data.joint` cannot be sent:"
         " 'nobody has this' is a required property"
     ]
     bus.use(PROJECT)

@@ -206,7 +206,7 @@ class Publisher(BrokerConnection):
             return
         self.warn_once(key)
         if self.has_side_queues:
-            headers = {"reason": f"nobody takes `{key}`"}
+            headers = {"reason": f"no process receives `{key}`"}
             self.outbox.put(OutgoingMessage(UNROUTED, key, body, properties.content_type or "", headers=headers))
 
     def heard(self, key: str) -> bool:
