@@ -10,6 +10,7 @@ from lumen.app.reaching import Reached
 from lumen.buses.memory import MemoryBus
 from lumen.console.people import Role
 from lumen.console.serving import Console
+from tests.console.languages import english_on
 from tests.console.pages import Browser
 from tests.console.viewer import Viewer
 from tests.fetched import fetched
@@ -76,6 +77,11 @@ def test_the_page_shows_the_fleet_and_stops_its_rollout(viewer: Viewer, watched:
     viewer.shows("demo-1 at most 1 robot under way", ".steps")
     viewer.shows(hash[:12], ".house")
     viewer.shows("6 of 6 robots connected", "main")
+    viewer.run("import('/pages/ui.js').then(({ speak }) => speak('id'))")
+    viewer.shows("6 dari 6 robot terhubung", "main")
+    assert english_on(viewer) == []
+    viewer.run("import('/pages/ui.js').then(({ speak }) => speak('en'))")
+    viewer.shows("6 of 6 robots connected", "main")
     assert viewer.all("rest-button[main]")
     viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))
     assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
@@ -92,4 +98,4 @@ def test_where_no_centre_is_the_page_says_so(watched: Watched) -> None:
     watched.hall.served._desk.close()
     answer = watched.browser.get("/api/fleet", Authorization="Bearer 12345")
     assert answer.status == 503
-    assert "no centre of a fleet answers" in answer.data["reason"]
+    assert "no fleet centre answers" in answer.data["reason"]

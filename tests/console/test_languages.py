@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from tests.console.conftest import Hosted
+from tests.console.languages import english_on, phrases, texts
 from tests.console.pages import Served
 from tests.console.test_pages import PAGES
 from tests.console.viewer import Viewer
-from tests.fetched import ROOT
+from tests.provided import ROOT
 from tests.waiting import HANG, until
 
 CONSOLE = ROOT / "engine/lumen/console"
-TEXTS = CONSOLE / "pages/texts"
 NEVER_ON_A_PAGE = (
     "access.py",
     "day_csv.py",
@@ -29,35 +29,6 @@ NEVER_ON_A_PAGE = (
 NOTES = ("plays …", "says “…”", "takes the posture …")
 """The notes that orders write into the journal, which stays in one language."""
 PLACES = r"\{(\w+)"
-SHOWN = """
-const names = ".place, .state-name, option, code, .values, .way-head > :last-child, th[scope=row]";
-const quoted = `[lang]:not(html):not([lang=id]), rest-button .broken, ${names}`;
-const found = [], named = ["title", "aria-label", "aria-description", "aria-valuetext", "placeholder", "alt"];
-for (const element of document.querySelectorAll("body *")) {
-  if (element.closest(quoted)) continue;
-  for (const node of element.childNodes) if (node.nodeType === Node.TEXT_NODE) found.push(node.textContent);
-  for (const name of named) found.push(element.getAttribute(name) ?? "");
-}
-return [...new Set(found.map((text) => text.trim()).filter(Boolean))];
-"""
-ENGLISH_WORDS = re.compile(
-    r"\b(the|is|are|was|were|has|have|not|when|with|from|that|this|which|after|before|and|or|of|by|it|its|for|no|"
-    r"hears|says|plays|does|cannot|must|press|sign|robot's|files|saved|stopped|open|closed|unknown)\b",
-    re.IGNORECASE,
-)
-QUOTED = re.compile(r"“[^”]*”|\S*[._|/=]\S*|→ \S+")
-"""What is said, and names of the project."""
-
-
-def texts(code: str) -> dict[str, str]:
-    """The texts of the pages in a language, by their names."""
-    source = (TEXTS / f"{code}.js").read_text("utf-8")
-    return dict(re.findall(r'"([\w. -]+)": "((?:[^"\\]|\\.)*)"', source))
-
-
-def phrases() -> list[tuple[str, str]]:
-    """The sentences of the console and the engine that have Indonesian."""
-    return re.findall(r'\["((?:[^"\\]|\\.)*)", "((?:[^"\\]|\\.)*)"\]', (TEXTS / "phrases_id.js").read_text("utf-8"))
 
 
 def messages(module: Path) -> Iterator[str]:
@@ -69,7 +40,7 @@ def messages(module: Path) -> Iterator[str]:
         if id(node) in documented | inner:
             continue
         if isinstance(node, ast.JoinedStr):
-            text = "".join(part.value if isinstance(part, ast.Constant) else "…" for part in node.values)
+            text = "".join(str(part.value) if isinstance(part, ast.Constant) else "…" for part in node.values)
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             text = node.value
         else:
@@ -118,10 +89,7 @@ def test_a_page_in_indonesian_shows_no_english(
     served.browser.command("mark", text="melambai")
     path, ready = PAGES[page]
     viewer.open(served.console.address, path, ready=ready, language="id", mode="author", width=width)
-    english, indonesian = texts("en"), {*texts("id").values()}
-    shown = viewer.run(SHOWN)
-    assert [text for text in shown if text in english.values() and text not in indonesian] == []
-    assert [text for text in shown if ENGLISH_WORDS.search(QUOTED.sub("", text))] == []
+    assert english_on(viewer) == []
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.console.conftest import Hosted
+from tests.console.languages import english_on
 from tests.console.pages import Served
 from tests.console.viewer import Viewer
 from tests.fetched import fetched
@@ -67,3 +68,11 @@ def test_each_tile_rests_its_robot_and_escape_twice_all(viewer: Viewer, wall: st
     viewer.escape_twice()
     viewer.shows("Rests", "rest-button[main] .rest-said")
     assert resting(robots) == sorted(NAMES)
+
+
+@pytest.mark.parametrize("width", [1400, 360])
+def test_the_wall_in_indonesian_shows_no_english(viewer: Viewer, wall: str, width: int) -> None:
+    viewer.open(wall, ready=".tile:nth-child(3)", language="id", width=width)
+    viewer.click("rest-button[robot=Budi] .rest")
+    viewer.shows("istirahat, dihentikan oleh", ".tile[aria-label=Budi]")
+    assert english_on(viewer) == []

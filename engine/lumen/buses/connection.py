@@ -145,7 +145,7 @@ class BrokerConnection:
                 if not self._opened.done():
                     self._opened.set_exception(error)
                     return
-                self._outage.lost(self.name, "can't be reached", error)
+                self._outage.lost(self.name, "cannot be reached", error)
                 self._pause()
             else:
                 self._live()

@@ -34,7 +34,7 @@ class Exchange:
         try:
             await asyncio.wait((nobody, answer), timeout=timeout, return_when=asyncio.FIRST_COMPLETED)
             if not answer.done():
-                raise BusUnreachableError("nobody answers")
+                raise BusUnreachableError("no answer came")
             return answer.result()
         finally:
             nobody.cancel()

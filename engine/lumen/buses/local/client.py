@@ -216,7 +216,7 @@ def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
     try:
         wire = address.connect()
     except OSError as error:
-        raise BusUnreachableError(f"nobody opens: {error.strerror or error}") from None
+        raise BusUnreachableError(f"no exhibition is there: {error.strerror or error}") from None
     try:
         question = nonce()
         match _next(wire, buffer):

@@ -189,7 +189,7 @@ class LocalBusServer:
                 self._marks[mark] = lambda: client.arrived.append((-1, Message(FLUSH_MARK, mark)))
                 self._bus.publish(FLUSH_MARK, mark)
             case _:
-                raise ValueError(f"nobody understands {str(words[0])[:40]!r}")
+                raise ValueError(f"unknown frame {str(words[0])[:40]!r}")
 
     def _subscribe(self, client: ClientConnection, number: int, pattern: str) -> None:
         if number in client.undo or len(client.undo) >= MAX_SUBSCRIPTIONS:

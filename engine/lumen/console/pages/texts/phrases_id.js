@@ -11,6 +11,7 @@ export default [
   ["no robot is known", "belum ada robot yang dikenal"],
   ["the robot's process is gone", "proses robot sudah berakhir"],
   ["no answer came on `{0}`", "tidak ada jawaban di `{0}`"],
+  ["no answer came", "tidak ada jawaban"],
   ["there is no bus", "tidak ada bus"],
   ["`{0}` must be one of {1}", "`{0}` harus salah satu dari {1}"],
   ["the centre sent an answer that cannot be shown", "pusat mengirim jawaban yang tidak dapat ditampilkan"],
