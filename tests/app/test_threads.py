@@ -63,7 +63,7 @@ def test_what_fails_again_and_again_is_given_up_and_told_once() -> None:
     thread = WatchedThread("a", work, vital=True)
     thread.start()
     until(lambda: thread.lost)
-    assert thread.lost == "the thread `a` failed 5 times within 60 s, at last: ValueError('no number')"
+    assert thread.lost == "the thread `a` failed 5 times within 60 s; the last error: ValueError('no number')"
     assert thread in watch.tick()
     watch._next = 0.0
     assert thread not in watch.tick()

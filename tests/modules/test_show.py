@@ -411,7 +411,7 @@ def test_a_flood_is_a_line_and_then_a_count() -> None:
     told, now = list[str](), [0.0]
     found = refusals.Refusals(told.append, lambda: now[0])
     for _ in range(500):
-        found.add("hall/button (MQTT)", "it is no JSON")
+        found.add("hall/button (MQTT)", "it is not JSON")
         found.tick()
     now[0] = refusals.TELL_PERIOD
     found.tick()

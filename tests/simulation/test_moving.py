@@ -153,7 +153,7 @@ def test_it_ends_at_the_edge_of_the_stage_with_both_feet_on_it(staged: Simulated
         for corner in corners(Footstep(side, pose), NAO_LEGS.sole_size):
             farthest = max(farthest, abs(corner.real) - 0.4, abs(corner.imag) - 0.6)
     assert "foot would leave the stage" in result
-    assert result.endswith("the walk was ended")
+    assert result.endswith("the walk was stopped")
     assert farthest < GRACE
     assert farthest > -0.15
     if move.vtheta:
@@ -170,7 +170,7 @@ def test_what_is_pressed_ends_it_and_what_is_no_number_changes_nothing(staged: S
     reason = answer(until_answered(staged, "nan", 0.1), "nan")
     assert reason == "error: the robot cannot walk at (nan, 0.0, 0.0)"
     staged.touch("ChestButton", True)
-    assert answer(until_answered(staged, "m", 1.2), "m") == "error: the chest button is pressed: the walk was ended"
+    assert answer(until_answered(staged, "m", 1.2), "m") == "error: the chest button is pressed: the walk was stopped"
     staged.start("n", Move(0.05))
     assert "the robot did not set out" in answer(until_answered(staged, "n", 1.0), "n")
 

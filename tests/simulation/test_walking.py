@@ -214,7 +214,7 @@ def test_a_button_ends_a_walk_and_lets_none_begin(staged: SimulatedRobot, sensor
     staged.start("w", Walk(0.2))
     staged.advance(2.0)
     staged.touch(sensor, True)
-    assert answer(until_answered(staged, "w", 1.2), "w") == f"error: {name} is pressed: the walk was ended"
+    assert answer(until_answered(staged, "w", 1.2), "w") == f"error: {name} is pressed: the walk was stopped"
     staged.advance(1.0)
     assert staged.greatest_tilt < 10
     assert refused(staged, Walk(0.2)) == f"error: {name} is pressed: the robot did not set out"
@@ -230,7 +230,7 @@ def test_somebody_near_ends_a_walk_and_lets_none_begin(staged: SimulatedRobot) -
     staged.place(Visitor(0.45, 0.0, 1.2))
     result = answer(until_answered(staged, "w", 1.3), "w")
     assert result.startswith("error: something is 0.")
-    assert result.endswith("m ahead, nearer than 0.4 m: the walk was ended")
+    assert result.endswith("m ahead, nearer than 0.4 m: the walk was stopped")
     assert "the robot did not set out" in refused(staged, Walk(0.2))
     assert staged.greatest_tilt < 10
 

@@ -141,7 +141,7 @@ def encode(body: Any) -> bytes:
     except orjson.JSONEncodeError as error:
         raise BadMessageError("a text in the body is not valid Unicode: it holds half a surrogate pair") from error
     if len(data) > MAX_BODY_BYTES:
-        raise BadMessageError(f"a body may have {MAX_BODY_BYTES:,} bytes, and this one has {len(data):,}")
+        raise BadMessageError(f"a body must have at most {MAX_BODY_BYTES:,} bytes, not {len(data):,}")
     return data
 
 

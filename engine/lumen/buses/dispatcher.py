@@ -46,7 +46,7 @@ class Dispatcher:
         self._done: dict[tuple[int, str, str], str] = {}
         self.repeated = DropLog(_log)
         self.unusable = ReasonLog(_log, "a message on `%(key)s` was dropped: %(reason)s")
-        self.guard = MessageGuard(_log, "what hands on messages")
+        self.guard = MessageGuard(_log, "the message dispatcher")
         self._thread = WatchedThread("lumen-bus-handlers", self._run, vital=True)
         self._thread.start()
 

@@ -177,7 +177,7 @@ def _record(p: CommandParameters) -> Record:
     duration = p.number("duration", RECORDING_DURATION)
     if not 0.1 <= duration <= MAX_RECORDING_DURATION:
         longest = f"{MAX_RECORDING_DURATION:g} s"
-        raise BadCommandError(f"the `duration` of `record` must be between 0.1 and {longest}, not at {duration:g}")
+        raise BadCommandError(f"the `duration` of `record` must be between 0.1 and {longest}, not {duration:g}")
     return Record(shown(p.text("recordingname", "recording")), duration)
 
 

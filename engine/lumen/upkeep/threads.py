@@ -76,7 +76,7 @@ class WatchedThread:
         try:
             thread.start()
         except RuntimeError as error:
-            self.lost = f"the system has no room for the thread `{self.name}`: {error}"
+            self.lost = f"the system cannot start the thread `{self.name}`: {error}"
             return
         self._thread = thread
 
@@ -99,7 +99,7 @@ class WatchedThread:
         recent = sum(now - at < FAULT_PERIOD for at in self._faults)
         if recent >= MAX_FAULTS:
             self.lost = (
-                f"the thread `{self.name}` failed {recent} times within {FAULT_PERIOD:g} s, last because of: {why}"
+                f"the thread `{self.name}` failed {recent} times within {FAULT_PERIOD:g} s; the last error: {why}"
             )
             _log.error("%s", self.lost)
             return False

@@ -53,13 +53,13 @@ def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
         low, high = segment.extremes()
         if low < limit.minimum - LIMIT_SLACK or high > limit.maximum + LIMIT_SLACK:
             raise BadCommandError(
-                f"`{motion.name}` takes {track.joint} to {low if low < limit.minimum else high:.3f} rad,"
-                f" which reaches from {limit.minimum:.3f} to {limit.maximum:.3f} rad"
+                f"`{motion.name}` moves {track.joint} to {low if low < limit.minimum else high:.3f} rad,"
+                f" but its limits are {limit.minimum:.3f} and {limit.maximum:.3f} rad"
             )
         if (speed := segment.peak_speed()) > limit.speed * (1 + LIMIT_SLACK):
             if i:
                 raise BadCommandError(
-                    f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s, {limit.speed:.1f} at most"
+                    f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s: at most {limit.speed:.1f} is allowed"
                 )
             late = segment.duration * (speed / (APPROACH_SPEED * limit.speed) - 1.0)
     return late

@@ -15,7 +15,7 @@ CONNECT_TIMEOUT = 5.0
 MAX_ERROR_LENGTH = 200
 
 QI_MISSING = (
-    "a NAO is reached through the package `qi`: pip install 'lumen-robot[naoqi]'"
+    "a NAO needs the package `qi`: pip install 'lumen-robot[naoqi]'"
     " (there are wheels for CPython up to 3.12 on Linux, x86-64)"
 )
 
@@ -119,10 +119,12 @@ class NaoqiSession:
         future = session.connect(self.url, _async=True)
         future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
         if not future.isFinished():
-            raise RobotUnreachableError(f"no robot answers at {self.url}: is it switched on, and on this network?")
+            raise RobotUnreachableError(
+                f"no robot answers at {self.url}: check that it is switched on and on this network"
+            )
         if future.hasError():
             raise RobotUnreachableError(
-                f"no robot at {self.url} ({plain(future.error())}): is it switched on, and on this network?"
+                f"no robot at {self.url} ({plain(future.error())}): check that it is switched on and on this network"
             )
         session.disconnected.connect(lambda *_: self._broken(session, "the connection was closed"))
         self._services, self._serving = {}, {}

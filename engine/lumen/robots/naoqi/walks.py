@@ -94,7 +94,7 @@ class NaoqiWalks:
         watch = WalkMonitor(self._post, self._area, here)
         arrived = yield WhileWaiting(self._post("ALMotion", "moveTo", *map(float, way)), watch)
         if watch.reason:
-            raise RobotFailedError(f"{watch.reason}: the walk was ended")
+            raise RobotFailedError(f"{watch.reason}: the walk was stopped")
         if arrived is None:
             arrived = yield from self._arrived(here, way)
         if not arrived:
@@ -115,4 +115,4 @@ class NaoqiWalks:
             watch(now)
             if watch.reason:
                 yield self._post("ALMotion", "stopMove")
-                raise RobotFailedError(f"{watch.reason}: the walk was ended")
+                raise RobotFailedError(f"{watch.reason}: the walk was stopped")

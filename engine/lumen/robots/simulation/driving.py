@@ -96,7 +96,7 @@ class DriveActivity:
         if not self.drive.still:
             return False
         if self._reason:
-            raise RobotFailedError(f"{self._reason}: the drive was ended")
+            raise RobotFailedError(f"{self._reason}: the drive was stopped")
         return True
 
     def cancel(self) -> None:

@@ -244,7 +244,7 @@ class WalkActivity:
         self._over = True
         self._walker.odometry.land(self._gait.feet)
         if self._reason:
-            raise RobotFailedError(f"{self._reason}: the walk was ended")
+            raise RobotFailedError(f"{self._reason}: the walk was stopped")
         far, turned = self._gait.left
         if not self._cancelled and (far > ARRIVAL_TOLERANCE or turned > HEADING_TOLERANCE):
             raise RobotFailedError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")

@@ -1,6 +1,6 @@
 // Many houses: their robots, the steps of a rollout, and what stops it.
 import { get } from "../live.js";
-import { Quote, reasonOf } from "../quoted.js";
+import { Quote, inPageLanguage, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Dialog, Part, fixed, html, span, t, useEffect, useState } from "../ui.js";
 
@@ -16,7 +16,7 @@ async function decide(decision) {
 function Steps({ rollout }) {
   return html`<ol class="steps">${rollout.steps.map((step, i) => {
     const now = i === rollout.step && !step.done;
-    return html`<li aria-current=${now ? "step" : null}><b>${step.to}</b> ${t("fleet.most", { count: step.most })}
+    return html`<li aria-current=${now ? "step" : null}><b>${inPageLanguage(step.to)}</b> ${t("fleet.most", { count: step.most })}
       ${" "}<span class="badge" data-state=${step.done ? "open" : now ? VERDICTS[rollout.state] : "kind"}>${t(step.done ? "fleet.good" : now ? `fleet.${rollout.state}` : "fleet.later")}</span>
       ${now && html` <span class="quiet">${t("fleet.watched", { watched: span(rollout.watched), pause: span(rollout.pause) })}</span>`}</li>`;
   })}</ol>`;

@@ -69,6 +69,7 @@ export default [
   ["a program on the bus", "sebuah program di bus"],
   ["somebody", "seseorang"],
   ["author", "penulis"],
+  ["all", "semua"],
   ["operator", "operator"],
   ["show", "peragaan"],
 
