@@ -10,8 +10,8 @@ from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
 from lumen.language.causes import TERMINAL
 from lumen.language.routing_keys import default_key
-from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
+from lumen.loading.running_project import running_project
 from lumen.loading.settings import Settings
 from lumen.ports import Bus
 from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
@@ -39,7 +39,7 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
 
     Raises BusError, saying what to do, where none is found.
     """
-    root = find_project(project)
+    root = running_project(project)
     wanted = one_robot(root, robot)
     found = _running(root, wanted if robot else "")
     home = _home(found) or wanted
@@ -60,7 +60,7 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
 
 def robots_meant(project: str | None) -> list[str]:
     """The robots of `robots:` that run on this machine, all of them where none does; none for one `robot:`."""
-    root = find_project(project)
+    root = running_project(project)
     robots = robots_of(root, None)
     return [name for name in robots if _running(root, name)] or list(robots)
 

@@ -14,7 +14,7 @@ from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import Replayer
 from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.projects import Project
-from lumen.loading.packaged import find_project
+from lumen.loading.running_project import running_project
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
@@ -31,7 +31,7 @@ def answer_from_journal(
 
     Raises UsageError, saying what to do, where there is none; `why` says why no running exhibition was asked.
     """
-    root = find_project(project)
+    root = running_project(project)
     robot = one_robot(root, robot)
     steps = list(recalled(root, datetime.fromisoformat(at).timestamp() if at else None, robot))
     if not steps:

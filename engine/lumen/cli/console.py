@@ -10,8 +10,8 @@ from lumen.app.reaching import reach_exhibition
 from lumen.cli.reach import configure_reach
 from lumen.extras import demand
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
-from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
+from lumen.loading.running_project import project_to_run
 from lumen.upkeep.heap import give_back
 from lumen.upkeep.threads import WatchedThread
 
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
     from lumen.console.access import pins_from
     from lumen.console.serving import Console
 
-    root, reach = find_project(options.project), partial(reach_exhibition, options.project, options.bus)
+    root, reach = project_to_run(options.project), partial(reach_exhibition, options.project, options.bus)
     found = main_settings(root)
     said = found.console if found else ConsoleSettings()
     port = said.port if options.port is None else options.port

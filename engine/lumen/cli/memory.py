@@ -16,8 +16,8 @@ from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
 from lumen.loading.files import read_files
-from lumen.loading.packaged import find_project
 from lumen.loading.project import draft, main_settings
+from lumen.loading.running_project import running_project
 from lumen.loading.settings import Settings
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    root = find_project(options.project)
+    root = running_project(options.project)
     folder = home_of(root, one_robot(root, options.robot_name))
     if options.what == "forget":
         return _forget(options, root, folder)

@@ -16,7 +16,6 @@ from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.real import RealClock
 from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
-from lumen.loading.packaged import shipped_root
 
 GREETING = (
     "You are the visitor: type what you say, or /help. Ctrl-D walks away; Ctrl-C makes the robot rest, and a second"
@@ -36,8 +35,6 @@ class Performance:
         project = exhibition.project
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready():.1f} s.")
-        if Path(project.root) == shipped_root() != Path.cwd():
-            print(f"There is no lumen.yaml here: this is the shipped project, {project.root}.")
         if run_directory.taken:
             print("This project already runs in another process: commands such as `lumen reload` reach that one.")
         if self._setup.blind:

@@ -25,7 +25,7 @@ from lumen.formats.recordings.rewriting import recover
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
-from lumen.loading.packaged import find_project
+from lumen.loading.running_project import project_to_run
 from lumen.loading.units import seconds
 from lumen.ports import Bus
 from lumen.rules import check_files
@@ -96,7 +96,7 @@ def _mark(options: argparse.Namespace, reached: Reached) -> int:
 
 
 def _record(options: argparse.Namespace, reached: Reached, span: float | None) -> int:
-    root = find_project(options.project)
+    root = project_to_run(options.project)
     bus = reached.bus
     project, folder = _running_project(root, reached), RecordingsFolder(home_of(root, reached.home))
     view = RobotView(project, lambda text: print(text, file=sys.stderr))

@@ -24,7 +24,7 @@ from lumen.cli.transcript import Transcript
 from lumen.cli.workers_option import configure_workers
 from lumen.interpreters.replay.entries import RecordedEntry
 from lumen.loading.chosen_robot import as_robot
-from lumen.loading.packaged import find_project
+from lumen.loading.running_project import running_project
 
 SMALL = 1_000_000
 """A journal of fewer bytes is replayed before other processes have begun."""
@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """1 where anything differs."""
-    root = find_project(options.project)
+    root = running_project(options.project)
     robot = one_robot(root, options.robot_name)
     if options.list:
         return _list(root, robot)

@@ -41,10 +41,11 @@ from lumen.clocks.following import FollowingClock
 from lumen.errors import BusError, BusUnreachableError, ModuleError, RobotError, UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.packaged import find_project
+from lumen.loading.running_project import is_substituted, project_to_run
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from lumen.upkeep.heap import give_back
 
@@ -107,8 +108,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     give_back()
     named = () if options.story is None else (options.story,)
-    root = find_project(options.project or home_of(named))
+    path = options.project or home_of(named)
+    root = project_to_run(path)
     use_model(options.model, [root])
+    if is_substituted(path):
+        journal = home_of_run(root) / JOURNAL_FOLDER
+        complain(
+            f"There is no lumen.yaml here or above: this runs a copy of Lumen's own exhibition, {root}. Its journal is"
+            f" {journal}. `lumen new DIR` makes a project of your own."
+        )
     parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)
     if len(robots) > 1:
         return _house(options, root, robots, parts)

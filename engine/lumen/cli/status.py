@@ -13,7 +13,7 @@ from lumen.app.recovery.last_run import last_run
 from lumen.cli.printing import clock_time
 from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
-from lumen.loading.packaged import find_project
+from lumen.loading.running_project import running_project
 
 AMONG_OTHERS = 5.0
 """How long the answer of one robot of several may take [s]."""
@@ -35,7 +35,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 where one runs and says how it is; of the others of its house it is said what is known here."""
-    root = find_project(options.project)
+    root = running_project(options.project)
     names = [options.robot_name] if options.robot_name else list(robots_of(root, None)) or [""]
     answers = [_status(options, name, AMONG_OTHERS if names[1:] else FIRST_ANSWER_TIMEOUT) for name in names]
     found = [

@@ -14,7 +14,7 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.reach import configure_robot_name
 from lumen.cli.writing import write_file, write_result
 from lumen.errors import UsageError
-from lumen.loading.packaged import find_project
+from lumen.loading.running_project import running_project
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     if output and output.exists() and not options.force:
         raise UsageError(f"{output} already exists: name another file, or add --force")
     names = dict(_name(pair) for pair in options.name)
-    root = find_project(options.project)
+    root = running_project(options.project)
     robot = one_robot(root, options.robot_name)
     project = lumen.load(root, robot=robot)
     root = Path(project.root)

@@ -21,7 +21,8 @@ from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.loading.files import read_files
-from lumen.loading.packaged import MAIN_FILE, find_project
+from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.running_project import running_project
 from lumen.loading.units import seconds
 from lumen.ports import Bus, Message, ReturningBus
 from lumen.rules import check_files
@@ -265,7 +266,7 @@ def _listen(
 
 def _project(options: argparse.Namespace) -> Project | None:
     """The project, for its routes; None where it has errors: looking on goes without."""
-    root = find_project(options.project)
+    root = running_project(options.project)
     return check_files(root, read_files(root))[0]
 
 

@@ -9,14 +9,15 @@ from lumen.errors import UsageError
 
 MAIN_FILE = "lumen.yaml"
 _MISNAMED = re.compile(r"lumen\s*\.ya?ml\s*(\.te?xt)?\s*", re.IGNORECASE)
-_PACKAGE = Path(__file__).parents[1]
+PACKAGE = Path(__file__).parents[1]
+"""The folder of the engine, which holds the shipped exhibition if Lumen was installed from a wheel."""
 
 
 @cache
 def shipped_root() -> Path:
     """The folder of the shipped exhibition: inside the wheel, else the repository's root."""
-    inside = _PACKAGE / "exhibition"
-    return inside if inside.is_dir() else _PACKAGE.parents[1]
+    inside = PACKAGE / "exhibition"
+    return inside if inside.is_dir() else PACKAGE.parents[1]
 
 
 def schema_folder() -> Path:

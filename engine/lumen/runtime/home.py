@@ -4,14 +4,15 @@ import hashlib
 import json
 import os
 import sys
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from lumen.errors import UsageError
+from lumen.loading.packaged import PACKAGE
 from lumen.loading.regular_files import read_regular
 from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.state_folder import state_folder
 
 STATE_FOLDER = ".lumen"
 ADDRESS_FILE = "door.json"
@@ -101,9 +102,9 @@ class Home:
 def home_of(root: Path, robot: str = "") -> Path:
     """The folder for an exhibition of the project in `root`, of this `robot` where it has `robots:`.
 
-    It is inside the project, unless that can't be written or is a link that may lead elsewhere tomorrow, or holds one,
-    as whoever sends a project may send a `.lumen/` with it: then it is among the user's own files, under a name made
-    from the project's path.
+    It is inside the project. It is in the user's state folder instead, under a name made from the project's path, if
+    the project can't be written, comes with an installed Lumen, or is a link that may lead elsewhere tomorrow or holds
+    one: a project that another person sent may have a `.lumen/` in it.
     """
     within = Path(ROBOTS_FOLDER, robot) if robot else Path()
     return _whole_home(root) / within
@@ -117,10 +118,11 @@ def homes_of(root: Path) -> list[Home]:
 
 def _whole_home(root: Path) -> Path:
     inside = root / STATE_FOLDER
-    if not root.is_symlink() and not _linked(inside) and os.access(inside if inside.is_dir() else root, os.W_OK):
+    own = not root.is_symlink() and not _linked(inside) and PACKAGE.resolve() not in root.resolve().parents
+    if own and os.access(inside if inside.is_dir() else root, os.W_OK):
         return inside
     digest = hashlib.sha256(os.fsencode(root.absolute())).hexdigest()[:12]
-    return _own() / f"{root.name}-{digest}"
+    return state_folder() / f"{root.name}-{digest}"
 
 
 def _linked(folder: Path) -> bool:
@@ -133,17 +135,8 @@ def _linked(folder: Path) -> bool:
 
 def homes() -> list[Home]:
     """All homes that are not inside their projects."""
-    folder = _own()
+    folder = state_folder()
     return [Home(one) for one in sorted(folder.iterdir())] if folder.is_dir() else []
-
-
-def _own() -> Path:
-    """Where this user's programs keep what they need from run to run."""
-    given = os.environ.get("XDG_STATE_HOME") or os.environ.get("LOCALAPPDATA")
-    try:
-        return Path(given) / "lumen" if given else Path.home() / ".local" / "state" / "lumen"
-    except RuntimeError:  # a user without a home
-        return Path(tempfile.gettempdir()) / f"lumen-{os.getuid() if hasattr(os, 'getuid') else ''}"
 
 
 def _locked(file: int) -> bool:

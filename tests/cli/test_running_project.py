@@ -1,0 +1,108 @@
+"""Without a project, `lumen run` plays a copy of the shipped exhibition: nothing is written into the installation."""
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.errors import UsageError
+from lumen.loading import running_project as module
+from lumen.loading.packaged import PACKAGE, shipped_root
+from lumen.loading.running_project import copy_of_shipped, project_to_run, running_project
+from lumen.runtime.home import STATE_FOLDER, home_of
+
+
+@pytest.fixture
+def state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty state folder of the user, who is in an empty folder."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    return tmp_path / "state"
+
+
+@pytest.fixture
+def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A read-only installation of an exhibition of two files."""
+    root = tmp_path / "installed"
+    (root / "behaviors").mkdir(parents=True)
+    for name in ("lumen.yaml", "behaviors/tour.yaml"):
+        (root / name).write_text("initial: a\n", "utf-8")
+        (root / name).chmod(0o444)
+    for folder in (root / "behaviors", root):
+        folder.chmod(0o555)
+    monkeypatch.setattr(module, "shipped_root", lambda: root)
+    module._digest.cache_clear()
+    yield root
+    module._digest.cache_clear()
+    for folder in (root, root / "behaviors"):
+        folder.chmod(0o755)
+
+
+@pytest.mark.process
+def test_a_run_in_an_empty_folder_writes_into_the_state_folder_only(
+    state: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {*shipped_root().iterdir(), *(shipped_root() / STATE_FOLDER).rglob("*")}
+    assert main(["run", "--robot", "recording", "--speed", "max", "--for", "1s"]) == 0
+    assert {*shipped_root().iterdir(), *(shipped_root() / STATE_FOLDER).rglob("*")} == before
+    assert list(Path.cwd().iterdir()) == []
+    (root,) = (state / "lumen").iterdir()
+    journal = root / STATE_FOLDER / "journal"
+    assert list(journal.rglob("*.journal"))
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if "no lumen.yaml" in line]
+    assert f"a copy of Lumen's own exhibition, {root}." in line
+    assert str(journal) in line
+    assert main(["replay"]) == 0  # the other commands find it
+
+
+def test_a_project_that_is_here_or_named_is_not_copied(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert running_project() == shipped_root()  # there is no copy yet
+    assert project_to_run(shipped_root()) == shipped_root()
+    monkeypatch.chdir(shipped_root() / "behaviors")
+    assert project_to_run() == running_project() == Path.cwd().parent
+    assert not state.exists()
+
+
+def test_a_copy_of_a_read_only_installation_can_be_written(state: Path, small: Path) -> None:
+    copy = project_to_run()
+    assert copy == copy_of_shipped() == running_project()
+    assert {file.relative_to(copy).as_posix() for file in copy.rglob("*") if file.is_file()} == {
+        "lumen.yaml",
+        "behaviors/tour.yaml",
+    }
+    assert all(path.stat().st_mode & 0o200 for path in (copy, *copy.rglob("*")))
+
+
+def test_a_copy_is_kept_with_what_its_user_changed(state: Path, small: Path) -> None:
+    (project_to_run() / "lumen.yaml").write_text("initial: b\n", "utf-8")
+    assert (project_to_run() / "lumen.yaml").read_text("utf-8") == "initial: b\n"
+
+
+def test_runs_that_begin_at_once_share_one_copy(state: Path, small: Path) -> None:
+    found: list[Path] = []
+    begin = threading.Barrier(4)
+
+    def run() -> None:
+        begin.wait()
+        found.append(project_to_run())
+
+    threads = [threading.Thread(target=run) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert (len(found), set(found), list((state / "lumen").iterdir())) == (4, {copy_of_shipped()}, [copy_of_shipped()])
+
+
+def test_a_state_folder_that_cannot_be_written_is_a_usage_error(state: Path, small: Path) -> None:
+    state.write_text("a file", "utf-8")
+    with pytest.raises(UsageError, match=r"set XDG_STATE_HOME to a folder that can be written.*`lumen new DIR`"):
+        project_to_run()
+
+
+def test_the_home_of_an_installed_exhibition_is_in_the_state_folder(state: Path) -> None:
+    assert home_of(PACKAGE / "exhibition").parent == state / "lumen"
+    assert home_of(PACKAGE / "exhibition/examples/museum").parent == state / "lumen"
