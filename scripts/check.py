@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import yaml
-from documented import all_pages, blocks
+from documented import NOT_RUN, all_pages, blocks
 
 from lumen.loading.files import PROJECT_FOLDERS
 
@@ -22,7 +22,7 @@ WORKFLOWS = ["action.yml", ".github/workflows/tests.yml", ".pre-commit-hooks.yam
 REQUIREMENTS = [f"requirements{part}.txt" for part in ("-core", "", "-no-deps", "-test", "-docs")]
 SIMULATION = {"mujoco", "dm-control", "scipy", "pillow", "imageio-ffmpeg", "matplotlib", "labmaze"}
 """Packages that the core must not require."""
-BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "network"}
+BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "network", "by", "not"}
 """The words to the runner that the fence of a block may carry."""
 
 BLOCK = re.compile(r"(?m)^(?:```|````)[\s\S]*?^(?:```|````)$")
@@ -152,6 +152,28 @@ def blocks_of_pages_say_what_the_runner_knows() -> Iterator[Looked]:
             yield str(block.place), _listed("the runner does not know", wrong)
 
 
+def blocks_of_text_are_compared_or_say_why_not() -> Iterator[Looked]:
+    """Output of a command belongs in a console block, which scripts/documented.py runs."""
+    for page in all_pages():
+        for block in blocks(page):
+            if block.language == "text":
+                script = block.word("by")
+                fine = (ROOT / script).is_file() if script else block.word("not") in NOT_RUN
+                yield block.place, "" if fine else f"make it a console block, or add by= or not={'|'.join(NOT_RUN)}"
+        bare = any(not language or (language == "text" and indent) for indent, language in _fences(page))
+        yield (
+            _name(page),
+            "the runner can't see a block without a language, or an indented one" if bare else "",
+        )
+
+
+def places_in_files_are_compared() -> Iterator[Looked]:
+    """The lines of a file move: outside of the blocks that are run, no page names one."""
+    for page in all_pages():
+        prose = BLOCK.sub("", page.read_text(encoding="utf-8"))
+        yield _name(page), _listed("remove the line number", re.findall(r"[\w*-]+\.(?:yaml|py|md|xml):\d+", prose))
+
+
 def pyyaml_reads_the_shipped_files() -> Iterator[Looked]:
     """PyYAML has YAML 1.1; tests/house/test_other_readers.py has the npm package, which knows 1.2 as well."""
     for path in [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in sorted((ROOT / name).rglob("*.yaml")))]:
@@ -175,6 +197,8 @@ CHECKS: dict[Check, int] = {
     the_version_is_the_same_everywhere: 5,
     the_page_about_the_environment_names_every_variable: 8,
     blocks_of_pages_say_what_the_runner_knows: 120,
+    blocks_of_text_are_compared_or_say_why_not: 45,
+    places_in_files_are_compared: 45,
     pyyaml_reads_the_shipped_files: 120,
 }
 """Each check, and how many things it looks at, at least."""
@@ -213,6 +237,11 @@ def anchors(page: Path) -> set[str]:
     text = BLOCK.sub("", page.read_text(encoding="utf-8"))
     plain = (re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading) for heading in HEADING.findall(text))
     return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in plain}
+
+
+def _fences(page: Path) -> list[tuple[str, str]]:
+    """The indent and the language of each block that begins in a page."""
+    return re.findall(r"(?m)^( *)```(.*)$", page.read_text(encoding="utf-8"))[::2]
 
 
 def _listed(problem: str, found: list[str]) -> str:

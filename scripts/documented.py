@@ -1,16 +1,24 @@
-"""Runs what the documentation shows, and compares what it prints: `python scripts/documented.py [PAGE ...]`.
+"""Runs the commands that the documentation shows, and compares their output: `python scripts/documented.py [PAGE ...]`.
 
-What is run stands in blocks of ```console, a `$` before each command and its output below; of a page one after another,
-in a copy of the shipped project. A comment above a block says more, `<!-- run: WORDS -->`, and `<!-- $ COMMAND -->` is
-what a reader does by hand before it:
+A block of ```console has a `$` before each command and the output below it. The blocks of a page are run one after
+another, in a copy of the shipped project. A comment above a block has more, `<!-- run: WORDS -->`, and
+`<!-- $ COMMAND -->` is a step that the reader does by hand before it:
 
     in=empty          from here on in an empty folder
     file=PATH         the block below is this file, and is written (with `append=PATH`: added to it)
     ends=1            the last command ends with this code, not with 0
-    physics, broker   only where the simulator, RabbitMQ, is there
-    robot, network    not run by this script: a person does
+    physics, broker   only if the simulator, RabbitMQ, is installed
+    robot, network    not run by this script: a person does it
 
-In an output `…` stands for any text, on a line of its own for any lines. Numbers may differ by a fifth, or by 1.
+A block of ```text needs one of these words:
+
+    by=SCRIPT         printed by this script, which runs in real time: times and the order of lines are not compared
+    not=drawing       a picture or a pattern made of characters
+    not=measured      the figures of a benchmark that the page names; they differ from machine to machine
+    not=recorded      printed once in a setting that this script can't make; the page describes it
+
+In an output `…` is any text, and on a line of its own any lines. Numbers may differ by a fifth, or by 1; the line and
+column of a file may not differ.
 """
 
 import argparse
@@ -31,10 +39,16 @@ from types import MappingProxyType
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # for tests/rabbitmq.py
+NOT_RUN = ("drawing", "measured", "recorded")
+"""Why a block of text is not compared."""
 PROJECT = ("lumen.yaml", "behaviors", "knowledge", "fuzzy", "motions", "models", "schemas", "examples")
 BEFORE = r"(?:^<!-- \$ (?P<before>.+?) -->\n+)?(?:^<!-- run: (?P<words>.+?) -->\n+)?"
 BLOCK = re.compile(rf"(?m){BEFORE}^```(?P<language>\w+)[^\n]*\n(?P<text>[\s\S]*?)^```$")
 NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")
+PLACE = re.compile(r"(?<=\.)(yaml|md|xml|py|json)((?::\d+)+)")
+"""The line, and perhaps the column, behind the name of a file."""
+CLOCK = re.compile(r"^ *\d+:\d\d\.\d  ")
+"""The time before a line of a transcript."""
 END = "--- the end of a command:"
 LONGEST = 400.0
 """How long one block may take [s]."""
@@ -59,7 +73,7 @@ class Shown:
 
     @property
     def runs(self) -> bool:
-        return self.language == "console" or bool(self.word("file") or self.word("append"))
+        return self.language == "console" or any((self.before, *map(self.word, ("file", "append", "by"))))
 
     def commands(self) -> list[tuple[str, list[str]]]:
         """Each command, and the lines that it prints."""
@@ -96,12 +110,23 @@ def differing(expected: list[str], printed: list[str]) -> str | None:
     return None if free or at == len(printed) else f"only these lines, and not: {printed[at]}"
 
 
+def missing(expected: list[str], printed: list[str]) -> str | None:
+    """Return the first expected line that was printed nowhere; the times before the lines are not compared."""
+    timeless = [CLOCK.sub("", line) for line in printed]
+    return next((line for line in expected if not any(same(CLOCK.sub("", line), other) for other in timeless)), None)
+
+
 def same(expected: str, printed: str) -> bool:
-    """Whether two lines are the same but for spaces, what `…` stands for, and small differences of numbers."""
-    wanted, line = " ".join(expected.split()), " ".join(printed.split())
+    """Return True if two lines differ only in spaces, in the text for `…` and a little in numbers."""
+    wanted, line = (PLACE.sub(_spelled, " ".join(text.split())) for text in (expected, printed))
     pattern = ".*".join(NUMBER.sub("(\0)", re.escape(part).replace("\\ ", " ")) for part in _masked(wanted))
     found = re.fullmatch(pattern.replace("\0", NUMBER.pattern), line)
     return bool(found) and all(map(_near, NUMBER.findall(wanted.replace("…", " ")), found.groups()))
+
+
+def _spelled(place: re.Match[str]) -> str:
+    """A line and a column in letters, so that they are no numbers that may differ."""
+    return place[1] + "".join(chr(ord("a") + int(sign)) if sign.isdigit() else sign for sign in place[2])
 
 
 def _masked(text: str) -> list[str]:
@@ -133,14 +158,21 @@ class Workplace:
         """Run a block or write its file; what is not as the page says, a line each."""
         if block.word("in") == "empty":
             self.here = self.empty
+        if block.before:
+            self._run([block.before])
         if name := block.word("file") or block.word("append"):
             file = self.here / name
             file.parent.mkdir(parents=True, exist_ok=True)
             before = file.read_text(encoding="utf-8") if block.word("append") else ""
             file.write_text(before + block.text, encoding="utf-8")
             return
-        if block.before:
-            self._run([block.before])
+        if script := block.word("by"):
+            (lines, _), *_ = self._run([f"python {ROOT / script}"]) or [([], -1)]
+            if line := missing([line for line in block.text.splitlines() if line.strip()], lines):
+                yield f"{block.place}: `python {script}` did not print\n    {line}\nbut\n" + "\n".join(lines)
+            return
+        if block.language != "console":
+            return
         commands = block.commands()
         bus = {"LUMEN_BUS": self.bus} if "broker" in block.needs else {}
         printed = self._run([command for command, _ in commands], bus)
@@ -198,13 +230,13 @@ def check(page: Path, there: set[str], bus: str = "") -> tuple[int, list[str], l
     """How many commands of a page were run, what was not as it says, and what was left out."""
     shown = [block for block in blocks(page) if block.runs]
     count, wrong, left = 0, [], []
-    if not any(block.language == "console" and block.needs <= there for block in shown):
+    if not any((block.language == "console" or block.word("by")) and block.needs <= there for block in shown):
         return 0, [], [f"{block.place} ({', '.join(block.needs)})" for block in shown]
     with tempfile.TemporaryDirectory(prefix="lumen-documented-") as folder:
         place = Workplace(Path(folder), bus)
         for block in shown:
             if block.needs <= there:
-                count += len(block.commands()) if block.language == "console" else 0
+                count += len(block.commands()) if block.language == "console" else bool(block.word("by"))
                 wrong += place.perform(block)
             else:
                 left.append(f"{block.place} ({', '.join(block.needs - there)})")

@@ -34,9 +34,9 @@ class Visit:
     def _read(self) -> None:
         assert self._process.stdout
         for line in self._process.stdout:
-            self._told.append(line)
             if not self._ending:
                 print(line, end="", flush=True)
+            self._told.append(line)
 
     def until(self, words: str) -> None:
         """Wait until the exhibition has printed this since the last time."""
