@@ -4,6 +4,7 @@ Each check is a loop over files or rows. It yields the name of each and what is 
 loop that finds too few things to look at has failed: its pattern no longer matches.
 """
 
+import ast
 import re
 import sys
 import tomllib
@@ -14,6 +15,7 @@ import yaml
 from documented import NOT_RUN, all_pages, blocks
 
 from lumen.loading.files import PROJECT_FOLDERS
+from lumen.loading.packaged import MAIN_FILE
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -174,6 +176,18 @@ def places_in_files_are_compared() -> Iterator[Looked]:
         yield _name(page), _listed("remove the line number", re.findall(r"[\w*-]+\.(?:yaml|py|md|xml):\d+", prose))
 
 
+def quoted_messages_are_printed() -> Iterator[Looked]:
+    """Messages in the first column of docs/troubleshooting.md are texts of the engine; `…` is an inserted value."""
+    sources = (ast.parse(file.read_text(encoding="utf-8")) for file in sorted((ROOT / "engine/lumen").rglob("*.py")))
+    texts = "\n".join(_message(node) for tree in sources for node in _literals(tree))
+    for table in re.findall(
+        r"(?m)^\| the terminal prints .*\n((?:\|.*\n)+)", (DOCS / "troubleshooting.md").read_text()
+    ):
+        for row in table.splitlines()[1:]:
+            for quoted in re.findall(r"`([^`]{8,})`", row.split(" | ")[0]):
+                yield quoted, "" if quoted in texts else "is printed by no source of the engine"
+
+
 def pyyaml_reads_the_shipped_files() -> Iterator[Looked]:
     """PyYAML has YAML 1.1; tests/house/test_other_readers.py has the npm package, which knows 1.2 as well."""
     for path in [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in sorted((ROOT / name).rglob("*.yaml")))]:
@@ -199,6 +213,7 @@ CHECKS: dict[Check, int] = {
     blocks_of_pages_say_what_the_runner_knows: 120,
     blocks_of_text_are_compared_or_say_why_not: 45,
     places_in_files_are_compared: 45,
+    quoted_messages_are_printed: 10,
     pyyaml_reads_the_shipped_files: 120,
 }
 """Each check, and how many things it looks at, at least."""
@@ -237,6 +252,34 @@ def anchors(page: Path) -> set[str]:
     text = BLOCK.sub("", page.read_text(encoding="utf-8"))
     plain = (re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading) for heading in HEADING.findall(text))
     return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in plain}
+
+
+def _literals(tree: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of a module except docstrings."""
+    nodes = list(ast.walk(tree))
+    docstrings = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    yield from (node for node in nodes if id(node) not in docstrings)
+
+
+def _message(node: ast.AST) -> str:
+    """The text of a literal, without backticks and with `…` for the values in it; empty for other nodes."""
+    match node:
+        case ast.Constant(value=str(text)):
+            shown = text
+        case ast.JoinedStr(values=parts):
+            shown = "".join(map(_part, parts))
+        case _:
+            return ""
+    return re.sub(r"…( ?…)+", "…", shown.replace("`", ""))
+
+
+def _part(part: ast.expr) -> str:
+    match part:
+        case ast.Constant(value=value):
+            return str(value)
+        case ast.FormattedValue(value=ast.Name(id="MAIN_FILE")):
+            return MAIN_FILE
+    return "…"
 
 
 def _fences(page: Path) -> list[tuple[str, str]]:
