@@ -68,10 +68,12 @@ def mistakes() -> list[Mistake]:
 
 
 def project(mistake: Mistake, folder: Path) -> dict[str, bytes]:
-    """The shipped project with the mistake in it, in a folder."""
+    """A tour with the mistake in it, and the schemas, in a folder."""
     shutil.copy(PROJECT / MAIN, folder)
-    for name in (one for one in PROJECT_FOLDERS if (PROJECT / one).is_dir()):
-        shutil.copytree(PROJECT / name, folder / name)
+    for name in PROJECT_FOLDERS:
+        if (PROJECT / name).is_dir():
+            shutil.copytree(PROJECT / name, folder / name)
+    shutil.copytree(ROOT / "schemas", folder / "schemas", dirs_exist_ok=True)
     text = (folder / mistake.file).read_text("utf-8")
     assert mistake.old in text, mistake.what
     (folder / mistake.file).write_text(text.replace(mistake.old, mistake.new, 1), "utf-8")
