@@ -5,6 +5,7 @@ loop that finds too few things to look at has failed: its pattern no longer matc
 """
 
 import ast
+import json
 import re
 import sys
 import tomllib
@@ -14,6 +15,7 @@ from pathlib import Path
 import yaml
 from documented import NOT_RUN, all_pages, blocks
 
+from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.loading.files import PROJECT_FOLDERS
 from lumen.loading.packaged import MAIN_FILE
 
@@ -176,6 +178,24 @@ def places_in_files_are_compared() -> Iterator[Looked]:
         yield _name(page), _listed("remove the line number", re.findall(r"[\w*-]+\.(?:yaml|py|md|xml):\d+", prose))
 
 
+def every_key_of_the_files_is_on_a_page() -> Iterator[Looked]:
+    """The page yaml.md, with the pages that it links to, lists all keys of the YAML files."""
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in sorted(DOCS.glob("*.md")))
+    shown = set(re.findall(r"[\w-]+", "\n".join(re.findall(r"`[^`\n]+`|^```[\s\S]*?^```", pages, re.MULTILINE))))
+    for file in sorted((ROOT / "schemas").glob("*.schema.json")):
+        if file.name != "message.schema.json":  # whose keys are those of JSON Schema itself
+            for key in sorted(_keys(json.loads(file.read_text(encoding="utf-8"))) - {"propertyNames"}):
+                yield f"{file.name}: {key}", "" if key in shown else "is on no page of docs/"
+
+
+def the_page_about_expressions_lists_every_function() -> Iterator[Looked]:
+    page = (DOCS / "expressions.md").read_text(encoding="utf-8")
+    table = page.partition("\n## Functions\n")[2].partition("\n\n**")[0]
+    listed = set(re.findall(r"`(\w+)\(", table))
+    for name in sorted(listed | FUNCTIONS.keys()):
+        yield name, "" if name in listed & FUNCTIONS.keys() else "is a function, or a row of the table, only"
+
+
 def quoted_messages_are_printed() -> Iterator[Looked]:
     """Messages in the first column of docs/troubleshooting.md are texts of the engine; `…` is an inserted value."""
     sources = (ast.parse(file.read_text(encoding="utf-8")) for file in sorted((ROOT / "engine/lumen").rglob("*.py")))
@@ -214,6 +234,8 @@ CHECKS: dict[Check, int] = {
     blocks_of_text_are_compared_or_say_why_not: 45,
     places_in_files_are_compared: 45,
     quoted_messages_are_printed: 10,
+    every_key_of_the_files_is_on_a_page: 500,
+    the_page_about_expressions_lists_every_function: 20,
     pyyaml_reads_the_shipped_files: 120,
 }
 """Each check, and how many things it looks at, at least."""
@@ -280,6 +302,17 @@ def _part(part: ast.expr) -> str:
         case ast.FormattedValue(value=ast.Name(id="MAIN_FILE")):
             return MAIN_FILE
     return "…"
+
+
+def _keys(schema: object) -> set[str]:
+    """The keys that a schema lists, at every depth."""
+    match schema:
+        case dict():
+            own = schema.get("properties")
+            return {*(own if isinstance(own, dict) else ()), *(key for one in schema.values() for key in _keys(one))}
+        case list():
+            return {key for one in schema for key in _keys(one)}
+    return set()
 
 
 def _fences(page: Path) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""A module that takes the place of another: social media that print what they would post, in 25 lines.
+"""A module that takes the place of another: social media that print what they would post.
 
 LUMEN_BUS=amqp://NAME:PASSWORD@HOST/ python poster.py
 """

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from scripts.documented import ROOT, all_pages, available, check, differing
+from scripts.documented import ROOT, all_pages, available, check, differing, missing
 
 from lumen.cli.intermixed import Intermixed
 from lumen.cli.main import MODULES, VERBS
@@ -70,7 +70,25 @@ def test_what_the_tutorial_shows_is_printed() -> None:
         ("a", "a\nb", False),
         ("a\n…", "a\nb", True),
         ("a (b)?", "a (b)?", True),
+        ("behaviors/tour.yaml:231", "behaviors/tour.yaml:231", True),
+        ("behaviors/tour.yaml:231", "behaviors/tour.yaml:230", False),
+        ("tour.yaml:231:7: error", "tour.yaml:231:8: error", False),
+        ("… (tour.yaml:231:7)", "was (tour.yaml:231:7)", True),
     ],
 )
 def test_an_output_is_compared_with_a_tolerance(shown: str, printed: str, is_same: bool) -> None:
     assert (differing(shown.splitlines(), printed.splitlines()) is None) is is_same
+
+
+@for_each(
+    ("shown", "is_there"),
+    [
+        (" 0:09.0  reload   done\n 0:01.0  robot    rests", True),
+        (" 0:01.0  robot    wakes", False),
+        ("a.yaml:3:1 is wrong", True),
+        ("a.yaml:4:1 is wrong", False),
+    ],
+)
+def test_of_a_script_in_real_time_the_lines_are_compared_without_their_times(shown: str, is_there: bool) -> None:
+    printed = [" 0:01.0  robot    rests", " 0:02.0  reload   done", "a.yaml:3:1 is wrong"]
+    assert (missing(shown.splitlines(), printed) is None) is is_there
