@@ -76,7 +76,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--only",
         metavar="PARTS",
-        help="run only these parts (a list): robot, brain, motion, visitor, memory, eyes, ears, voice, social, show",
+        help="run only these parts (a list): robot, brain, motion, visitor, memory, eyes, ears, voice, social, show,"
+        " answers",
     )
     add("--robot-url", metavar="URL", help="with --robot naoqi: the robot's address (default: tcp://nao.local:9559)")
     add("--speed", choices=SPEEDS, default="1", help="speed of simulated time, as a multiple of real time (default: 1)")
