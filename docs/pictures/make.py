@@ -2,7 +2,7 @@
 
     python docs/pictures/make.py [tour] [museum] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop] [film]
 
-`tour` is the README's picture, mid-dance in the shipped story; `museum` the guide of examples/museum at the organ.
+`tour` is the shipped story, mid-dance; `museum` the guide of examples/museum at the organ.
 `head` is the paper's Fig. 13 and 14: the top camera's image when the visitor's face is first seen, and once the head
 has turned to it; a cross marks the image's centre, a ring the face. `sides` is the robot from three sides. `motions`
 is a sheet of each motion, at the moments that differ most. `walk` is a strip of `walk: {x: 0.2}`, `postures` one of
