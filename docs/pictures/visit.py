@@ -1,10 +1,10 @@
 """Make the moving picture of the README, docs/pictures/visit.webp: a visitor says goodbye; the robot answers and waves.
 
-    python docs/pictures/visit.py                    # film the story below (minutes, without a graphics card), and convert it
+    python docs/pictures/visit.py                    # film the story below, and convert it
     python docs/pictures/visit.py --film FILE.mp4    # convert this film; if it is missing, make it first
 
-`lumen run --story … --video` makes the film. The robot answers at once, so the film shows the visitor's last words for one
-frame only. The picture shows them for the two seconds before the answer.
+`lumen run --story … --video` makes the film, in some minutes without a graphics card. The robot answers at once, so the
+film shows the visitor's last words for one frame only. The picture shows them for the two seconds before the answer.
 """
 
 import argparse
