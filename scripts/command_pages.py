@@ -1,7 +1,7 @@
-"""Writes docs/commands/ from the parser of the command line: `python scripts/command_pages.py`.
+"""Write docs/commands/ from the parser of the command line: `python scripts/command_pages.py`.
 
-A page for each verb: what it does, how it is called, its words and options, its examples and what stands in
-`engine/lumen/cli/pages/VERB.md` besides.
+Each verb has a page: its purpose, usage, words, options and examples, and the text of
+`engine/lumen/cli/pages/VERB.md`.
 """
 
 import argparse
@@ -17,37 +17,8 @@ from lumen.cli.suggesting import Suggesting
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/commands"
 
-_INTRODUCTION = """# The command line
-
-`scripts/command_pages.py` writes these pages from the parser of the command line, so they agree with
-`lumen VERB --help`. If you misspell a verb or an option, the error names the one that you probably meant.
-
-| exit code | when |
-| --- | --- |
-| 0 | all went well |
-| 1 | the result is negative: findings, files with errors, a story that failed, a refusal, no answer |
-| 2 | the command could not run: an unknown word, a missing file, no running exhibition |
-| 130 | Ctrl-C ended it |
-
-With 2, the last line on standard error is the reason. The page of a verb names its own reasons for 1 and 2.
-
-`--format json` prints one object on standard output, for programs. Everything else goes to standard error. After two
-seconds, a long command shows its progress on the terminal.
-
-## Completion
-
-| shell | add once to |
-| --- | --- |
-| bash | `~/.bashrc`: `eval "$(lumen completion bash)"` |
-| zsh | `~/.zshrc`, after `compinit`: `eval "$(lumen completion zsh)"` |
-| fish | its completions, from a terminal: `lumen completion fish > ~/.config/fish/completions/lumen.fish` |
-
-The shell then completes verbs, options, their choices, and names of the project: stories, motions, behaviours, states,
-languages, codes.
-
-## Verbs
-
-"""
+INTRODUCTION = Path(__file__).with_suffix(".md")
+"""The first page, up to its list of verbs."""
 
 
 def written() -> dict[str, str]:
@@ -55,7 +26,7 @@ def written() -> dict[str, str]:
     parser = command_line(VERBS)
     index = "".join(f"- [`lumen {verb}`]({verb}.md): {summary}\n" for verb, summary in VERBS.items())
     pages = {f"{verb}.md": _page(verb, parser.verbs[verb]) for verb in VERBS}
-    return {"README.md": _INTRODUCTION + index, **pages}
+    return {"README.md": INTRODUCTION.read_text(encoding="utf-8") + index, **pages}
 
 
 def _page(verb: str, parser: Suggesting) -> str:
