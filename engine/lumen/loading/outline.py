@@ -88,7 +88,7 @@ class BehaviorOutline:
             message = f"{source.title} has no state `{written}` to begin in"
             hint = hint.replace("`.", "`")
         meant = self._meant(source, nearest(target, known))
-        related = [(meant.where, f"`{meant.name}` stands here")] if meant and "mean" in hint else []
+        related = [(meant.where, f"`{meant.name}` is here")] if meant and "mean" in hint else []
         file = self.report.document.file
         cause, root = f"{file} state {target.lstrip('#.')}", f"the states of {file}"
         self.report(UNKNOWN_STATE, where, message, hint=hint, related=related, cause=cause, root=root)
