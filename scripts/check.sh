@@ -19,9 +19,10 @@ check format $bin/ruff format --check .
 check types $bin/mypy
 check floors $bin/lint-imports --no-logo
 check order $bin/python scripts/check.py
+check prose $bin/python scripts/prose.py --list
 check goldens $bin/python scripts/golden_guard.py
 if [ -n "$failed" ]; then
     echo "not well:$failed"
     exit 1
 fi
-echo "style, types, floors and order: well"
+echo "style, types, floors, order and prose: well"

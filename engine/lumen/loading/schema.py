@@ -17,7 +17,7 @@ from lumen.loading.misindented import KeyNames, key_names, misindented
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
-from lumen.loading.yaml_reader import read_text
+from lumen.loading.yaml_nodes import read_text
 
 FILE_KINDS = (
     "lumen",

@@ -9,8 +9,7 @@ import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place, mean, nearest
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import TOO_LARGE
-from lumen.loading.yaml_composer import TooLargeError, UnknownAliasError
+from lumen.loading.yaml_composer import UnknownAliasError
 
 MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "a merge conflict is not resolved: both sides are in the file")
 NOT_UTF8 = Code("not-utf8", "text", ERROR, "a file is not UTF-8 text")
@@ -25,7 +24,6 @@ _HINTS = {
     "another document": "a file may contain only one document: delete the line `---`",
     "could not find expected ':'": "write `:` and a space after it if it is a key; otherwise indent it under its key",
 }
-_SMALLER = "split the file, or use fewer levels and aliases"
 _CONFLICT = re.compile(r"(<{7}|={7}|>{7})(?= |$)")
 _NOT_ALLOWED = yaml.reader.Reader.NON_PRINTABLE
 TABBED = re.compile(r"[ \t]*\t[ \t]*")
@@ -83,13 +81,6 @@ def not_allowed(file: str, text: str) -> Diagnostic | None:
     which = f"U+{ord(sign):04X}, {f'`{meant}` of Windows-1252' if meant else 'a control character'}"
     hint = f"replace it with `{meant}`, or delete it" if meant else "delete it: an editor may not show it"
     return YAML_SYNTAX.at(place, f"YAML does not allow the character {which}", hint)
-
-
-def too_large(file: str, error: TooLargeError) -> Diagnostic:
-    """What to say of a file that holds too much."""
-    mark = error.mark
-    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2) if mark else Place(file)
-    return TOO_LARGE.at(place, f"the file is too large to be read: {error}", _SMALLER)
 
 
 def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, Severity, has_errors
 from lumen.loading.yaml_errors import TAB, YAML_SYNTAX
-from lumen.loading.yaml_reader import DUPLICATE_KEY
+from lumen.loading.yaml_nodes import DUPLICATE_KEY
 from lumen.rules.codes import CODES
 from lumen.rules.fixes import Edit, Fix, edited, fixes
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.rulebook import RULE_SYNTAX
 from lumen.loading.yaml_errors import TAB
-from lumen.loading.yaml_reader import DECIMAL_COMMA, DUPLICATE_KEY
+from lumen.loading.yaml_nodes import DECIMAL_COMMA, DUPLICATE_KEY
 from lumen.rules.codes import CODES
 from lumen.rules.fixes.edits import Edit, FileText, Fix, edited
 from lumen.rules.fixes.lines import fewer_ignores, once, spaces

@@ -1,0 +1,209 @@
+"""Plain data from composed YAML nodes, with the place of each."""
+
+import re
+from collections.abc import Iterator
+from itertools import chain, pairwise
+from typing import Any
+
+import yaml
+
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
+from lumen.language.lookalikes import typed
+from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
+from lumen.loading.slips import BARE_BRACES, QUOTE_BRACES
+from lumen.loading.yaml_composer import PLAIN_TAGS, TooLargeError, compose
+from lumen.loading.yaml_scalars import resolve
+
+COMPLEX_KEY = Code("complex-key", "text", ERROR, "a key is a list or a map")
+DUPLICATE_KEY = Code("duplicate-key", "text", ERROR, "a key is written twice in the same place")
+DECIMAL_COMMA = Code("decimal-comma", "text", ERROR, "a number is written with a comma")
+YAML_TAG = Code("yaml-tag", "text", ERROR, "a value has a YAML tag")
+
+_WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
+_SMALLER = "split the file, or use fewer levels and aliases"
+_TAGS = {"!include": "copy the content of that file here: a file can't include another"}
+
+
+def read_text(text: str) -> Document | None:
+    """The document in a text that is only tried, None if anything is wrong with it as YAML; nothing is kept."""
+    try:
+        node = compose(text)
+    except (yaml.YAMLError, TooLargeError):
+        return None
+    if node is None:
+        return None
+    reader = NodeReader("", text)
+    data = reader.read(node, (), None, 0)
+    return None if reader.diagnostics else Document("", data, reader.spans, text)
+
+
+def too_large(file: str, error: TooLargeError) -> Diagnostic:
+    """What to say of a file that holds too much."""
+    mark = error.mark
+    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2) if mark else Place(file)
+    return TOO_LARGE.at(place, f"the file is too large to be read: {error}", _SMALLER)
+
+
+class NodeReader:
+    """Turns composed nodes into plain data, remembering where each stood."""
+
+    def __init__(self, file: str, text: str) -> None:
+        self.file, self.text = file, text
+        self.spans: dict[NodePath, NodeSpan] = {}
+        self.diagnostics: list[Diagnostic] = []
+        self.full = False
+        self.dropped: set[str] = set()
+
+    def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
+        self.spans[path] = NodeSpan(self.place(key) if key else None, self.place(node))
+        if depth > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
+            self.overflow(node, depth)
+            return None
+        if node.tag not in PLAIN_TAGS:
+            self.say(
+                YAML_TAG,
+                node,
+                "a tag (a word that begins with `!`) has no meaning here",
+                _TAGS.get(node.tag, "delete the tag"),
+            )
+        if isinstance(node, yaml.ScalarNode):
+            return node.value if node.style else resolve(node.value)
+        if isinstance(node, yaml.SequenceNode):
+            if numbers := _decimals(node):
+                return self.commas(node, numbers)
+            return [self.read(child, (*path, i), None, depth + 1) for i, child in enumerate(node.value)]
+        assert isinstance(node, yaml.MappingNode)
+        if braces := self.braces(node):
+            return braces
+        return self.mapping(node, path, depth)
+
+    def braces(self, node: yaml.MappingNode) -> str:
+        """The text of `{{ … }}` that stands without quotes, which YAML takes for a map in a map; empty for others."""
+        if not (node.flow_style and len(node.value) == 1 and isinstance(node.value[0][0], yaml.MappingNode)):
+            return ""
+        start, end = node.start_mark, node.end_mark
+        text = self.text[start.index : end.index]
+        if not (text.startswith("{{") and text.endswith("}}")):
+            return ""
+        place = self.place(node)._replace(end_line=start.line + 1, end_column=start.column + 3)
+        self.diagnostics.append(COMPLEX_KEY.at(place, BARE_BRACES, QUOTE_BRACES))
+        return text
+
+    def commas(self, node: yaml.SequenceNode, numbers: list[str]) -> list[Any]:
+        """Report a list of numbers that are written with commas."""
+        message = "a comma ends a number, so these would be twice as many numbers"
+        self.say(DECIMAL_COMMA, node, message, f"write points: [{', '.join(numbers)}]")
+        return [resolve(number) for number in numbers]
+
+    def mapping(self, node: yaml.Node, path: NodePath, depth: int) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        last: yaml.Node | None = None
+        begun = _begun_anew(node)
+        for key, value in node.value:
+            before, last = last, value
+            if before is not None and data and (number := _decimal(before, key, value)):
+                self.comma(before, key, number)
+                data[next(reversed(data))] = resolve(number)
+            elif begun is not None and key is begun[0]:
+                self.too_deep(key, begun[1], depth)
+                self.dropped.update(_texts_below(node))
+                break
+            elif not isinstance(key, yaml.ScalarNode):
+                hint = "put quotes around a text that begins with `{`"
+                self.say(COMPLEX_KEY, key, "a key must be a single word or text", hint)
+            elif key.value in data:
+                self.duplicate(key, path)
+                if data[key.value] is None:  # the line was doubled, and the second one goes on
+                    data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
+                else:
+                    self.dropped.update(_texts_below(value))
+            else:
+                data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
+        return data
+
+    def comma(self, before: yaml.Node, key: yaml.Node, number: str) -> None:
+        """Report a number that was written with a comma."""
+        start, end = before.start_mark, key.end_mark
+        place = Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+        message = f"a comma ends the number {before.value}, so `{key.value}` would be a key"
+        self.diagnostics.append(DECIMAL_COMMA.at(place, message, f"write a point: {number}"))
+
+    def duplicate(self, key: yaml.Node, path: NodePath) -> None:
+        """Report a key that stands a second time; those of one map are one finding."""
+        first = self.spans[(*path, key.value)].key
+        hint = f"the first one is in line {first.line}" if first else ""
+        related = (Related(first, "the first one is here"),) if first else ()
+        message, cause = f"`{key.value}` is in the same place twice", f"{self.file} twice in {path}"
+        self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
+
+    def too_deep(self, key: yaml.Node, first: yaml.Node, depth: int) -> None:
+        """Report a key that stands as far in as those that were meant to be below it."""
+        message = f"`{key.value}` is in the same column as `{first.value}` below it, so keys are in one place twice"
+        blanks = "2 spaces" if key.start_mark.column > 1 else "the spaces"
+        self.say(DUPLICATE_KEY, key, message, f"delete {blanks} before `{key.value}`")
+
+    def overflow(self, node: yaml.Node, depth: int) -> None:
+        if not self.full:
+            self.full = True
+            what = (
+                f"nested deeper than {MAX_NODE_DEPTH} levels"
+                if depth > MAX_NODE_DEPTH
+                else f"more than {MAX_NODES:,} values"
+            )
+            self.diagnostics.append(too_large(self.file, TooLargeError(what, node.start_mark)))
+
+    def say(self, code: Code, node: yaml.Node, message: str, hint: str) -> None:
+        self.diagnostics.append(code.at(self.place(node), message, hint))
+
+    def place(self, node: yaml.Node) -> Place:
+        start, end = node.start_mark, node.end_mark
+        return Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
+    """The number that a value and an empty key behind its comma were meant to be; empty where they are none."""
+    near = key.start_mark.index == before.end_mark.index + 1 and value.start_mark.index == value.end_mark.index
+    plain = near and all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
+    whole, decimals = typed(before.value if plain else ""), typed(key.value if plain else "")
+    return f"{whole}.{decimals}" if _WHOLE.fullmatch(whole) and _DECIMALS.fullmatch(decimals) else ""
+
+
+def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
+    """An empty key behind which the keys of a map begin anew, and the first of those; None where there is none."""
+    keys = [key.value if isinstance(key, yaml.ScalarNode) else "" for key, _ in node.value]
+    before: set[str] = set()
+    for i, (key, value) in enumerate(node.value[:-1]):
+        empty = isinstance(value, yaml.ScalarNode) and not value.style and not value.value
+        if empty and keys[i + 1] in before and keys[i] not in before:
+            again = [name for name in keys[i + 1 :] if name and name in before]
+            if len(again) > 1:
+                return key, node.value[i + 1][0]
+        before.add(keys[i])
+    return None
+
+
+def _decimals(node: yaml.SequenceNode) -> list[str]:
+    """The numbers that a list was meant to hold where some commas in it have a blank behind them, and others none."""
+    items = node.value
+    if len(items) < 4 or len(items) % 2 or not node.flow_style:
+        return []
+    if not all(isinstance(item, yaml.ScalarNode) and not item.style for item in items):
+        return []
+    near = [a.end_mark.index + 1 == b.start_mark.index for a, b in pairwise(items)]
+    if near != [i % 2 == 0 for i in range(len(near))]:
+        return []
+    pairs = [(items[i].value, items[i + 1].value) for i in range(0, len(items), 2)]
+    sound = all(_WHOLE.fullmatch(whole) and _DECIMALS.fullmatch(part) for whole, part in pairs)
+    return [f"{whole}.{part}" for whole, part in pairs] if sound else []
+
+
+def _texts_below(node: yaml.Node) -> Iterator[str]:
+    """Every key and text below a node, each part of the file once."""
+    waiting, seen = [node], set[int]()
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, yaml.ScalarNode):
+            yield item.value
+        elif id(item) not in seen:
+            seen.add(id(item))
+            waiting += chain.from_iterable(item.value) if isinstance(item, yaml.MappingNode) else item.value
