@@ -222,7 +222,10 @@ def groups() -> Iterator[Counted]:
 
 
 def changed_lines() -> dict[str, set[int]]:
-    """The lines that a branch adds to main, or else the last commit to its parent; none without a history."""
+    """The lines that a branch adds to main, or else the last commit to its parent; none without a history.
+
+    Moved lines are left out.
+    """
     for base in (["merge-base", "HEAD", "origin/main"], ["rev-parse", "HEAD~1"]):
         known = subprocess.run(["git", *base], cwd=ROOT, capture_output=True, text=True).stdout.strip()
         head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
@@ -232,14 +235,18 @@ def changed_lines() -> dict[str, set[int]]:
         return {}
     kinds = ["*.py", "*.md", TEXTS, ":!docs/rules", ":!docs/commands"]
     diff = subprocess.run(["git", "diff", "-U0", known, "--", *kinds], cwd=ROOT, capture_output=True, text=True).stdout
+    before = {row[1:].strip() for row in diff.splitlines() if row.startswith("-")}
     added: dict[str, set[int]] = {}
-    file = ""
+    file, line = "", 0
     for row in diff.splitlines():
         if row.startswith("+++ "):
             file = row.removeprefix("+++ b/")
-        elif place := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@", row):
-            start, count = int(place[1]), int(place[2] or 1)
-            added.setdefault(file, set()).update(range(start, start + count))
+        elif place := re.match(r"@@ -\S+ \+(\d+)", row):
+            line = int(place[1])
+        elif row.startswith("+"):
+            if row[1:].strip() not in before:  # else it was moved
+                added.setdefault(file, set()).add(line)
+            line += 1
     return {file: lines for file, lines in added.items() if (ROOT / file).exists()}
 
 

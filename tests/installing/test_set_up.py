@@ -127,7 +127,7 @@ def test_checks_that_are_well_print_a_line_and_one_that_fails_all_that_it_printe
     for tool in ("ruff", "mypy", "lint-imports", "python"):
         checkout.write(tmp_path / ".venv/bin" / tool, "echo Success: 1 file")
     done = checkout.run("scripts/check.sh")
-    assert (done.returncode, done.stdout) == (0, "style, types, floors and order: well\n")
+    assert (done.returncode, done.stdout) == (0, "style, types, floors, order and prose: well\n")
     checkout.write(tmp_path / ".venv/bin/mypy", "echo a.py: error; echo and a hint >&2; exit 1")
     done = checkout.run("scripts/check.sh")
     assert done.returncode == 1
