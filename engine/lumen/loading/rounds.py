@@ -122,7 +122,7 @@ def unrolled(state: State, first: tuple[str, ...]) -> Iterator[State]:
 
     begin = assign(f"{{'entry': {{}}, 'left': {order}}}")
     following = assign(f"{{'entry': {key}.left[0], 'left': drop({key}.left, 1)}}")
-    more = Expression(f"size({key}.left) > 0", where, f"run the next {loop.variable}")
+    more = Expression(f"size({key}.left) > 0", where, f"there is a next {loop.variable}")
     onward = Transition(state.path, f"done.state.{state.name}", first, more, following, exact=True, where=where)
     name = "begin"
     while f"{state.path}.{name}" in state.children:

@@ -45,6 +45,7 @@ from lumen.loading import (
     units,
     variables,
     yaml_errors,
+    yaml_nodes,
     yaml_reader,
 )  # fmt: skip
 from lumen.rules import aims, ignores, lookups, on_request, routing_keys, rulebooks, surfaces
@@ -55,7 +56,7 @@ LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, hears_keys, house,
     keyframes, knowledge, known_words, life, linking, markdown, messages, misplaced, numbers, outline, poses, project,
     role_names, roles, rounds, rulebook, schedules, settings, shapes, shared_keys, signal_bindings, terms, transitions,
-    units, variables, yaml_errors, yaml_reader,
+    units, variables, yaml_errors, yaml_nodes, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 
