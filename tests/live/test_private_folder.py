@@ -24,6 +24,7 @@ MAKERS = {
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "app/workers/work_kit.py": "a temporary folder",
     "app/starting.py": "a project, which is to be committed",
+    "loading/running_project.py": "the shipped exhibition, in the state folder",
     "cli/writing.py": "where the user says",
     "robots/simulation/shells.py": "the robot's shape",
 }

@@ -28,7 +28,7 @@ MAX_LEVELS = 3
 _CODES = frozenset((MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE))
 _BEGINNING = re.compile(r"( *)(- +)?(?:([^\s\"'#\[\]{},:][^\s:]*):(?= |$))?")
 
-Judge = Callable[[str], list[Complaint] | None]
+CheckedAgain = Callable[[str], list[Complaint] | None]
 """All complaints about the text of a file; None if it is not YAML."""
 
 
@@ -78,7 +78,7 @@ def _is_open(schema: Any, root: Mapping[str, Any]) -> bool:
 
 
 def misindented(
-    document: Document, found: Sequence[Complaint], names: KeyNames, judge: Judge
+    document: Document, found: Sequence[Complaint], names: KeyNames, judge: CheckedAgain
 ) -> Mapping[Complaint, str]:
     """The complaints that come from a wrong depth: the one to report has the hint, those that follow from it none."""
     lines, before = lines_of(document.text), Counter(map(_what, found))

@@ -44,5 +44,5 @@ class RoleNames:
         if lacking := {name: path for name, path in self._lacking.items() if name not in self._report.lost}:
             names = ", ".join(f"`{name}`" for name in lacking)
             hint = "if the body has these joints, name them under `roles` of the body"
-            message = f"{self._body.name} has no {names}: {what} leaves this movement out"
+            message = f"{self._body.name} has no {names}, so {what} can't move it"
             self._report(LEFT_OUT, next(iter(lacking.values())), message, hint=hint, key=True)
