@@ -98,7 +98,7 @@ def test_the_name_and_the_password_come_from_a_file(
     file.write_text("visual:visual\n")
     file.chmod(0o644)
     bus = connect(plain)
-    assert "others can read the password" in caplog.text
+    assert "other users can read the password" in caplog.text
     with pytest.raises(BusError, match=r"refuses the subscription to `lumen\.secret`"):
         bus.subscribe("lumen.secret", Collector())
     bus.close()
