@@ -172,7 +172,8 @@ def sentences(file: str) -> Iterator[Prose]:
                 Prose(file, start, part) for part in re.split(r"(?<=[.?!]) +(?=[A-Z`])", text) if len(part.split()) >= 5
             )
             text, start = "", number
-        if not fenced and row.strip() and not row.lstrip().startswith(("#", "```", "<", "!", "    ")):
+        code = fenced or row.startswith("    ") or row.lstrip().startswith("```")
+        if row.strip() and not code and not row.startswith(("#", "<", "!")):
             text += (" " if text else "") + row.strip().lstrip("-*| ")
 
 
