@@ -33,7 +33,7 @@ def test_what_jfuzzylogic_computes_from_its_inputs() -> None:
     """FUNCTION terms; an input that only they ask for; of one term's degrees ACCU makes one."""
     tip = "TERM a := FUNCTION 2 * s + LN(t) ^ 2 - Log(100); TERM b := 7; METHOD : COGF;"
     data, found = said(a_block(tip, "ACCU : MAX;"))
-    assert found == ["3:1 the range of `tip` is empty: its values are not limited"]
+    assert found == ["3:1 the range of `tip` is empty, so its values are not limited"]
     a = 2 * 1 + 1.0 - 2
     assert Controller.from_dict(data).evaluate({"s": 1, "t": 2.718281828459045})["tip"] == pytest.approx(
         (0.75 * a + 0.25 * 7) / 1.0

@@ -50,7 +50,7 @@ VERBS = {
     "fleet": "update the robots of many houses, step by step",
     "alerts": "send a test alert to every recipient",
     "lint": "report what is wrong in a project, and where",
-    "explain": "explain a code of lint, with an example",
+    "explain": "explain a lint code, with an example",
     "completion": "print the completion script for bash, zsh or fish",
     "lsp": "run the language server for editors (LSP)",
     "language": "add a language to a project, or list what one lacks",

@@ -306,7 +306,7 @@ class _FclReader:
         place = self.at(statement) if statement else self.place(section.offset, len(section.kind))
         weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         if len(set(ends)) < 2 and weighted:
-            self.findings.changed(place, f"the range of `{section.name}` is empty: its values are not limited")
+            self.findings.changed(place, f"the range of `{section.name}` is empty, so its values are not limited")
             ends = [*(ends or [0.0]), (ends or [0.0])[0] + 1.0]
         elif len(set(ends)) < 2:
             self.findings.lost(place, f"`{section.name}` has no range", "write: RANGE := (0 .. 10);")

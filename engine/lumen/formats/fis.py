@@ -251,7 +251,7 @@ class _FisReader:
         span = section.line("Range")
         ends = _numbers(span.value.strip("[]")) if span else []
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
-            self.findings.lost(span.place if span else place, f"the range of `{name}` is empty")
+            self.findings.lost(span.place if span else place, f"`{name}` has no valid range")
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
         if side == "output":

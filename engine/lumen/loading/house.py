@@ -14,7 +14,7 @@ from lumen.loading.units import ANGLES, LENGTHS
 DEFAULT_ROBOT = "NAO"
 ROBOTS_TWICE = Code("robots-twice", "robot", ERROR, "lumen.yaml has both `robot` and `robots`")
 
-HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a line for each of several"
+HOW = "write `robot: {name: NAO, model: nao}` for one robot, or, for several, `robots:` with a line for each"
 
 
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:

@@ -21,7 +21,7 @@ MAX_SENTENCES, MAX_TRIED = 4, 40
 _TAKEN = {
     "": "taken if one of its phrases is said",
     "not": "taken if it is refused",
-    "asked": "taken if a who, why or when question is about it",
+    "asked": "taken if a who, why or when question is asked about it",
     "else": "taken if no state hears anything else",
 }
 

@@ -35,7 +35,7 @@ _MAX_TORN = 10
 _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (
         re.compile(r"\[[^\[\]]*\]\([^()]*\)"),
-        "`{}` marks an entity, as in Rasa; here it is an optional word and a group",
+        "`{}` marks an entity in Rasa; here it means an optional word followed by a group",
         "write a slot in its place: {{name}}, {{number}}, {{text}} or the name of a list",
     ),
     (

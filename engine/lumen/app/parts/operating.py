@@ -34,7 +34,7 @@ GOTO = "operator.goto"
 """The event of a step that an operator wanted."""
 EARS_LOST = f"{EARS}.lost"
 MAX_PENDING_REQUESTS = 100
-NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes"
+NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last 10 minutes"
 MAX_NOTE = 300
 """Characters of a mark, or a note."""
 REQUESTS = (

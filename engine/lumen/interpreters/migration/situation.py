@@ -64,7 +64,7 @@ class Situation:
     def ended_elsewhere(self, behavior: str) -> Refusal:
         """Why a behaviour that is over does not go on: a reload brings nothing to life."""
         ends = ", ".join(f"`{node.name}`" for node in self.start.ordered if node.kind is StateKind.FINAL)
-        reason = f"the behaviour has ended in {ends}, which is not its end in the new files"
+        reason = f"the behaviour has ended in {ends}, but in the new files it does not end there"
         return Refusal(
             reason,
             "restart the exhibition: only a restart begins a behaviour that has ended",
