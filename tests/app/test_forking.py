@@ -103,8 +103,8 @@ def test_a_moment_says_where_too(ask: Asker) -> None:
 @pytest.mark.parametrize(
     ("body", "reason"),
     [
-        ({}, "say where"),
-        ({"at": "noon"}, "`noon` is no time"),
+        ({}, "add `position`"),
+        ({"at": "noon"}, "`noon` is not a time"),
         ({"position": 100_000}, "nothing happened"),
         ({"position": 1, "event": "left"}, "`event` must look like"),
     ],

@@ -115,7 +115,7 @@ def test_what_is_wrong_is_said() -> None:
         lumen.open(ROOT, robot="toaster")
     with pytest.raises(lumen.UsageError, match="no project or story `nobody`"):
         lumen.open(ROOT, story="nobody")
-    with pytest.raises(lumen.UsageError, match="how many times real time"):
+    with pytest.raises(lumen.UsageError, match="must be a multiple of real time"):
         lumen.open(ROOT, speed="fast")
     with lumen.open(ROOT) as exhibition:
         with pytest.raises(lumen.UsageError, match="there is no route `hears`"):

@@ -118,14 +118,14 @@ def a_bad_edit(house: House, operator: Operator) -> None:
         "there is no state `godbye`", "did you mean `goodbye`?", "The robot continues with the previous files"
     )
     tour.write_text(good, "utf-8")
-    operator.sees("No findings.", "The saved files are those that run")
+    operator.sees("No findings.", "The saved files are the ones that run")
     operator.looks_at()
 
 
 def a_fall(house: House, operator: Operator) -> None:
     operator.sees_it_in("watching")
     operator.raises("fallen")
-    operator.sees("It fell.", "Keep visitors away", "I fell")
+    operator.sees("The robot fell.", "Keep visitors away", "I fell")
     operator.presses(".notice button")
     operator.sees_no(".notice button")
     operator.looks_at()  # what somebody has read does not come again with the next page
@@ -137,7 +137,7 @@ def a_fall(house: House, operator: Operator) -> None:
 def a_robot_that_is_gone(house: House, operator: Operator) -> None:
     operator.sees_it_in("watching")
     house.kill(ROBOT)
-    operator.sees("the robot is gone", "NAO itself is gone", "lumen run --only robot")
+    operator.sees("the robot is gone", "The process of NAO has ended", "lumen run --only robot")
     operator.sees_it_in("robot_lost")
     operator.rests("NOT SENT", "The robot does not rest")
     house.begin(ROBOT)

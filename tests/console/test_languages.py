@@ -26,7 +26,7 @@ NEVER_ON_A_PAGE = (
     "spoken_names.py",
 )
 """Modules whose messages go to the terminal or a file, or that have their own Indonesian."""
-NOTES = ("plays …", "says “…”", "takes the posture …")
+NOTES = ("plays …", "says “…”", "goes into the posture …")
 """The notes that orders write into the journal, which stays in one language."""
 PLACES = r"\{(\w+)"
 

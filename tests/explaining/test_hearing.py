@@ -281,20 +281,20 @@ def test_an_invoked_behaviour_that_listens_keeps_else_from_going() -> None:
     )
     line = IgnoredEvents().line(play.machine, play.steps[-1].step)
     else_too = "hears else is false in playing (a behaviour that it invokes also listens)"
-    assert line == f"“hm” while quiz/ask hears nothing of it, and {else_too}"
+    assert line == f"“hm” while no row of quiz/ask matches, and {else_too}"
 
 
 @for_each(
     ("hears", "context", "text", "line"),
     [
-        ({"sing": "sing"}, {}, "hm", "no row of “hm” while offer matches"),
+        ({"sing": "sing"}, {}, "hm", "“hm” while no row of offer matches"),
         ({"sing": "sing"}, {}, "sing", ""),
         ({"dance": "dance", "sing": "sing"}, {}, "don't dance",
          "“don't dance” while hears dance is false in offer (“dance” is negated in “don't dance”)"),
         ({"dance": {"target": "dance", "guard": "context.n < 3"}}, {"n": 5}, "dance",
          "“dance” while context.n < 3 is false in offer (context.n is 5)"),
         ({"dance": {"target": "dance", "guard": "context.n < 3"}}, {"n": 0}, "hm",
-         "no row of “hm” while offer matches"),
+         "“hm” while no row of offer matches"),
         ({"named": {"target": "named", "guard": "heard.name == 'Ani'"}}, {}, "my name is Budi",
          "“my name is Budi” while heard.name == 'Ani' is false in offer (heard.name is 'Budi')"),
         ({"else": {"target": "lost", "guard": "context.n > 0"}}, {}, "hm",

@@ -208,9 +208,9 @@ def test_what_we_could_not_load_is_not_written(
 def test_what_an_engine_can_not_bring_is_listed_at_its_words() -> None:
     data, found = said(read_fll, FLL)
     assert found == [
-        "5:9 the term `very` of `a` is left out: a parameter is no number",
-        "12:23 this formula is left out: there is no function `bessel` of 1",
-        "18:17 this rule is left out: there is no `hihg`",
+        "5:9 the term `very` of `a` is left out: a parameter is not a number",
+        "12:23 this formula is left out: there is no function `bessel` with 1 argument",
+        "18:17 this rule is left out: unknown name `hihg`",
         "19:25 this rule is left out: expected the name of an input here, not `then`",
         "21:12 a rule block that is switched off is left out",
     ]

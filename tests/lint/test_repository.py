@@ -135,7 +135,7 @@ def test_pre_commit_lets_no_file_pass_that_belongs_to_no_project(
     (repository / "stand/lumen.yaml").unlink()
     refused = commit(repository)
     assert refused.returncode == 1
-    assert "belongs to no project: there is no lumen.yaml beside it or above" in refused.stdout
+    assert "belongs to no project: there is no lumen.yaml in its folder or above" in refused.stdout
 
 
 STEPS: dict[str, dict[str, Any]] = {step.get("id", step.get("name", "")): step for step in ACTION["runs"]["steps"]}

@@ -81,18 +81,22 @@ ROWS: dict[str, tuple[dict[str, str], dict[str, list[str]], list[str]]] = {
         [
             "3:16 wrong-type | write it in brackets: `[hello]`",
             '4:22 wrong-type | put it in quotes: "3"',
-            "4:25 missing-key | What the visitor says, as in `I'm Budi`",
-            "4:45 wrong-type | What the slot of that name should catch",
+            "4:25 missing-key | add it, as in `say: I'm Budi`",
+            "4:45 wrong-type | write it as in `n: Budi`",
             "4:56 wrong-value | What visitors say in a language",
         ],
     ),
-    "states that are a list": ({A: "tour: [talk]\n"}, {}, ["1:7 wrong-type | The sayings in the states"]),
+    "states that are a list": (
+        {A: "tour: [talk]\n"},
+        {},
+        ["1:7 wrong-type | write it as in `tour: {offer: {dance: {en: [Dance, please.]}}}`"],
+    ),
     "a story among them": (
         {A: "title: A\nsteps: [{wait: 1s}]\n"},
         {},
-        ["2:1 misplaced-file | its place is behaviors/stories/"],
+        ["2:1 misplaced-file | move it to behaviors/stories/"],
     ),
-    "words among them": ({A: "phrases: {yes: [b]}\n"}, {}, ["1:1 misplaced-file | its place is behaviors/words/"]),
+    "words among them": ({A: "phrases: {yes: [b]}\n"}, {}, ["1:1 misplaced-file | move it to behaviors/words/"]),
     "another ending": (
         {"behaviors/sayings/a.yml": "tour: {}\n"},
         {},

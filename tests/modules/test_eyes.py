@@ -182,9 +182,9 @@ def test_faces_that_were_learnt_long_ago_are_deleted(photographed: Pixels) -> No
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"contentUrl": "data:image/jpeg;base64,QUJD"}, "can't be read, UnidentifiedImageError"),
-        ({"contentUrl": "data:image/jpeg;base64,@@@"}, "is no base64"),
-        ({"contentUrl": "data:image/jpeg;base64,bm8gcGljdHVyZQ=="}, "can't be read, UnidentifiedImageError"),
+        ({"contentUrl": "data:image/jpeg;base64,QUJD"}, "it cannot be read (UnidentifiedImageError)"),
+        ({"contentUrl": "data:image/jpeg;base64,@@@"}, "its `contentUrl` is not base64"),
+        ({"contentUrl": "data:image/jpeg;base64,bm8gcGljdHVyZQ=="}, "it cannot be read (UnidentifiedImageError)"),
         (body(np.zeros((8, 8, 3), np.uint8)), "is 8 x 8 px: its width and height must be between 32 and 4096"),
         (body(np.zeros((10, 5000, 3), np.uint8)), "is 5000 x 10 px"),
     ],

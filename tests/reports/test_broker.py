@@ -52,15 +52,18 @@ def refusal(url: str) -> str:
 @for_each(
     ("password", "said"),
     [
-        ("QQ/QQ", "`amqp://h/` is no address of a broker (in the name and the password write %2F for `/`"),
-        ("QQ#QQ", "`amqp://h/` is no address of a broker (in the name and the password write %23 for `#`"),
-        ("QQ?QQ", "`amqp://h/` is no address of a broker (in the name and the password write %3F for `?`"),
-        ("17/QQ", "`amqp://h/` is no address of a broker (in the name and the password write %2F for `/`"),
-        ("17#QQ", "`amqp://h/` is no address of a broker (in the name and the password write %23 for `#`"),
-        ("QQ?a=QQ", "`amqp://h/` is no address of a broker (in the name and the password write %3F for `?`"),
-        ("Q[Q]", "`amqp://h/` is no address of a broker (in the name and the password write %5B for `[`, %5D for `]`"),
+        ("QQ/QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %2F for `/`"),
+        ("QQ#QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %23 for `#`"),
+        ("QQ?QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %3F for `?`"),
+        ("17/QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %2F for `/`"),
+        ("17#QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %23 for `#`"),
+        ("QQ?a=QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %3F for `?`"),
+        (
+            "Q[Q]",
+            "`amqp://h/` is not the address of a broker (in the name and the password write %5B for `[`, %5D for `]`",
+        ),
         ("QQ/Q#Q?", "(in the name and the password write %2F for `/`, %3F for `?`, %23 for `#`"),
-        ("QQ@Q/Q", "`amqp://h/` is no address of a broker (in the name and the password write %2F for `/`"),
+        ("QQ@Q/Q", "`amqp://h/` is not the address of a broker (in the name and the password write %2F for `/`"),
     ],
 )
 def test_a_password_with_signs_of_an_address_is_not_shown(password: str, said: str) -> None:
@@ -92,10 +95,10 @@ def test_no_part_of_a_password_is_shown(password: str, path: str) -> None:
     [
         (
             "amqp://guest:secret",
-            "`amqp://guest:…` is no address of a broker (its port is not a number from 0 to 65535)",
+            "`amqp://guest:…` is not the address of a broker (its port is not a number from 0 to 65535)",
         ),
-        ("amqp://guest:secret/museum", "`amqp://guest:…` is no"),
-        ("amqp://u:secret@h:port/", "`amqp://h:…` is no address of a broker (its port is not a number"),
+        ("amqp://guest:secret/museum", "`amqp://guest:…` is not the address of a broker"),
+        ("amqp://u:secret@h:port/", "`amqp://h:…` is not the address of a broker (its port is not a number"),
         ("amqp://u:secret@h:70000/", "its port is not a number from 0 to 65535"),
         ("amqp://u:secret@/", "it has no host"),
         ("amqp://u:secret℀@h/", "it contains a character that is not allowed in an address"),
@@ -344,7 +347,7 @@ def test_dead_letters_declared_with_other_settings_are_reported(
         told = [record.getMessage() for record in caplog.records if "other arguments" in record.getMessage()]
         assert len(told) == 1
         assert said in told[0]
-        assert "delete it (`rabbitmq" in told[0]
+        assert "its messages are lost: type `rabbitmq" in told[0]
         assert main(["doctor", "--bus", broker.url]) == 1
         assert f"!! dead letters: {said}" in capsys.readouterr().out
         _without_side_queues(channel)
@@ -417,7 +420,7 @@ def test_each_command_names_what_the_broker_is_short_of(
     short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(MINIMAL)
-    reason = "is short of memory and accepts no messages until it has enough: `rabbitmqctl status`"
+    reason = "is short of memory and accepts no messages until it has enough: type `rabbitmqctl status`"
     assert main(["topic", "pub", "lumen.a", "1", "--bus", short.url]) == 2
     said = capsys.readouterr().err
     assert said.startswith("lumen topic: the broker at")

@@ -250,7 +250,7 @@ def test_a_command_that_a_stopped_robot_refuses_is_reported_as_refused(tmp_path:
         lines = [(who, text) for _, who, text in trace.lines]
         reason = "Ada stopped the robot: hold its head, or run `lumen resume`"
         assert ("refused", f"wake: {reason}") in lines
-        assert ("refused", f"take the posture Stand: {reason}") in lines
+        assert ("refused", f"go into the posture Stand: {reason}") in lines
         assert not [text for who, text in lines if who == "robot"]
         assert ("state", "b  (stop)") in lines
         assert trace.troubles == []

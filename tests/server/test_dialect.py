@@ -129,11 +129,11 @@ def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
         (order("leds", colours={}), "at least one light"),
         (order("leds", colours={"eye": "red"}), "no light `eye`: did you mean `eyes`?"),
         (order("leds", colours={"eyes": "bleu"}), "no colour `bleu`: did you mean `blue`?"),
-        (order("leds", colours={"eyes": "#12g"}), "`#12g` is no colour"),
+        (order("leds", colours={"eyes": "#12g"}), "`#12g` is not a colour"),
         (order("leds", colours={"eyes": 5}), "no colour `5`"),
         (order("leds", colours={"eyes": "red"}, duration=61), "0 to 60 s, not 61 s"),
         (order("record", recordingName=5), "must be a text"),
-        (order("record", recordingName="a", duration=60), "between 0.1 and 20 s, not at 60"),
+        (order("record", recordingName="a", duration=60), "between 0.1 and 20 s, not 60"),
     ],
 )
 def test_what_cant_be_done_is_said(body: Any, says: str) -> None:

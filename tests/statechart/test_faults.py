@@ -14,7 +14,12 @@ from tests.tables import for_each
 
 FAULTS: dict[str, tuple[str, str, str, str]] = {
     "unknown sibling": ("states: {idle: {on: {go: gret}}, greet: }", "unknown-state", "gret", "did you mean `greet`?"),
-    "child without its dot": ("states: {a: {on: {go: b}, states: {b: }}}", "unknown-state", "b}", "written `.b`"),
+    "child without its dot": (
+        "states: {a: {on: {go: b}, states: {b: }}}",
+        "unknown-state",
+        "b}",
+        "write a child state as `.b`",
+    ),
     "state elsewhere": ("states: {a: {on: {go: c}}, b: {states: {c: }}}", "unknown-state", "c}}", "`#b.c`"),
     "unknown id": ("states: {a: {id: one, on: {go: '#on'}}}", "unknown-state", "'#on'", "`#one`"),
     "second of a list": ("states: {a: {on: {go: {target: [a, x]}}}}", "unknown-state", "x]", ""),
@@ -75,7 +80,12 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "renamed": ("renamed: {x: b}\nstates: {a: }", "unknown-state", "b}", ""),
     "onReload": ("states: {a: {onReload: c}, b: }", "unknown-state", "c}", ""),
     "invoke": ("states: {a: {invoke: {behavior: quiz}}}", "unknown-behavior", "quiz", ""),
-    "invoke of itself": ("states: {a: {invoke: {behavior: tour}}}", "invoke-cycle", "tour", "a state of its own"),
+    "invoke of itself": (
+        "states: {a: {invoke: {behavior: tour}}}",
+        "invoke-cycle",
+        "tour",
+        "use a state in place of `invoke`",
+    ),
     "two verbs": ("states: {a: {entry: {say: x, play: y}}}", "one-verb", "", ""),
     "unknown verb": ("states: {a: {entry: {sai: x}}}", "unknown-key", "sai", "`say`"),
 }

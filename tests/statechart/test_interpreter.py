@@ -249,7 +249,7 @@ def test_no_time_is_no_later_than_any() -> None:
 
 
 def test_an_input_that_is_no_map_is_told() -> None:
-    with pytest.raises(UsageError, match="has to be a map"):
+    with pytest.raises(UsageError, match="the input of `tour` must be a map"):
         initial(Machine.from_dict(TOUR), input=["visits"])  # type: ignore[arg-type]
 
 

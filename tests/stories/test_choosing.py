@@ -43,7 +43,7 @@ def test_a_file_elsewhere_is_not_the_story_of_that_name(
     elsewhere = tmp_path / "shy.yaml"
     elsewhere.write_text("steps: [{wait: 1s}]\n", "utf-8")
     assert main([*command, str(elsewhere)]) == 2
-    assert "put it there" in capsys.readouterr().err
+    assert "move it there" in capsys.readouterr().err
     assert main([*command, "no/such/shi.yaml"]) == 2
     assert "no story `no/such/shi.yaml`: did you mean `shy`?" in capsys.readouterr().err
 

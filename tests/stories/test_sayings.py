@@ -50,9 +50,9 @@ def test_one_that_does_not_hold_is_named_with_its_place(tmp_path: Path, capsys: 
     assert main(["test", str(root)]) == 1
     assert capsys.readouterr().out.splitlines()[1:] == [
         "sayings: 1 of 4 (25 %)",
-        "  behaviors/sayings/bad.yaml:3:17: “Sing!” in `choice`: `else` takes it, and `sing` should; the guard"
+        "  behaviors/sayings/bad.yaml:3:17: “Sing!” in `choice`: `else` matches it, but `sing` should; the guard"
         " `context.tries > 2` of `sing` is false for the first values of the context",
-        "  behaviors/sayings/bad.yaml:7:11: “What time is it?” in `choice`: `else` takes it, and `dance` should",
+        "  behaviors/sayings/bad.yaml:7:11: “What time is it?” in `choice`: `else` matches it, but `dance` should",
         "  behaviors/sayings/bad.yaml:8:20: “exhibit four” in `choice`: `n` is `4`, but should be `3`",
     ]
 
@@ -77,7 +77,7 @@ def test_of_several_answers_a_saying_names_one() -> None:
         return found.wrong
 
     assert wrong("White.") == ""
-    assert wrong("Red.") == "`answer` is `Blue. | White.`, and should be `Red.`"
+    assert wrong("Red.") == "`answer` is `Blue. | White.`, but should be `Red.`"
 
 
 def test_sayings_come_after_the_stories_unless_those_fail_first(
@@ -105,7 +105,7 @@ def test_programs_get_all_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[
         "file": "behaviors/sayings/bad.yaml", "line": 6, "column": 11, "said": "dance", "behavior": "guide",
         "state": "choice", "language": "en", "row": "dance", "took": "dance", "passed": True,
     }  # fmt: skip
-    assert (sing["passed"], sing["took"], sing["wrong"][:9]) == (False, "else", "`else` ta")
+    assert (sing["passed"], sing["took"], sing["wrong"][:9]) == (False, "else", "`else` ma")
     assert main(["test", str(root), "--format", "junit"]) == 1
     (suite,) = ET.fromstring(capsys.readouterr().out)
     assert (suite.get("name"), suite.get("tests"), suite.get("failures")) == ("sayings", "4", "3")
@@ -114,16 +114,16 @@ def test_programs_get_all_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[
 @for_each(
     ("saying", "wrong"),
     [
-        (Saying("guide", "bye", "else", "en", "hello"), "no row takes it, and `else` should"),
+        (Saying("guide", "bye", "else", "en", "hello"), "no row matches it, but `else` should"),
         (
             Saying("guide", "ask_name", "my_name", "en", "hm"),
-            "`else` takes it, and `my_name` should; the guard `context.tries < 2` of `else` is true for the first"
+            "`else` matches it, but `my_name` should; the guard `context.tries < 2` of `else` is true for the first"
             " values of the context",
         ),
         (Saying("guide", "choice", "tour_of", "en", "exhibit one", {"exhibits": "clock"}),
-         "`exhibits` is not caught, and should be `clock`"),
+         "`exhibits` is not caught, but should be `clock`"),
         (Saying("guide", "choice", "tour_of", "en", "show me the clock", {"exhibits": "organ", "n": 1}),
-         "`exhibits` is `clock`, and should be `organ`; `n` is not caught, and should be `1`"),
+         "`exhibits` is `clock`, but should be `organ`; `n` is not caught, but should be `1`"),
         (Saying("guide", "offer.choice", "dance", "en", "dance"), ""),
     ],
 )  # fmt: skip

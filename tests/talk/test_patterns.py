@@ -47,9 +47,9 @@ def test_a_full_stop_means_the_whole_clause(phrase: str, whole: bool) -> None:
         ("a|b", 1, "inside"),
         ("a (|b)", 2, "is empty"),
         ("a () b", 2, "is empty"),
-        ("exhibit {number: n}", 8, "no slot"),
-        ("{ name }", 0, "no slot"),
-        ("{name", 0, "no slot"),
+        ("exhibit {number: n}", 8, "is not a slot"),
+        ("{ name }", 0, "is not a slot"),
+        ("{name", 0, "is not a slot"),
         ("(a|b) (a|b) (a|b) (a|b) (a|b) (a|b) (a|b) (a|b)", 0, f"more than {MAX_FORMS} forms"),
     ],
 )

@@ -156,7 +156,7 @@ def test_the_command_says_what_it_changed(tmp_path: Path, capsys: pytest.Capture
     }
     assert main(["upgrade", str(tmp_path)]) == 0
     said = capsys.readouterr().out
-    assert "the vocabulary is now 1\n1 place rewritten; the files are written for vocabulary 1\n" in said
+    assert "the vocabulary is now 1\n1 place rewritten; the files now use vocabulary 1\n" in said
     assert (tmp_path / "lumen.yaml").read_bytes() != before
     assert main(["upgrade", str(tmp_path), "--check"]) == 0
     assert main(["lint", "--strict", str(tmp_path)]) == 0

@@ -71,7 +71,7 @@ def test_a_crew_of_one_is_this_process() -> None:
 @pytest.mark.slow
 def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    with pytest.raises(WorkersError, match=r"a second time: use fewer of them with --workers 1$"):
+    with pytest.raises(WorkersError, match=r"for the second time: use fewer of them with --workers 1$"):
         list(Workers(2).results(die, KIT, TASKS))
     assert list(tmp_path.iterdir()) == []
 

@@ -36,7 +36,7 @@ class VirtualClock:
 
         Raises UsageError for a time that never passes: below 0, infinite, NaN.
         """
-        need_number(dt, "the step of a clock", finite=False)
+        need_number(dt, "the time to advance a clock by", finite=False)
         if not 0.0 <= dt < inf:
             raise UsageError(f"a clock cannot advance by {dt} s")
         self.wait(self._now + dt)

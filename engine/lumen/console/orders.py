@@ -106,7 +106,7 @@ def _play(fields: Fields, keys: RobotKeys, by: str) -> Order:
 def _posture(fields: Fields, keys: RobotKeys, by: str) -> Order:
     parameter = {"postureName": text_in(fields, "name"), "speed": 0.8}
     order = _motion({"type": "posture", "method": "goToPosture", "parameter": parameter}, keys.command)
-    return order._replace(note=f"takes the posture {parameter['postureName']}")
+    return order._replace(note=f"goes into the posture {parameter['postureName']}")
 
 
 def _question(**body: Any) -> Callable[[RobotKeys], Order]:

@@ -92,7 +92,7 @@ class RoleReader:
         if wheels and (lacking := [f"base.{side}" for side in SIDES if not getattr(roles.base, side)]):
             self._say(("base", "kind"), "a base on wheels", lacking)
         if roles.eyes.camera and "camera" not in self.given:
-            message = f"the body does not describe the camera `{roles.eyes.camera}` sees"
+            message = f"the body does not describe what the camera `{roles.eyes.camera}` sees"
             hint = "add `camera` with width, height, angles of view and position"
             self.report(INCOMPLETE_ROLE, (*_HERE, "eyes", "camera"), message, hint=hint)
         if roles.sensors.sonar and "sonar" not in self.given:

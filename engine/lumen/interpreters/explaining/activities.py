@@ -7,7 +7,7 @@ from lumen.interpreters.explaining.history import StepHistory
 from lumen.interpreters.explaining.insides import within
 from lumen.interpreters.explaining.names import PlacedDeed
 from lumen.interpreters.explaining.refusals import Reason
-from lumen.interpreters.explaining.words import ordinal, prefix_of
+from lumen.interpreters.explaining.words import prefix_of
 from lumen.interpreters.expressions import Scope
 from lumen.interpreters.expressions.scope import no_draw
 from lumen.interpreters.statechart.compiled_machine import compiled
@@ -29,7 +29,7 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
     nth = next(i for i, placed in enumerate(state.do) if deed.where[: len(placed.where)] == placed.where)
     if position is not None and position.place < nth:
         ids = list(awaited(position))
-        stands = f"has not reached it, it is at step {ordinal(position.place + 1)} of {len(state.do)}"
+        stands = f"has not reached it, it is at step {position.place + 1} of {len(state.do)}"
         text = f"the `do` of {name} {stands}: it waits for {', '.join(ids)}"
         place = last.place(deed.machine, state.do[position.place].where)
         if nth == position.place + 1 and len(ids) == 1 and ids[0].startswith("d"):

@@ -215,7 +215,7 @@ def _position(data: JsonCursor, action: CompiledAction) -> Position:
             if len(rows) < 3 or all(row.data is None for row in rows):
                 raise data["branches"].refused("should have the positions of the answer, its time and the spoken text")
             return Fork(tuple(None if row.data is None else _awaiting(row) for row in rows))
-    raise data.refused("is a position in an action without a length")
+    raise data.refused("is a position in an action that takes no time")
 
 
 def _awaiting(data: JsonCursor) -> Awaiting:

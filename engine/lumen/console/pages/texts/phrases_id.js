@@ -79,7 +79,7 @@ export default [
   ["says “{0}”", "berkata “{0}”"],
   ["asks “{0}”", "bertanya “{0}”"],
   ["plays {0_}", "memainkan {0}"],
-  ["takes the posture {0_}", "mengambil sikap {0}"],
+  ["goes into the posture {0_}", "mengambil sikap {0}"],
   ["walks to {0_}", "berjalan ke {0}"],
   ["lights {0}", "menyalakan lampu {0}"],
   ["follows the face with {0_}", "mengikuti wajah dengan {0}"],
