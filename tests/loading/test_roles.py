@@ -106,9 +106,13 @@ WRONG = {
     "wheels of no speed": (["speed: 50, ", ""], "14:3 missing-key"),
     "a speed of no wheels": (["wheels, left: LeftWheel, right: RightWheel, speed: 50,", "fixed,"], "14:23 unknown-key"),
     "a hand that turns": ([", opening: true", ""], "13:17 incomplete-role write `opening: true` at the joint `Grip`"),
-    "eyes without a camera": (["  hands:", "  eyes: {camera: Eye}\n  hands:"], "13:18 incomplete-role add `camera` with"),
+    "eyes without a camera": (
+        ["  hands:", "  eyes: {camera: Eye}\n  hands:"],
+        "13:18 incomplete-role add `camera` with",
+    ),
     "ears without a sonar": (
-        ["  hands:", "  sensors: {sonar: {left: Ear}}\n  hands:"], "13:20 incomplete-role add `sonar` with its range and cone",
+        ["  hands:", "  sensors: {sonar: {left: Ear}}\n  hands:"],
+        "13:20 incomplete-role add `sonar` with its range and cone",
     ),
     "no posture to stand in": (["  Stand:", "  Stood:"], "8:1 missing-key every robot has `Stand`"),
 }  # fmt: skip

@@ -165,4 +165,4 @@ class Narrator(Observer):
 
 def _base(words: str) -> str:
     verb, _, rest = words.partition(" ")
-    return f"{verb.removesuffix('s')} {rest}".strip()
+    return f"{verb.removesuffix('es' if verb.endswith('oes') else 's')} {rest}".strip()
