@@ -167,7 +167,7 @@ def test_a_program_of_the_project(tmp_path: Path) -> None:
     [
         (["./nothing"], "it can't be run: No such file or directory", True),
         (["no-such-program-at-all"], "it can't be run: No such file or directory", True),
-        (["sh", "-c", "echo first >&2; echo no pager >&2; exit 3"], "it ends with 3: no pager", False),
+        (["sh", "-c", "echo first >&2; echo no pager >&2; exit 3"], "it ended with exit code 3: no pager", False),
     ],
 )
 def test_a_program_that_can_not(tmp_path: Path, command: list[str], said: str, final: bool) -> None:

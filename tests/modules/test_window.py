@@ -137,7 +137,7 @@ def test_the_eyes_show_what_they_found(stand: Callable[..., Stand], photographed
     here.add(eyes)
     assert eyes._window
     troubles = here.listen("lumen.trouble")
-    assert here.told == [f"what they see: {eyes._window.address}"]
+    assert here.told == [f"see their picture at {eyes._window.address}"]
     page = looking(eyes._window.address)
     until(lambda: eyes._window._lookers)  # type: ignore[union-attr]
     here.bus.publish("avatar.NAO.data.joint", {"name": ["HeadYaw", "HeadPitch"], "angle": [0.1, 0.0], "stiffness": []})

@@ -91,13 +91,13 @@ def test_stop_halts_a_change_of_posture_on_its_feet(robot: SimulatedRobot) -> No
     ("command", "reason"),
     [
         (Posture("Handstand"), "no posture `Handstand`: did you mean `Stand"),
-        (Posture("Stand", nan), "a speed lies above 0"),
-        (Posture("Stand", 0.0), "a speed lies above 0"),
+        (Posture("Stand", nan), "a speed must be above 0"),
+        (Posture("Stand", 0.0), "a speed must be above 0"),
         (Walk(nan), "there is no way to (nan, 0.0, 0.0)"),
         (Look(nan, 0.0), "`HeadYaw` cannot move to nan"),
         (Perform(MotionDefinition("m", 1.0, {"Nose": (Keyframe(1.0, 0.0),)})), "`Nose` is not a joint"),
-        (Perform(MotionDefinition("m", 1.0, {"HeadYaw": (Keyframe(1.0, nan),)})), "no number"),
-        (Perform(MotionDefinition("m", inf, {"HeadYaw": (Keyframe(1.0, 0.0),)})), "no number"),
+        (Perform(MotionDefinition("m", 1.0, {"HeadYaw": (Keyframe(1.0, nan),)})), "is not a number"),
+        (Perform(MotionDefinition("m", inf, {"HeadYaw": (Keyframe(1.0, 0.0),)})), "is not a number"),
         (
             Perform(MotionDefinition("m", 1.0, {"HeadYaw": (Keyframe(1.0, 0.0),)}, start="Sit")),
             "begins in Sit; the robot is in Stand",

@@ -185,7 +185,7 @@ def refused(robot: SimulatedRobot, command: Walk) -> str:
         (Walk(-0.6), "foot would leave the stage: it would reach x = -0.4"),
         (Walk(0.0, 0.7), "left foot would leave the stage: it would reach y = 0.6"),
         (Walk(3.0), "would leave the stage"),
-        (Walk(1e9), "too far: a walk goes 10 m at most"),
+        (Walk(1e9), "is too far: walk at most 10 m"),
         (Walk(nan), "no way to (nan, 0.0, 0.0)"),
         (Walk(0.1, inf), "no way to"),
         (Walk(0.1, 0.0, -inf), "no way to"),
