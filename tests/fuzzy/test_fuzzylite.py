@@ -91,7 +91,7 @@ def test_the_package_carries_its_examples() -> None:
 @for_each("file", EXAMPLES, ids=lambda file: "/".join(file.parts[-3:]))
 def test_an_example_of_the_package(file: Path) -> None:
     data, found, controller, engine, points = example(file)
-    assert {d.message for d in found if d.severity == "error"} <= {"`theta` has no valid range"}
+    assert {d.message for d in found if d.severity == "error"} <= {"the range of `theta` is empty"}
     assert agree(controller, engine, points) >= 40
     again = {**read_fll(str(file), write_fll(controller, dotted("x"))[0].encode(), file.stem)[0]}
     assert plain(again) == plain(data)
