@@ -2,9 +2,10 @@
 
 import os
 import signal
-from pathlib import Path
 
 from hypothesis import HealthCheck, settings
+
+from tests import ROOT
 
 pytest_plugins = [
     "tests.provided",  # first, since others import it
@@ -19,7 +20,7 @@ pytest_plugins = [
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-os.environ["XDG_CACHE_HOME"] = str(Path(__file__).parents[1] / ".cache/xdg")
+os.environ["XDG_CACHE_HOME"] = str(ROOT / ".cache/xdg")
 """What starts keep for the next one is kept here, for all tests of this and later runs."""
 
 settings.register_profile(

@@ -1,7 +1,6 @@
 """A small project, made of values: a few joints and motions, the routes of the senses, the shipped schemas."""
 
 import json
-from pathlib import Path
 
 from lumen.language.lights import LIGHT_GROUPS
 from lumen.language.machines import MachineDefinition, State, StateKind
@@ -10,9 +9,10 @@ from lumen.language.projects import Project
 from lumen.language.robots import Body, Camera, Joint, Ultrasound
 from lumen.language.roles import Base, BaseKind, JointRole, Roles
 from lumen.language.routes import Direction, Route
+from tests import ROOT
 from tests.scanning import matching
 
-MESSAGES = Path(__file__).parents[1] / "schemas" / "messages"
+MESSAGES = ROOT / "schemas/messages"
 ENDING = ".schema.json"
 
 JOINTS = {

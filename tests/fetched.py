@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import run_guarded
-from tests.provided import ROOT, not_provided
+from tests.provided import not_provided
 
 
 @cache

@@ -6,7 +6,8 @@ from typing import NoReturn
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests import ROOT
+
 MISSING = ROOT / ".cache/debian.missing"
 """The packages that scripts/packages.sh could not provide: a line for each, with the reason."""
 

@@ -22,9 +22,10 @@ from typing import NoReturn
 
 import pytest
 
+from tests import ROOT
 from tests.erlang_modules import link_modules
 from tests.guarded import Guarded, TimeoutExpired, temporary_folder
-from tests.provided import ROOT, lack
+from tests.provided import lack
 from tests.waiting import HANG
 
 UNPACKED = ROOT / ".cache/debian"

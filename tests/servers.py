@@ -19,8 +19,9 @@ from typing import Any
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import STDOUT, Guarded, TimeoutExpired, temporary_folder
-from tests.provided import ROOT, program
+from tests.provided import program
 from tests.rabbitmq import GIVEN, VIRTUAL_HOSTS, GivenBroker, LentBroker, RabbitMQ
 from tests.waiting import HANG, until
 

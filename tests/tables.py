@@ -15,6 +15,8 @@ from typing import Any
 
 import pytest
 
+from tests import ROOT
+
 SHOWN = 20
 """The number of failures that are described; of further ones only the names are printed."""
 
@@ -122,7 +124,7 @@ def _sentence(error: BaseException) -> str:
 
 
 def _places(error: BaseException) -> Iterator[str]:
-    root = Path(__file__).parents[1]
+    root = ROOT
     for frame in extract_tb(error.__traceback__):
         path = Path(frame.filename)
         if path.is_relative_to(root / "tests") and path != Path(__file__):

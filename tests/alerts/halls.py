@@ -23,11 +23,12 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
+from tests import ROOT
 from tests.alerts.servers import Web
 from tests.nodes import Printed
 from tests.waiting import until
 
-BASE = Path(__file__).parents[1] / "lint/pages/base"
+BASE = ROOT / "tests/lint/pages/base"
 TOUR = """id: tour
 initial: idle
 states:

@@ -17,9 +17,10 @@ from lumen.buses.checking import SchemaCheck
 from lumen.language.events import Event
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.home import Home
+from tests import ROOT
 from tests.app.test_now import Asker, asker
 
-STATE = Path(__file__).parents[2] / "schemas" / "messages" / "state.schema.json"
+STATE = ROOT / "schemas/messages/state.schema.json"
 MINE = """
 context: {n: 0, who: ""}
 events: {dance: {}, other: {}, sing: {}, back: {}, leave: {}}

@@ -13,8 +13,8 @@ from lumen.language.events import Event
 from lumen.language.stories import Visitor
 from lumen.ports import Reading, RobotCommand, Sense
 from lumen.statechart import Step, VirtualClock
+from tests import ROOT
 from tests.guarded import run_guarded
-from tests.tour.names import ROOT
 
 
 class Parrot:

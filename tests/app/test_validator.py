@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Mapping
-from pathlib import Path
 
 import lumen
 from lumen.app.rehearsal import Rehearsal
@@ -13,9 +12,8 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.runtime.watcher import SavedFiles
+from tests import ROOT
 from tests.waiting import until
-
-ROOT = Path(__file__).parents[2]
 
 
 class Turn:

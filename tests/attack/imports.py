@@ -3,8 +3,9 @@
 import json
 import sys
 
+from tests import ROOT
 from tests.attack.attacks import Attack, Kind
-from tests.attack.targets import PATIENCE, ROOT, BrokenError, Size
+from tests.attack.targets import PATIENCE, BrokenError, Size
 from tests.guarded import PIPE, Guarded, temporary_folder
 
 

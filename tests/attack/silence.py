@@ -18,12 +18,10 @@ from typing import NamedTuple
 from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST
 from lumen.formats.tables import TABLES
+from tests import ROOT
 from tests.attack.changes import CHANGERS, Change, changed, normal
 from tests.attack.files import FOREIGN
 from tests.guarded import temporary_folder
-
-ROOT = Path(__file__).parents[2]
-
 
 _DAMAGED = ("hostile", "what_is_written_loads")
 """Names of recorded imports of randomly damaged files, most of whose content is already lost."""

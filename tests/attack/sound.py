@@ -7,7 +7,8 @@ from lumen.buses.local.server import FLUSH_MARK
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.rules import check_files
-from tests.attack.targets import ROOT, SPOKEN
+from tests import ROOT
+from tests.attack.targets import SPOKEN
 
 OTHERS = (COMMAND, STATUS, SPOKEN, FLUSH_MARK, "lumen.operator.answer", "lumen.nobody.knows", "avatar.NAO", "#", "*.*")
 """Keys that no route has."""

@@ -15,10 +15,10 @@ from lumen.errors import BusError
 from lumen.loading.files import read_files
 from lumen.runtime.home import ADDRESS_FILE, Home
 from lumen.runtime.journal import Journal
+from tests import ROOT
 from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder
 from tests.waiting import HANG, Collector, until
 
-ROOT = Path(__file__).parents[2]
 PARTS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models")
 SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
 SPEED = "4"

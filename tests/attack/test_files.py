@@ -8,10 +8,11 @@ import pytest
 from lumen.cli.main import main
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests import ROOT
 from tests.attack.files import FOREIGN, LARGEST, damaged, foreign_file, project_file
 from tests.tables import for_each
 
-BASE = read_files(Path(__file__).parents[1] / "lint" / "base")
+BASE = read_files(ROOT / "tests/lint/base")
 
 
 def test_a_seed_says_what_comes() -> None:

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from lumen.bus import Bus, connect
+from tests import ROOT
 from tests.exhibits import project
 from tests.fetched import fetched
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, Collector
 
-ROOT = Path(__file__).parents[2]
 MODULES = ROOT / "examples/modules"
 
 

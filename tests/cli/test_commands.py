@@ -10,9 +10,8 @@ import yaml
 
 import lumen
 from lumen.cli.main import main
+from tests import ROOT
 from tests.scanning import matching
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.process
@@ -59,7 +58,7 @@ def test_rows_of_routes_that_lumen_new_wrote_are_never_unused(tmp_path: Path) ->
 
 
 def test_the_minimal_project_is_short() -> None:
-    files = matching(ROOT / "examples" / "minimal", "**/*.yaml")
+    files = matching(ROOT / "examples/minimal", "**/*.yaml")
     assert sum(len(file.read_text("utf-8").splitlines()) for file in files) <= 55
 
 

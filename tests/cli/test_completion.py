@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import VERBS, main
+from tests import ROOT
 from tests.guarded import Guarded, run_guarded
 from tests.provided import program
 from tests.tables import for_each
 from tests.waiting import HANG, until
 
-ROOT = Path(__file__).parents[2]
 LIBRARIES = {name: value for name, value in os.environ.items() if name == "LD_LIBRARY_PATH"}
 """The path of libraries for shells that scripts/packages.sh has unpacked."""
 

@@ -13,8 +13,7 @@ from lumen.loading.project import draft
 from lumen.rules import check_files
 from lumen.rules.new_language import with_language
 from lumen.rules.translation import TO_DO, language_entries, untranslated
-
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
 
 BEHAVIOR = """\
 id: hello

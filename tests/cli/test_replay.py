@@ -9,14 +9,13 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
 
 
 @pytest.fixture
 def played(tmp_path: Path) -> Path:
     """A small exhibition in which a visitor was."""
-    folder = copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    folder = copytree(ROOT / "examples/minimal", tmp_path / "minimal")
     (story,) = lumen.load(folder).stories
     with lumen.open(folder, story=story) as exhibition:
         exhibition.run()

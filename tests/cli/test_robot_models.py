@@ -17,9 +17,10 @@ from lumen.formats.conversion_findings import ConversionFindings, ForeignFileErr
 from lumen.formats.robot_models import begins_robot, read_robot
 from lumen.formats.robot_models.mjcf import mjcf_model
 from lumen.formats.xml_elements import parse_xml
+from tests import ROOT
 from tests.tables import for_each
 
-MODELS = Path(__file__).parents[2] / "models"
+MODELS = ROOT / "models"
 DM_CONTROL = Path(str(find_spec("dm_control").submodule_search_locations[0]))  # type: ignore[union-attr, index]
 INERTIA = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
 LINK = f'<link name="{{}}"><inertial><mass value="1"/>{INERTIA}</inertial></link>'

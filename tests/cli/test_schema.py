@@ -14,9 +14,9 @@ from lumen.cli.jsonc import added, plain
 from lumen.cli.main import main
 from lumen.cli.schema import FILES, settings
 from lumen.loading.schema import FILE_KINDS, load_schema
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 SAMPLES = {"examples", "enum", "const", "default", "properties"}
 
 

@@ -12,11 +12,10 @@ from lumen.cli.agreeing import agrees
 from lumen.cli.main import main
 from lumen.cli.transcript import Transcript
 from lumen.errors import UsageError
+from tests import ROOT
 from tests.cli.conftest import Terminal
 from tests.guarded import DEVNULL, PIPE, Guarded
 from tests.waiting import HANG
-
-ROOT = Path(__file__).parents[2]
 
 
 class Unread(StringIO):

@@ -14,11 +14,11 @@ from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
 from lumen.cli.main import main
 from lumen.language.projects import Project
+from tests import ROOT
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
-ROOT = Path(__file__).parents[2]
 SONAR = "avatar.NAO.data.sonar"
 
 

@@ -2,8 +2,8 @@
 
 import re
 
+from tests import ROOT
 from tests.console.viewer import Viewer
-from tests.provided import ROOT
 
 TEXTS = ROOT / "engine/lumen/console/pages/texts"
 SHOWN = """

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.console.conftest import Hosted
 from tests.console.languages import english_on, phrases, texts
 from tests.console.pages import Served
 from tests.console.test_pages import PAGES
 from tests.console.viewer import Viewer
-from tests.provided import ROOT
 from tests.waiting import HANG, until
 
 CONSOLE = ROOT / "engine/lumen/console"

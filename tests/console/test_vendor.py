@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from tests.fetched import ROOT, fetched
+from tests import ROOT
+from tests.fetched import fetched
 
 PAGES = ROOT / "engine/lumen/console/pages"
 CARRIED = {

@@ -14,8 +14,8 @@ from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Ask
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.runtime.questions import Questions
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 PASSAGES = {
     "height": Passage("height", {"en": ("how tall are you",)}, {"en": "Small."}),
     "songs": Passage("songs", {"en": ("can you sing a song",)}, {"en": "One."}),

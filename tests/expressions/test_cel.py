@@ -2,19 +2,19 @@
 
 import re
 from collections import Counter
-from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 
 from lumen.interpreters.expressions import ExpressionNode, Scope
+from tests import ROOT
 from tests.expressions.cel import Outcome, by_cel, by_lumen, compare, same
 from tests.expressions.typed import expressions, scopes
 from tests.tables import for_each
 
 BUSY = settings(deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
-DOCS = Path(__file__).parents[2] / "docs" / "expressions.md"
+DOCS = ROOT / "docs/expressions.md"
 SCOPE = Scope(context={"n": 1, "m": {"y": 1}, "l": [1]}, event={"name": "e", "data": {}}, state={"path": "p"})
 ERROR = ("error",)
 

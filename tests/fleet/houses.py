@@ -13,8 +13,8 @@ from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.signing import ORDER, Signer
 from lumen.interpreters.fleet.orders import DesiredState
 from lumen.loading.files import fingerprint, read_files
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples/fleet"
 HOUSE, ROBOT = "itb", "nao1"
 

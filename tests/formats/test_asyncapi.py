@@ -12,12 +12,11 @@ from jsonschema import Draft202012Validator
 from lumen.cli.main import main
 from lumen.formats.asyncapi import write_asyncapi
 from lumen.language.projects import Project
+from tests import ROOT
 from tests.exhibits import project
 from tests.fetched import fetched
 from tests.guarded import run_guarded
 from tests.waiting import HANG
-
-ROOT = Path(__file__).parents[2]
 
 
 def parsed(*projects: Project) -> list[dict[str, Any]]:

@@ -19,9 +19,9 @@ from lumen.formats.diagrams.transition_rows import guard_phrase
 from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 TOUR = lumen.load(ROOT).machine
 
 

@@ -3,7 +3,6 @@
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,6 +12,7 @@ from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import write_scxml
 from lumen.formats.scxml.namespaces import SCXML_NAMESPACE
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.formats.making import charts
 
 CONTENT = {"raise", "if", "send", "log", "assign", "cancel", "elseif", "else", "script", "foreach"}
@@ -74,7 +74,7 @@ def test_any_machine(chart: dict[str, Any]) -> None:
 
 
 def test_the_tour_and_what_invokes() -> None:
-    tour = Machine.load(Path(__file__).parents[2] / "behaviors" / "tour.yaml")
+    tour = Machine.load(ROOT / "behaviors/tour.yaml")
     invoking = {"states": {"a": {"invoke": {"behavior": "quiz", "input": {"n": "1 + 1"}, "onDone": "a"}}}}
     quiz: dict[str, Any] = {"context": {"n": 0}, "states": {"q": None}}
     host = Machine.from_dict(invoking, behaviors={"quiz": quiz})

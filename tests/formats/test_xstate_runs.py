@@ -7,11 +7,10 @@ from typing import Any
 from lumen.formats.conversion_findings import dotted
 from lumen.formats.xstate import write_xstate
 from lumen.statechart import Interpreter, Machine, VirtualClock
+from tests import ROOT
 from tests.fetched import fetched
 from tests.guarded import run_guarded
 from tests.waiting import HANG
-
-ROOT = Path(__file__).parents[2]
 
 CHARTS: list[tuple[dict[str, Any], list[Any]]] = [
     (  # nested states, the first child's way, an inner one before an outer one
@@ -161,7 +160,7 @@ def test_xstate_goes_the_same_way() -> None:
 
 
 def test_xstate_enters_the_tour_where_we_do() -> None:
-    machine = Machine.load(ROOT / "behaviors" / "tour.yaml")
+    machine = Machine.load(ROOT / "behaviors/tour.yaml")
     [[[states, context]]] = by_xstate([{"config": exported(machine), "events": []}])
     active = Interpreter(machine)
     active.start()

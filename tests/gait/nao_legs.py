@@ -1,13 +1,13 @@
 """The legs of the shipped robots' models, as they are read, and others that are drawn up."""
 
 from dataclasses import replace
-from pathlib import Path
 
 from lumen.robots.simulation.leg_geometry import read_legs
 from lumen.robots.simulation.mass_model import MassModel
+from tests import ROOT
 from tests.motions.making import nao
 
-MODELS = Path(__file__).parents[2] / "models"
+MODELS = ROOT / "models"
 
 NAO_LEGS = read_legs(MassModel(nao(), MODELS).model, nao())
 

@@ -18,12 +18,11 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 
+from tests import ROOT
 from tests.golden.golden import RECORDED
 from tests.guarded import run_guarded
 
-ROOT = Path(__file__).parents[2]
 TESTS = ROOT / "tests"
 FLOORS = RECORDED / "collected" / "floors.json"
 ROW = re.compile(rb"(?m)^[^\s#\-%].*:(?=\s|$)")

@@ -11,10 +11,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from tests import ROOT
 from tests.golden.adapters_language import lumen_main
 
 COLUMNS = 100
-CHECKOUT = Path(__file__).parents[2]
+CHECKOUT = ROOT
 
 
 class Outcome(NamedTuple):

@@ -9,7 +9,8 @@ from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
-from tests.golden.warm import ROOT, environment
+from tests import ROOT
+from tests.golden.warm import environment
 from tests.guarded import DEVNULL, Guarded
 from tests.rabbitmq import _free_ports
 from tests.waiting import HANG, until

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.golden.exhibitions import small
-from tests.golden.warm import ROOT, environment
+from tests.golden.warm import environment
 from tests.guarded import DEVNULL, Guarded
 from tests.rabbitmq import _free_ports
 from tests.waiting import until

@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import lumen
+from tests import ROOT
 from tests.golden import adapters_running
 from tests.guarded import PIPE, Guarded
 
-ROOT = Path(__file__).parents[2]
 TICKS = 5
 """After how many ticks of each a process is looked at: all parts that can begin have begun."""
 PLAIN = {

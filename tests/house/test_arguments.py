@@ -10,15 +10,16 @@ import pytest
 from lumen import bus, fuzzy, motion
 from lumen.errors import SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, VirtualClock, initial, step
+from tests import ROOT
 from tests.tables import for_each
 
-KEPT = Path(__file__).parents[2] / ".cache/mypy"
+KEPT = ROOT / ".cache/mypy"
 """What mypy found out about the engine, for later runs; the one of `make check`, which may run beside, is another."""
 MACHINE = Machine.from_dict({"context": {"list": [1]}, "states": {"a": {"on": {"go": "b"}}, "b": None}})
-CONTROLLER = fuzzy.Controller.load(Path(__file__).parents[2] / "fuzzy" / "head.yaml")
+CONTROLLER = fuzzy.Controller.load(ROOT / "fuzzy/head.yaml")
 X, *_ = CONTROLLER.inputs
 GOOD = dict.fromkeys(CONTROLLER.inputs, 1.0)
-MOTION = motion.Motion.load(Path(__file__).parents[2] / "motions" / "dance.yaml")
+MOTION = motion.Motion.load(ROOT / "motions/dance.yaml")
 
 
 def running() -> Interpreter:

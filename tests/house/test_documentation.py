@@ -2,14 +2,12 @@
 
 import json
 import re
-from pathlib import Path
 
 from scripts.schema_pages import page, pages
 
+from tests import ROOT
 from tests.scanning import matching
 from tests.tables import for_each
-
-ROOT = Path(__file__).parents[2]
 
 
 def test_the_reference_has_a_page_for_each_schema() -> None:

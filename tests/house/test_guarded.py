@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import PIPE, CalledProcessError, Guarded, TimeoutExpired, run_guarded
 from tests.waiting import HANG, until
-
-ROOT = Path(__file__).parents[2]
 
 FAMILY = """
 import sys

@@ -2,13 +2,12 @@
 
 import re
 import xml.etree.ElementTree as ET
-from pathlib import Path
 
 import lumen
+from tests import ROOT
 from tests.scanning import matching
 
-ROOT = Path(__file__).parents[2]
-ENGINE = ROOT / "engine" / "lumen"
+ENGINE = ROOT / "engine/lumen"
 MAY = ("robots/naoqi/", "formats/", "rules/pages/")
 """What speaks with NAOqi or reads files made for it, and examples of findings."""
 

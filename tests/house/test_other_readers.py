@@ -1,17 +1,16 @@
 """The shipped YAML as JavaScript's tools read it, with the npm package `yaml`; PyYAML reads it in `make check`."""
 
 import json
-from pathlib import Path
 
 import pytest
 
 from lumen.loading.files import PROJECT_FOLDERS
+from tests import ROOT
 from tests.fetched import fetched
 from tests.guarded import run_guarded
 from tests.provided import program
 from tests.scanning import matching
 
-ROOT = Path(__file__).parents[2]
 FILES = [
     ROOT / "lumen.yaml",
     *(f for name in PROJECT_FOLDERS if name != "schemas" for f in matching(ROOT / name, "**/*.yaml")),

@@ -2,13 +2,12 @@
 
 import ast
 import re
-from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.scanning import matching
 
-ROOT = Path(__file__).parents[2]
 ENGINE = ROOT / "engine/lumen"
 LINE = re.compile(r"^    (\w+(?:\.py|/)) +\S", re.MULTILINE)
 

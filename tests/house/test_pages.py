@@ -11,9 +11,9 @@ from types import ModuleType
 
 import pytest
 
+from tests import ROOT
 from tests.scanning import matching
 
-ROOT = Path(__file__).parents[2]
 ENGINE = ROOT / "engine/lumen"
 ARCHITECTURE = "docs/architecture.md"
 PAGES = ("CONTRIBUTING.md", ARCHITECTURE, "docs/python.md", "docs/reliability.md")

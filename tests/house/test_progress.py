@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import PIPE, STDOUT, run_guarded
 from tests.progress import duration, time_left
 
-ROOT = Path(__file__).parents[2]
 FAILING = '''
 import pytest
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import PIPE, Guarded
-from tests.house.test_guarded import ROOT, gone, left
+from tests.house.test_guarded import gone, left
 from tests.waiting import HANG, until
 
 SHARES = """

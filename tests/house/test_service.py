@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
+from tests import ROOT
 from tests.guarded import PIPE, STDOUT, Guarded, run_guarded
 from tests.waiting import HANG
 
-ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "examples/systemd/lumen.service"
 
 

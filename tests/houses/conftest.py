@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
+
 ROBOTS = "robots:\n  ana: {model: nao, at: {y: -0.4}}\n  ben: {model: nao, at: {y: 0.4}}"
 
 

@@ -1,7 +1,6 @@
 """The duet: two NAOs in one physics world speak in turns and dance in step; what one sends, the other hears."""
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,10 @@ from lumen.app.house_setup import set_up_house
 from lumen.cli.main import main
 from lumen.ports import Bus, Message
 from lumen.rules import check
+from tests import ROOT
 from tests.waiting import Collector
 
-DUET = Path(__file__).parents[2] / "examples/duet"
+DUET = ROOT / "examples/duet"
 NAMES = ("ana", "ben")
 ARM = "RShoulderPitch"
 

@@ -8,13 +8,13 @@ import installed_size as installing
 import pytest
 
 from lumen.extras import INSTALL_BARE, MissingExtraError, demand
+from tests import ROOT
 from tests.guarded import run_guarded
 from tests.installing.conftest import Lumen
 from tests.lsp.client import Client
 from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
-ROOT = Path(__file__).parents[2]
 MAX_SIZE = 100.0
 """Of the core's files, without bytecode [MB]."""
 SIMULATION = ("run --story visitor --speed max", "lint --physics", "play dance", "run --video film.mp4")

@@ -13,11 +13,11 @@ import package_metadata
 import pytest
 from trove_classifiers import classifiers
 
+from tests import ROOT
 from tests.golden.subjects.distribution import files
 from tests.guarded import run_guarded
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
-ROOT = Path(__file__).parents[2]
 REPOSITORY = "https://example.org/us/lumen"
 RELATIVE = re.compile(r"\]\((?![a-z]+:|#)")
 

@@ -11,12 +11,12 @@ import installed_size as installing
 import pytest
 from packaging.requirements import Requirement
 
+from tests import ROOT
 from tests.guarded import run_guarded
 from tests.scanning import matching
 from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]
-ROOT = Path(__file__).parents[2]
 PAGES = (
     "README.md",
     "CONTRIBUTING.md",

@@ -7,9 +7,9 @@ from subprocess import CompletedProcess
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import run_guarded
 
-ROOT = Path(__file__).parents[2]
 PROGRAMS = ("sh", "cat", "grep", "tail", "mkdir", "rm", "touch", "dirname", "chmod", "ln")
 NEW = """case "$*" in
 *"version_info < "*) exit 0 ;;

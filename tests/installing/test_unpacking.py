@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from tests import provided, rabbitmq
+from tests import ROOT, provided, rabbitmq
 from tests.guarded import run_guarded
 from tests.waiting import HANG
 
-SCRIPT = Path(__file__).parents[2] / "scripts/packages.sh"
+SCRIPT = ROOT / "scripts/packages.sh"
 STATUS = """Package: openssl
 Status: install ok installed
 Version: 3

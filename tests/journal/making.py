@@ -22,8 +22,8 @@ from lumen.runtime.inputs.journal_folder import JournalFolder
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.resuming import Resumption, resume
 from lumen.runtime.runtime import Runtime
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 MAX_TIMERS = 12
 WRITTEN = 120.0
 """How long a crowded machine may take to write what a wild behaviour has done [s]."""
@@ -31,7 +31,7 @@ WRITTEN = 120.0
 
 @cache
 def minimal() -> Project:
-    return lumen.load(ROOT / "examples" / "minimal")
+    return lumen.load(ROOT / "examples/minimal")
 
 
 def bundle(machine: MachineDefinition) -> Project:

@@ -13,9 +13,9 @@ import lumen
 from lumen.cli.main import main
 from lumen.runtime.inputs.frames import FramePacker
 from lumen.runtime.inputs.journal_file import encode, read_header, read_lines
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 ODD: tuple[Any, ...] = (
     None, True, -1, 7, 10**400, 1e308, float("nan"), "", "soon", "\ud800", "a" * 70_000, [], [[]], [1], ["x", "y"],
     {}, {"x": 1}, {"at": []}, [{"id": "d1"}],
@@ -25,7 +25,7 @@ ODD: tuple[Any, ...] = (
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The journal of a small exhibition in which a visitor was."""
-    folder = copytree(ROOT / "examples" / "minimal", tmp_path_factory.mktemp("odd") / "minimal")
+    folder = copytree(ROOT / "examples/minimal", tmp_path_factory.mktemp("odd") / "minimal")
     (story,) = lumen.load(folder).stories
     with lumen.open(folder, story=story) as exhibition:
         exhibition.run()

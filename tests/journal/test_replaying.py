@@ -19,6 +19,7 @@ from lumen.interpreters.statechart import Step, microstep, stepping
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.guarded import PIPE, run_guarded
 from tests.journal.making import Recorded
 from tests.reload.editing import Happenings, built, edits
@@ -120,7 +121,7 @@ else:
 
 @pytest.mark.slow
 def test_another_process_with_another_seed_of_hashes_replays_the_same(tmp_path: Path) -> None:
-    data, root = json.dumps(BRANCHES), Path(__file__).parents[2]
+    data, root = json.dumps(BRANCHES), ROOT
     said = []
     for seed, what in (("1", "record"), ("2", "replay"), ("33", "replay")):
         command = [sys.executable, "-c", SCRIPT, tmp_path, data, what]

@@ -1,7 +1,6 @@
 """A head that follows a face lives about the face: it neither runs away, nor does the follower answer its life."""
 
 from math import degrees
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,9 +16,10 @@ from lumen.ports import Live
 from lumen.robots.body_parts import HEAD, WHOLE_BODY
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot
+from tests import ROOT
 from tests.fuzzy import physical_loop
 
-PROJECT = lumen.load(Path(__file__).parents[2])
+PROJECT = lumen.load(ROOT)
 BODY, CONTROLLER = PROJECT.body, PROJECT.controllers["head"]
 JOINTS = BODY.parts[HEAD]
 STYLES = sorted(PROJECT.life)

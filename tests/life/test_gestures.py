@@ -19,8 +19,8 @@ from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.recording import RecordingRobot
 from lumen.rules.walk import action_sites
 from lumen.statechart import Machine, initial
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROJECT = lumen.load(ROOT)
 BODY, LIBRARY = PROJECT.body, merged(PROJECT.gestures)
 TEXTS = [

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -14,8 +13,8 @@ from lumen.language.commands import Say
 from lumen.language.life import STILL_STYLE, Asides, Glances, LifeStyle, Nods, Settles, Sway
 from lumen.robots.body_parts import ARMS, HEAD, LEGS, WHOLE_BODY
 from lumen.robots.life_layer import LifeLayer
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROJECT = lumen.load(ROOT)
 BODY = PROJECT.body
 DT = 0.01

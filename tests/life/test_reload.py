@@ -14,9 +14,8 @@ from lumen.interpreters.migration import MigrationPlan
 from lumen.language.stories import Visitor
 from lumen.ports import Live, RobotCommand
 from lumen.robots.recording import RecordingRobot
+from tests import ROOT
 from tests.nodes import whole
-
-ROOT = Path(__file__).parents[2]
 
 
 class Told(RecordingRobot):

@@ -1,7 +1,5 @@
 """A simulated robot that lives: it stands as firmly as before, and commands do not notice."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,8 +9,8 @@ from lumen.language.stories import Visitor
 from lumen.ports import Live, Perform
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.subject import subject
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROJECT = lumen.load(ROOT)
 MODELS = ROOT / "models"
 

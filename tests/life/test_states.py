@@ -1,7 +1,5 @@
 """`life` of states: which style is meant, and when the robot is told."""
 
-from pathlib import Path
-
 import pytest
 
 import lumen
@@ -14,9 +12,9 @@ from lumen.language.machines import MachineDefinition
 from lumen.ports import Live, RobotCommand, Sense
 from lumen.robots.recording import RecordingRobot
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 TWO = """
 id: two
 type: parallel

@@ -1,13 +1,12 @@
 """The tour in simulation: nothing stands still for a second while the robot is awake (`benchmarks/alive.py`)."""
 
-from pathlib import Path
-
 import pytest
 from benchmarks.alive import measured
 
 import lumen
+from tests import ROOT
 
-PROJECT = lumen.load(Path(__file__).parents[2])
+PROJECT = lumen.load(ROOT)
 
 
 @pytest.mark.soak

@@ -11,6 +11,7 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.rules.codes import CODES, FAMILIES
+from tests import ROOT
 from tests.guarded import CompletedProcess, run_guarded
 from tests.tour.conftest import copy
 from tests.waiting import HANG
@@ -18,7 +19,7 @@ from tests.waiting import HANG
 __all__ = ["copy"]
 
 BASE = Path(__file__).parent / "base"
-ENGINE = Path(__file__).parents[2] / "engine"
+ENGINE = ROOT / "engine"
 
 
 @pytest.fixture

@@ -1,15 +1,14 @@
 """docs/lint-compared.md shows what lint says today; what its peers say is printed by the benchmark."""
 
 import re
-from pathlib import Path
 
 from benchmarks.compare_lint import PROJECT, Mistake, cell, mistakes
 
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/lint-compared.md").read_text("utf-8")
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import run_guarded
 
-ROOT = Path(__file__).parents[2]
 BASE = Path(__file__).parent / "pages" / "base"
 
 MAX_CPU = 20

@@ -14,6 +14,7 @@ from lumen.app.lint import kept_findings
 from lumen.cli.main import main
 from lumen.loading import engine_files, looks
 from lumen.rules.checks import CHECKS
+from tests import ROOT
 from tests.guarded import PIPE, run_guarded
 
 BASE = Path(__file__).parent / "base"
@@ -187,7 +188,7 @@ def test_what_is_known_needs_no_rules(project: Path) -> None:
         "import sys; from lumen.loading import looks; looks.SETTLED_NS = -10**18; from lumen.cli.main import main\n"
         "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.rules'} & set(sys.modules)))"
     )
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2] / "engine")}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
 
     def imported() -> str:
         done = run_guarded([sys.executable, "-c", told, str(project)], stdout=PIPE, text=True, env=environment)

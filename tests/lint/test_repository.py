@@ -12,11 +12,11 @@ import pytest
 import yaml
 
 from lumen.loading.files import read_files
+from tests import ROOT
 from tests.guarded import CompletedProcess, run_guarded
 from tests.provided import program
 from tests.waiting import HANG
 
-ROOT = Path(__file__).parents[2]
 BASE = Path(__file__).parent / "base"
 HOOK: dict[str, Any] = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())[0]
 ACTION: dict[str, Any] = yaml.safe_load((ROOT / "action.yml").read_text())

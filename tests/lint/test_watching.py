@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import PIPE, Guarded
 from tests.waiting import HANG
 
 HERE = Path(__file__).parent
-ENGINE = HERE.parents[1] / "engine"
+ENGINE = ROOT / "engine"
 END = "waiting for the next change, Ctrl-C ends"
 
 

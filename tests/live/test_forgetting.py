@@ -24,10 +24,10 @@ from lumen.errors import BusError
 from lumen.runtime.inputs.frames import unpack
 from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
 from lumen.runtime.journal import Journal
+from tests import ROOT
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
 from tests.guarded import PIPE, STDOUT, Guarded
-from tests.tour.names import ROOT
 from tests.waiting import HANG, until
 
 GUEST = """

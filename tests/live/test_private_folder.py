@@ -10,11 +10,12 @@ from lumen.modules.memory import Store
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.runtime.home import Home
 from lumen.upkeep.private_folder import private_folder
+from tests import ROOT
 from tests.guarded import run_guarded
 from tests.provided import program
 from tests.scanning import matching
 
-ENGINE = Path(__file__).parents[2] / "engine" / "lumen"
+ENGINE = ROOT / "engine/lumen"
 MAKERS = {
     "upkeep/private_folder.py": "the one function",
     "app/fleet/installing.py": "a folder of the project, which is to be committed",

@@ -10,8 +10,8 @@ from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.interpreters.replay.replaying import replay
 from lumen.language.causes import VISITOR, Cause
+from tests import ROOT
 from tests.live.shows import Live
-from tests.tour.names import ROOT
 from tests.waiting import Collector
 
 pytestmark = pytest.mark.rest  # dear

@@ -3,8 +3,8 @@
 from pathlib import Path
 from shutil import copytree
 
+from tests import ROOT
 from tests.live.shows import Live
-from tests.tour.names import ROOT
 from tests.waiting import Collector
 
 HELLO = "behaviors/hello.yaml"

@@ -21,8 +21,8 @@ from lumen.runtime.inputs.frames import FramePacker
 from lumen.runtime.inputs.journal_file import line_of, read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
 from lumen.runtime.inputs.redaction import redact
+from tests import ROOT
 from tests.live.shows import Live
-from tests.tour.names import ROOT
 
 pytestmark = pytest.mark.rest  # dear
 

@@ -19,8 +19,9 @@ from lumen.loading.packaged import find_project, shipped_root
 from lumen.loading.regular_files import read_regular
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
+from tests import ROOT
 
-BASE = Path(__file__).parents[1] / "lint" / "base"
+BASE = ROOT / "tests/lint/base"
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """A quick yes is never wrong, and the shipped files get one: jsonschema is not even imported for them."""
 
 import json
-from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -17,9 +16,10 @@ from lumen.loading.messages import build_message
 from lumen.loading.schema import FILE_KINDS, load_schema
 from lumen.loading.yaml_reader import parse
 from lumen.lsp.grammar import kind_of
+from tests import ROOT
 from tests.tables import for_each
 
-SHIPPED = read_files(Path(__file__).parents[2])
+SHIPPED = read_files(ROOT)
 
 
 def documents() -> list[tuple[str, Document]]:

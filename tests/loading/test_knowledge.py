@@ -8,9 +8,10 @@ from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.loading.markdown import parse_markdown
 from lumen.rules import check_files
+from tests import ROOT
 from tests.tables import for_each
 
-BASE = Path(__file__).parents[1] / "lint" / "base"
+BASE = ROOT / "tests/lint/base"
 YAML = b"questions: {en: how tall, id: [tinggi]}\nanswer: {en: Small., id: Kecil.}\nuntil: 2999-01-02\nwho: TINY\n"
 MARKDOWN = b"---\nquestions: {en: what is this, id: apa ini}\n---\n# en\n\nAn organ\nwith pipes.\n\n# id\n\nOrgel.\n"
 

@@ -8,8 +8,9 @@ import pytest
 import lumen
 from lumen.loading.lending import model_files
 from lumen.rules import check_files
+from tests import ROOT
 
-SHIPPED = Path(__file__).parents[2]
+SHIPPED = ROOT
 MAIN = """\
 name: Small
 behavior: hello

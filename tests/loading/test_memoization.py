@@ -11,8 +11,9 @@ from lumen.loading import motions
 from lumen.loading.files import read_files
 from lumen.loading.memoization import memoize
 from lumen.rules import check_files
+from tests import ROOT
 
-BASE = read_files(Path(__file__).parents[1] / "lint/base")
+BASE = read_files(ROOT / "tests/lint/base")
 NOD = b"keyframes: [{at: 1s, joints: {HeadPitch: 0.1}}, {at: 2s, joints: {HeadPitch: 0}}]\n"
 TURNS = {
     "motions/wave.yaml": (b"at: 1s", b"at: 600ms"),

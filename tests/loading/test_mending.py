@@ -1,14 +1,14 @@
 """What slipped in a file that is not YAML: looked for in the lines before, and tried."""
 
-from pathlib import Path
 from random import Random
 
 from lumen.loading.bracketed_texts import bracketed
 from lumen.loading.line_marks import marks_of
 from lumen.loading.mending import failure, mistake
+from tests import ROOT
 from tests.tables import for_each
 
-TOUR = (Path(__file__).parents[2] / "behaviors/tour.yaml").read_text()
+TOUR = (ROOT / "behaviors/tour.yaml").read_text()
 
 
 def test_a_line_says_what_it_leaves_open() -> None:

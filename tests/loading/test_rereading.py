@@ -15,9 +15,10 @@ from lumen.loading.files import read_files
 from lumen.loading.rereading import reread
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
+from tests import ROOT
 from tests.tables import for_each
 
-BASE = read_files(Path(__file__).parents[1] / "lint/base")
+BASE = read_files(ROOT / "tests/lint/base")
 TOUR = "behaviors/tour.yaml"
 ODD = """\
 # A comment

@@ -1,7 +1,5 @@
 """What the parts of a body are: read from models/NAME.yaml, and reported at the word where it can't be."""
 
-from pathlib import Path
-
 import pytest
 
 import lumen
@@ -12,9 +10,10 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from tests import ROOT
 from tests.tables import for_each
 
-SHIPPED = Path(__file__).parents[2]
+SHIPPED = ROOT
 GREETER = """\
 units: {angle: deg, length: cm}
 joints:

@@ -16,9 +16,10 @@ from lumen.loading.chosen_robot import as_robot
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.project import draft
 from lumen.rules import check_files
+from tests import ROOT
 from tests.tables import for_each
 
-SHIPPED = Path(__file__).parents[2]
+SHIPPED = ROOT
 MAIN = "behavior: host\nlanguages: [en]\nrobot: {model: nao}\nhall: hall.xml\n"
 HOUSE = """\
 behavior: host

@@ -19,7 +19,7 @@ from lumen.loading.project import draft
 from lumen.project import load
 from lumen.rules import check_files
 from lumen.statechart import Interpreter, Machine
-from tests.tour.names import ROOT
+from tests import ROOT
 
 FAQ = "behaviors/words/faq.yaml"
 TALL: dict[str, Any] = {

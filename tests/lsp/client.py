@@ -7,10 +7,11 @@ from pathlib import Path
 from queue import Queue
 from typing import Any, Self
 
+from tests import ROOT
 from tests.guarded import PIPE, Guarded
 from tests.waiting import HANG
 
-ENGINE = Path(__file__).parents[2] / "engine"
+ENGINE = ROOT / "engine"
 
 
 class Client:

@@ -1,7 +1,5 @@
 """What is shown between and behind the lines: lenses, hints, signatures, folds, links, and what is found by name."""
 
-from pathlib import Path
-
 from lumen.loading.files import read_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.folding import folds
@@ -10,9 +8,9 @@ from lumen.lsp.lenses import ACTIVE_NOW, PLAY_MOTION, RUN_STORY, active_places, 
 from lumen.lsp.links import links
 from lumen.lsp.signatures import signature
 from lumen.lsp.symbols import search
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 SHIPPED = Analysis(ROOT, read_files(ROOT))
 TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
 

@@ -1,7 +1,5 @@
 """A file that is no YAML for a moment: everything else in it, and in other files, is still known."""
 
-from pathlib import Path
-
 import pytest
 
 from lumen.errors import UsageError
@@ -11,9 +9,9 @@ from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.lsp.renaming import renamable, rename
 from lumen.lsp.symbols import Symbol, symbols
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 FILES = read_files(ROOT)
 TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
 SOUND = Analysis(ROOT, FILES)

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from lumen.loading.files import PROJECT_FOLDERS
+from tests import ROOT
 from tests.fetched import fetched
 from tests.lsp.client import Client
 from tests.provided import program
 
-ROOT = Path(__file__).parents[2]
 SERVER = "node_modules/yaml-language-server/bin/yaml-language-server"
 FILES = [
     "lumen.yaml", "behaviors/tour.yaml", "behaviors/stories/visitor.yaml", "fuzzy/head.yaml", "models/nao.yaml",

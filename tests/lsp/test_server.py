@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from lumen.loading.files import PROJECT_FOLDERS
+from tests import ROOT
 from tests.lsp.client import Client
 from tests.tables import for_each
 
 pytestmark = pytest.mark.ordered  # one server for all: what it publishes waits for the test that asks
 
-ROOT = Path(__file__).parents[2]
 TOUR = "behaviors/tour.yaml"
 
 

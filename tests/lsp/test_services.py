@@ -1,7 +1,6 @@
 """What the language services say of a place: files and positions in, values out, no editor around."""
 
 from contextlib import suppress
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -15,10 +14,10 @@ from lumen.lsp.hover import hover
 from lumen.lsp.names import NameKind
 from lumen.lsp.renaming import applied, refuse_harm, renamable, rename
 from lumen.lsp.symbols import symbols
+from tests import ROOT
 from tests.mutation.mutants import Nursery
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 FAQ = "behaviors/words/faq.yaml"
 VISITORS = "behaviors/words/visitors.yaml"
 HOST = "behaviors/host.yaml"

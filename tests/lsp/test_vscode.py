@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from lumen.app.exhibition import Exhibition
+from tests import ROOT
 from tests.cli.conftest import bus, copy, exhibition, project
 from tests.fetched import fetched
 from tests.guarded import run_guarded
@@ -18,7 +19,6 @@ from tests.scanning import matching
 from tests.waiting import HANG
 
 __all__ = ["bus", "copy", "exhibition", "project"]
-ROOT = Path(__file__).parents[2]
 COMMAND = [sys.executable, "-m", "lumen"]
 TOUR = "behaviors/tour.yaml"
 

@@ -22,10 +22,10 @@ from typing import Any, NamedTuple
 
 from lumen.loading.files import read_files
 from lumen.loading.yaml_reader import parse
+from tests import ROOT
 from tests.scanning import matching
 
 HERE = Path(__file__).parent
-ROOT = HERE.parents[1]
 FROZEN = ROOT / "tests/golden/projects"
 PROJECTS = {"tour": FROZEN / "tour", "museum": FROZEN / "museum", "talk": ROOT / "tests/lint/hearing"}
 """Copies that stay as they are, so that an edit of the shipped tour changes no row."""

@@ -11,11 +11,12 @@ import pytest
 from lumen.bus import Bus, connect
 from lumen.language.projects import Project
 from lumen.runtime.presence import Peer, Presence
+from tests import ROOT
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, Collector, until
 
-POSTER = Path(__file__).parents[2] / "examples/modules/poster.py"
+POSTER = ROOT / "examples/modules/poster.py"
 FACT = "lumen.NAO.persistence.fact"
 PATIENT = f"""
 import sys

@@ -1,7 +1,6 @@
 """What the tests of motions share: the shipped robot, and motions built from the text of a file."""
 
 from functools import cache
-from pathlib import Path
 
 from hypothesis import strategies as st
 
@@ -13,8 +12,8 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 SHIPPED = ("goodbye", "dance", "sing", "photo")
 
 

@@ -19,7 +19,8 @@ from lumen.ports import Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.loop import Observer
-from tests.motions.making import ROOT, made, nao
+from tests import ROOT
+from tests.motions.making import made, nao
 from tests.nodes import whole
 
 GREETING = """

@@ -11,7 +11,8 @@ from lumen.motion import Motion
 from lumen.ports import Perform
 from lumen.robots.simulation.model_terms import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.robot import SimulatedRobot
-from tests.motions.making import ROOT, SHIPPED, nao
+from tests import ROOT
+from tests.motions.making import SHIPPED, nao
 
 Point = np.ndarray
 STEP = 0.05

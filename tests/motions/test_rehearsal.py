@@ -12,7 +12,8 @@ from lumen.loading.chosen_model import MODEL_VARIABLE
 from lumen.rules.physics import DONE, FELL, Case, CaseResult, Outcome
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings
-from tests.motions.making import ROOT, SHIPPED
+from tests import ROOT
+from tests.motions.making import SHIPPED
 
 
 def test_every_motion_and_every_passage_is_a_case() -> None:

@@ -6,7 +6,8 @@ import pytest
 
 from lumen.errors import ProjectError, UsageError
 from lumen.motion import Motion, beyond_limits, overspeed
-from tests.motions.making import ROOT, SHIPPED, nao
+from tests import ROOT
+from tests.motions.making import SHIPPED, nao
 
 
 def shipped(name: str) -> Motion:

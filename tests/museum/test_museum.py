@@ -3,7 +3,6 @@
 import re
 from dataclasses import replace
 from math import dist
-from pathlib import Path
 
 import pytest
 
@@ -21,12 +20,12 @@ from lumen.loading.lending import model_files
 from lumen.robots.simulation import SimulatedRobot
 from lumen.rules import check_files
 from lumen.runtime.loop import Observer
+from tests import ROOT
 from tests.scanning import matching
 from tests.tour.playing import play
 
-ROOT = Path(__file__).parents[2]
-MUSEUM = ROOT / "examples" / "museum"
-PAGE = (ROOT / "docs" / "museum.md").read_text("utf-8")
+MUSEUM = ROOT / "examples/museum"
+PAGE = (ROOT / "docs/museum.md").read_text("utf-8")
 TORSO = 0.01
 """How far ahead of the feet the torso is [m]."""
 EXHIBITS = ["clock", "organ", "globe", "telescope", "loom"]

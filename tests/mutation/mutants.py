@@ -6,10 +6,11 @@ from random import Random
 from typing import NamedTuple
 
 from lumen.loading.files import read_files
+from tests import ROOT
 from tests.mutation.operators import OPERATORS
 from tests.mutation.text import Sheet
 
-SHIPPED = read_files(Path(__file__).parents[2])
+SHIPPED = read_files(ROOT)
 WEIGHTS = {"behaviors/tour.yaml": 30, "lumen.yaml": 12, "fuzzy/head.yaml": 8, "models/nao.yaml": 6}
 """How often a file is changed; others once, a motion and a story three times."""
 

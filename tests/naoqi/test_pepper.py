@@ -12,11 +12,11 @@ from lumen.language.motions import Cue, MotionDefinition
 from lumen.language.projects import Project
 from lumen.loading.chosen_model import MODEL_VARIABLE
 from lumen.ports import Joints, Live, Perform, Sense, Sonar, Tactile
+from tests import ROOT
 from tests.naoqi.conftest import Live as LiveFor
 from tests.naoqi.fake import FakeNao
 from tests.naoqi.lockstep import Lockstep
 from tests.naoqi.test_commands import answers, reason
-from tests.tour.names import ROOT
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ import pytest
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
 from lumen.rules.ways import _followers
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.tables import for_each
-from tests.tour.names import ROOT
 
 HALL = (Path(ROOT) / "models" / "hall.xml").read_bytes()
 

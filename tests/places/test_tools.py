@@ -13,10 +13,10 @@ from lumen.lsp.definitions import definitions
 from lumen.lsp.renaming import renamable, rename
 from lumen.rules import check_files
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.lsp.test_services import SHIPPED, TOUR, place
 from tests.reload.test_changes import FILES
 from tests.tour.conftest import copy, project
-from tests.tour.names import ROOT
 
 __all__ = ["copy", "project"]
 

@@ -1,13 +1,13 @@
 """A visitor lives through outages: `benchmarks/faults.py`, in a sample and in full."""
 
 import sys
-from pathlib import Path
 
 import pytest
 
+from tests import ROOT
 from tests.guarded import run_guarded
 
-BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "faults.py"
+BENCHMARK = ROOT / "benchmarks/faults.py"
 
 
 def outages(*words: object) -> str:

@@ -11,6 +11,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.formats.recordings.foxglove import form_class
 from lumen.formats.recordings.rewriting import recover
+from tests import ROOT
 from tests.fetched import fetched
 from tests.guarded import run_guarded
 from tests.recording.making import bodies
@@ -23,7 +24,7 @@ READER = Path(__file__).with_name("read.mjs")
 def tour(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Some seconds of a visit by the recording robot, which has joints, and a hall of its own."""
     folder = tmp_path_factory.mktemp("tour")
-    project = lumen.load(Path(__file__).parents[2])
+    project = lumen.load(ROOT)
     story = project.stories["visitor"]
     directory = RunDirectory(folder)
     path = folder / "tour.mcap"

@@ -20,10 +20,10 @@ from lumen.project import load
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
+from tests import ROOT
 from tests.guarded import run_guarded
 from tests.provided import program
 from tests.tables import for_each
-from tests.tour.names import ROOT
 
 FILES = read_files(ROOT)
 TOUR = "behaviors/tour.yaml"

@@ -22,10 +22,9 @@ from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
 from lumen.statechart import Machine
-from tests import exhibits
+from tests import ROOT, exhibits
 from tests.nodes import whole
 from tests.tables import for_each
-from tests.tour.names import ROOT
 
 
 class Seen(Observer):

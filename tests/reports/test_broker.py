@@ -10,7 +10,6 @@ import socket
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from pathlib import Path
 from typing import Any
 
 import pika
@@ -34,13 +33,14 @@ from lumen.language.addresses import public
 from lumen.language.fleet import Fleet, FleetHouse
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from tests import ROOT
 from tests.guarded import run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.tables import for_each
 from tests.waiting import HANG, Collector, until
 
-MINIMAL = Path(__file__).parents[2] / "examples" / "minimal"
+MINIMAL = ROOT / "examples/minimal"
 
 
 def refusal(url: str) -> str:

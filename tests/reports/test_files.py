@@ -27,12 +27,13 @@ from lumen.rules import check_files
 from lumen.rules.repairs import repaired
 from lumen.upkeep import replacing
 from lumen.upkeep.replacing import replace_file
+from tests import ROOT
 from tests.guarded import run_guarded
 from tests.tables import for_each
 
 HERE = Path(__file__).parent
 INPUTS = HERE / "inputs" / "files"
-MINIMAL = Path(__file__).parents[2] / "examples" / "minimal"
+MINIMAL = ROOT / "examples/minimal"
 TOUR, WAVE = "behaviors/tour.yaml", "motions/wave.yaml"
 BASE = {
     "lumen.yaml": read_files(MINIMAL)["lumen.yaml"].replace(b"behavior: hello", b"behavior: tour").replace(

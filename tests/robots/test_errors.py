@@ -26,10 +26,10 @@ from lumen.robots.naoqi import NaoqiRobot
 from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import NaoqiSession
 from lumen.robots.simulation import SimulatedRobot
+from tests import ROOT
 from tests.naoqi.fake import FakeNao
 from tests.tables import for_each
 from tests.tour.conftest import project
-from tests.tour.names import ROOT
 
 __all__ = ["project"]
 

@@ -11,10 +11,11 @@ from lumen.language.commands import GoTo, Leds, Look, Move, Posture, Rest, Say, 
 from lumen.language.roles import Base, BaseKind, Roles
 from lumen.language.skills import lack_of, tracking_lack
 from lumen.robots.command_table import check_command
+from tests import ROOT
 from tests.exhibits import BODY
 
 STUMP = replace(BODY, name="Stump", roles=Roles())
-SHIPPED = Path(__file__).parents[2]
+SHIPPED = ROOT
 TABLE = """\
 joints: {Spin: {range: [-1, 1]}}
 parts: {head: [Spin]}

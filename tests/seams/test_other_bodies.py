@@ -13,9 +13,9 @@ from lumen.loading.chosen_model import MODEL_VARIABLE
 from lumen.ports import Aim, Joints, Perform, RobotCommand, Sense, Sonar
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.performer import LEFT_OUT, Performer
+from tests import ROOT
 from tests.seams.test_robot import Remote, live
 from tests.tour.conftest import copied
-from tests.tour.names import ROOT
 
 Made = Callable[[Project], Remote]
 

@@ -18,8 +18,8 @@ from lumen.ports import Aim, Battery, Hall, Joints, Perform, Record, Robot, Sens
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteHall, RemoteRobot, RobotHost
 from lumen.robots.simulation import SimulatedRobot
+from tests import ROOT
 from tests.naoqi.lockstep import Lockstep
-from tests.tour.names import ROOT
 
 
 class Body(Robot, Hall, Protocol):

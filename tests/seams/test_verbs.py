@@ -60,9 +60,9 @@ from lumen.robots.sense_codec import decode_reading, encode_reading
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.statechart import Machine
+from tests import ROOT
 from tests.exhibits import BODY, project
 from tests.tables import for_each
-from tests.tour.names import ROOT
 
 ACTION = load_schema("behavior")["$defs"]["action"]["properties"]
 DURATIONS = {"$ref": "#/$defs/duration"}

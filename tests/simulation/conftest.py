@@ -1,7 +1,6 @@
 """A NAO on its stage."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import pytest
 
@@ -12,8 +11,9 @@ from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.ports import RobotCommand
 from lumen.robots.simulation import SimulatedRobot
+from tests import ROOT
 
-MODELS = Path(__file__).parents[2] / "models"
+MODELS = ROOT / "models"
 
 
 @pytest.fixture(scope="session")

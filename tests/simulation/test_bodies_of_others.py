@@ -1,13 +1,12 @@
 """examples/bodies: models of packages, described in YAML alone, greet whoever comes."""
 
-from pathlib import Path
-
 import pytest
 
 from lumen.cli.main import main
+from tests import ROOT
 from tests.scanning import matching
 
-EXAMPLES = Path(__file__).parents[2] / "examples/bodies"
+EXAMPLES = ROOT / "examples/bodies"
 BODIES = sorted(folder.name for folder in EXAMPLES.iterdir() if folder.is_dir())
 
 

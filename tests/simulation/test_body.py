@@ -2,7 +2,6 @@
 
 import json
 from copy import deepcopy
-from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -13,9 +12,9 @@ from lumen.loading.bodies import build_body
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.yaml_reader import parse
+from tests import ROOT
 from tests.tables import for_each
 
-ROOT = Path(__file__).parents[2]
 NAOQI = [
     "HeadYaw", "HeadPitch", "LShoulderPitch", "LShoulderRoll", "LElbowYaw", "LElbowRoll", "LWristYaw", "LHand",
     "LHipYawPitch", "LHipRoll", "LHipPitch", "LKneePitch", "LAnklePitch", "LAnkleRoll", "RHipYawPitch", "RHipRoll",
@@ -25,7 +24,7 @@ NAOQI = [
 
 
 def document() -> Document:
-    found, diagnostics = parse("models/nao.yaml", (ROOT / "models" / "nao.yaml").read_bytes())
+    found, diagnostics = parse("models/nao.yaml", (ROOT / "models/nao.yaml").read_bytes())
     assert found is not None
     assert not diagnostics
     return found
@@ -37,7 +36,7 @@ def build(data: Any) -> tuple[Body | None, list[str]]:
 
 
 def test_the_nao_is_described_as_the_schema_says() -> None:
-    schema = json.loads((ROOT / "schemas" / "body.schema.json").read_text())
+    schema = json.loads((ROOT / "schemas/body.schema.json").read_text())
     jsonschema.Draft202012Validator.check_schema(schema)
     assert not list(jsonschema.Draft202012Validator(schema).iter_errors(document().data))
 

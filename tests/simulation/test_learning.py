@@ -2,7 +2,6 @@
 
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,10 +13,9 @@ from gymnasium.utils.env_checker import check_env
 
 import lumen
 from lumen.robots.simulation.entity import Nao
+from tests import ROOT
 
 pytestmark = pytest.mark.rest  # dear
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module", autouse=True)

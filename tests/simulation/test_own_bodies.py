@@ -1,7 +1,6 @@
 """The three bodies that are Lumen's own beside NAO, in MuJoCo alone: what they weigh, and whether they stand."""
 
 import json
-from pathlib import Path
 
 import jsonschema
 import mujoco
@@ -15,8 +14,9 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.yaml_reader import parse
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world_model import physics
+from tests import ROOT
 
-MODELS = Path(__file__).parents[2] / "models"
+MODELS = ROOT / "models"
 WEIGHTS = {"greeter": (30.0, 40.0), "lantern": (1.0, 2.0), "sprout": (2.0, 3.0)}
 """Least and greatest mass [kg]."""
 HEIGHTS = {"greeter": (1.2, 1.5), "lantern": (0.3, 0.4), "sprout": (0.3, 0.42)}

@@ -1,7 +1,5 @@
 """models/scene.xml, as whoever knows mujoco_menagerie opens it: it compiles, moves without a warning, and stands."""
 
-from pathlib import Path
-
 import mujoco
 import numpy as np
 import pytest
@@ -10,8 +8,8 @@ from scripts.scene import POSTURES, scene
 
 import lumen
 from lumen.robots.simulation.model import alone
+from tests import ROOT
 
-ROOT = Path(__file__).parents[2]
 MODELS = ROOT / "models"
 MOVED, STOOD = 1.1, 2.0
 """How long it is moved at random, and how long it has to stand [s]."""

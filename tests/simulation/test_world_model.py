@@ -13,8 +13,7 @@ from lumen.loading import memoization
 from lumen.robots.simulation import model
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world_model import physics
-
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
 
 
 @pytest.fixture

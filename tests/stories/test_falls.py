@@ -1,6 +1,5 @@
 """A story in which the robot falls fails, unless it says so: `lumen run --story` beside a podium ends badly."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,8 +10,7 @@ from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.runtime.story import StoryPlayer
 from lumen.runtime.story_observations import expects_fall
-
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
 
 
 @pytest.fixture(scope="module")

@@ -26,11 +26,11 @@ from lumen.language.stories import Expect, Speak
 from lumen.loading.files import PROJECT_FOLDERS, read_files
 from lumen.rules import check_files
 from lumen.runtime.inputs.redaction import redact
+from tests import ROOT
 
 pytestmark = pytest.mark.rest  # dear
 
-ROOT = Path(__file__).parents[2]
-EXAMPLES = {"tour": ROOT, "museum": ROOT / "examples" / "museum", "minimal": ROOT / "examples" / "minimal"}
+EXAMPLES = {"tour": ROOT, "museum": ROOT / "examples/museum", "minimal": ROOT / "examples/minimal"}
 LONG = {
     *(("tour", f"endless_{what}") for what in ("motion", "song", "speech")),
     ("tour", "silent_visitors"),
@@ -118,7 +118,7 @@ def _fails_where_something_else_is_said(project: Project) -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    folder = copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    folder = copytree(ROOT / "examples/minimal", tmp_path / "minimal")
     assert recorded(folder, "visitor")
     return folder
 

@@ -7,7 +7,7 @@ import lumen
 from lumen.language.projects import Project
 from lumen.loading.files import PROJECT_FOLDERS
 from lumen.loading.packaged import MAIN_FILE
-from tests.tour.names import ROOT
+from tests import ROOT
 
 
 @pytest.fixture(scope="session")

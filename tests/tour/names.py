@@ -1,8 +1,5 @@
 """The shipped project and the names of the tour's states."""
 
-from pathlib import Path
-
-ROOT = Path(__file__).parents[2]
 GUIDE = (
     "idle", "greet", "ask_name", "how_are_you", "fine", "not_fine", "not_understood", "offer", "explain", "dance",
     "sing", "any_question", "answer", "photo", "goodbye",

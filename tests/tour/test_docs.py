@@ -10,8 +10,8 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
+from tests import ROOT
 from tests.tables import for_each
-from tests.tour.names import ROOT
 
 CHANGE = (ROOT / "docs" / "change-the-tour.md").read_text("utf-8")
 VOCABULARY = (ROOT / "docs" / "yaml.md").read_text("utf-8")

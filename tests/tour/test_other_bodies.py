@@ -1,7 +1,5 @@
 """The shipped tour performed by other bodies: the same files, without errors, from the first word to the last."""
 
-from pathlib import Path
-
 import pytest
 
 import lumen
@@ -9,8 +7,7 @@ from lumen.app.rehearsal import rehearse
 from lumen.cli.main import main
 from lumen.language.diagnostics import has_errors
 from lumen.loading.chosen_model import MODEL_VARIABLE
-
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
 
 
 @pytest.mark.parametrize("model", ["greeter", "lantern", "sprout"])

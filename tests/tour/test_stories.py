@@ -13,9 +13,10 @@ from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
 from lumen.loading.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
+from tests import ROOT
 from tests.scanning import matching
 from tests.tables import for_each
-from tests.tour.names import GUIDE, ROOT, SAFETY
+from tests.tour.names import GUIDE, SAFETY
 from tests.tour.playing import Run, play
 
 GRANTED = """

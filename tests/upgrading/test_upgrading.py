@@ -16,10 +16,10 @@ from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.robot_keys import with_robot_keys
 from lumen.rules.upgrading import MIGRATIONS, Migration, Rewriting, renamed_key, upgraded
+from tests import ROOT
 from tests.tables import for_each
 
-BASE = Path(__file__).parents[1] / "lint/base"
-ROOT = Path(__file__).parents[2]
+BASE = ROOT / "tests/lint/base"
 
 
 def polite(document: Document) -> Iterator[Rewriting]:
@@ -222,7 +222,7 @@ def test_what_is_laid_out_otherwise_is_right_or_left(routes: bytes) -> None:
 
 
 def test_the_command_offers_it_and_does_it_when_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, content in read_files(ROOT / "examples" / "minimal").items():
+    for name, content in read_files(ROOT / "examples/minimal").items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(content)
     main_file = tmp_path / "lumen.yaml"

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from tests import ROOT
 from tests.guarded import DEVNULL, Guarded
 from tests.waiting import until
 
-ROOT = Path(__file__).parents[2]
 READY_TIMEOUT = 60.0
 
 

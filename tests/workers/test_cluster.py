@@ -15,10 +15,10 @@ from lumen.errors import WorkersError
 from lumen.extras import MissingExtraError
 from lumen.loading.files import read_files
 from lumen.rules.physics.cases import cases
+from tests import ROOT
 from tests.workers.clusters import dask_cluster
 from tests.workers.small_tasks import play_or_die
 
-ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.slow
 
 

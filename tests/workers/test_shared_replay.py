@@ -13,14 +13,13 @@ from lumen.app.replaying.other_files import against
 from lumen.app.replaying.replay_report import ReplayReport, replayed
 from lumen.app.workers.workers import Workers
 from lumen.loading.files import read_files
-
-ROOT = Path(__file__).parents[2]
+from tests import ROOT
 
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small exhibition in which several visitors were, one after the other."""
-    folder = copytree(ROOT / "examples" / "minimal", tmp_path_factory.mktemp("played") / "minimal")
+    folder = copytree(ROOT / "examples/minimal", tmp_path_factory.mktemp("played") / "minimal")
     (story,) = (folder / "behaviors" / "stories").glob("*.yaml")
     text = story.read_text("utf-8")
     head, _, steps = text.partition("steps:\n")

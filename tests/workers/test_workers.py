@@ -14,13 +14,13 @@ from lumen.app.workers.work_kit import WorkKit, name_of
 from lumen.app.workers.workers import Workers, cores, workers_of
 from lumen.cli.main import main
 from lumen.errors import UsageError, WorkersError
+from tests import ROOT
 from tests.guarded import PIPE, Guarded
 from tests.house.test_guarded import left
 from tests.tables import for_each
 from tests.waiting import HANG, until
 from tests.workers.small_tasks import die, process, square, square_or_die
 
-ROOT = Path(__file__).parents[2]
 KIT = WorkKit({}, {"models/mesh.stl": b"solid"})
 TASKS = [(number,) for number in range(6)]
 

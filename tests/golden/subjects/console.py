@@ -14,9 +14,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tests import ROOT
 from tests.golden.exhibitions import plain, small
 from tests.golden.served import HANG, Answer, Served
-from tests.golden.warm import ROOT, environment
+from tests.golden.warm import environment
 from tests.guarded import PIPE, STDOUT, run_guarded
 from tests.waiting import until
 

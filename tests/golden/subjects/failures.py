@@ -12,10 +12,11 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from tests import ROOT
 from tests.golden.exhibitions import TOLD, plain, small
 from tests.golden.mishaps import MISHAPS
 from tests.golden.served import HANG
-from tests.golden.warm import ROOT, Done, Warm, environment
+from tests.golden.warm import Done, Warm, environment
 from tests.guarded import DEVNULL, Guarded
 from tests.waiting import until
 

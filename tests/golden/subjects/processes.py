@@ -13,16 +13,17 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from tests import ROOT
 from tests.golden.adapters_running import PROGRAMS
 from tests.golden.exhibitions import plain, small
 from tests.golden.mishaps import MISHAPS
 from tests.golden.served import HANG, Served
-from tests.golden.warm import ROOT, environment
+from tests.golden.warm import environment
 from tests.guarded import DEVNULL, Guarded
 from tests.waiting import until
 
 SUITE = "rest"
-NOTING = Path(__file__).parents[1] / "noting"
+NOTING = ROOT / "tests/golden/noting"
 NOTES = "GOLDEN_NOTES"
 WORKER = "spawn_main"
 CONSOLE = "lumen console"

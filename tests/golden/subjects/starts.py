@@ -13,9 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from tests import ROOT
 from tests.golden.exhibitions import broker, small
 from tests.golden.tables import written
-from tests.golden.warm import ROOT, Warm
+from tests.golden.warm import Warm
 from tests.guarded import PIPE, Guarded
 from tests.rabbitmq import _free_ports
 
