@@ -34,8 +34,7 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
-from lumen.loading.files import PROJECT_FOLDERS
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from lumen.runtime.loop import TICK_PERIOD
 
 ROOT = Path(__file__).parents[1]

@@ -28,9 +28,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.guarded import DEVNULL, PIPE, Guarded, run_guarded
 
-from lumen.loading.files import PROJECT_FOLDERS, read_files
+from lumen.loading.files import read_files
 from lumen.loading.kept_contents import SETTLED_NS
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from lumen.rules import check_files
 
 ROOT = Path(__file__).parents[1]

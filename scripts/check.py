@@ -16,8 +16,7 @@ import yaml
 from documented import NOT_RUN, all_pages, blocks
 
 from lumen.interpreters.expressions.functions import FUNCTIONS
-from lumen.loading.files import PROJECT_FOLDERS
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

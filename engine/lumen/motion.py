@@ -17,8 +17,9 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft, body_of
 from lumen.loading.files import MAX_FILE_BYTES, read_files
 from lumen.loading.motions import build_motion, countable
-from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
+from lumen.loading.packaged import find_project, shipped_root
 from lumen.loading.project import motion_parts
+from lumen.loading.project_folders import MAIN_FILE
 from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse

@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from lumen.loading.files import read_files
+from lumen.loading.project_folders import FLEET_FILE, FOLDERS
 from tests import ROOT
 from tests.guarded import CompletedProcess, run_guarded
 from tests.provided import program
@@ -69,8 +70,9 @@ def test_the_hook_has_what_pre_commit_asks_for() -> None:
 
 def test_the_hook_runs_for_every_file_of_a_project_and_no_other() -> None:
     files = re.compile(HOOK["files"])
-    shipped = list(read_files(ROOT))
-    assert all(files.search(file) for file in shipped)
+    shipped = [*read_files(ROOT), FLEET_FILE]
+    kinds = [f"{folder.path}/café{ending}" for folder in FOLDERS for ending in folder.endings]
+    assert not [file for file in (*shipped, *kinds) if not files.search(file)]
     assert all(files.search(f"stand/{file}") for file in shipped if not file.startswith("schemas"))
     assert not [file for file in ("README.md", "engine/lumen/bus.py", "docs/yaml.md", "a.yaml") if files.search(file)]
 

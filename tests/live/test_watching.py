@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from lumen.loading.files import Unreadable, fingerprint, read_files
-from lumen.runtime.watcher import FileWatcher, SavedFiles, WatchedFiles
+from lumen.loading.project_folders import FOLDERS, ProjectFolder
+from lumen.runtime.watcher import FileWatcher, SavedFiles, WatchedFiles, watched_folders
 from tests.waiting import until
 
 QUIET = 0.1
@@ -185,13 +186,15 @@ def test_a_folder_that_comes_later_is_watched(watched: Watched) -> None:
     assert watched.next().files["fuzzy/head.yaml"] == b"newer"
 
 
-def test_words_that_come_later_are_watched(watched: Watched) -> None:
-    words = watched.root / "behaviors" / "words" / "faq.yaml"
-    words.parent.mkdir()
-    words.write_text("new", "utf-8")
-    assert watched.next().changed == ("behaviors/words/faq.yaml",)
-    words.write_text("newer", "utf-8")
-    assert watched.next().files["behaviors/words/faq.yaml"] == b"newer"
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.path)
+def test_a_nested_folder_that_comes_later_is_watched(watched: Watched, folder: ProjectFolder) -> None:
+    file = f"{folder.path}/faq{folder.endings[0]}"
+    (watched.root / file).parent.mkdir(parents=True, exist_ok=True)
+    (watched.root / file).write_text("new", "utf-8")
+    assert watched.next().changed == (file,)
+    assert watched.root / folder.path in watched_folders(watched.root)
+    (watched.root / file).write_text("newer", "utf-8")
+    assert watched.next().files[file] == b"newer"
 
 
 def test_what_can_not_be_read_is_told_and_mended(watched: Watched) -> None:

@@ -13,9 +13,9 @@ from lumen.interpreters.json_schema import MAX_DATA_DEPTH, JsonSchema
 from lumen.loading.document import Document
 from lumen.loading.files import read_files
 from lumen.loading.messages import build_message
-from lumen.loading.schema import FILE_KINDS, load_schema
+from lumen.loading.project_folders import FILE_KINDS, kind_of
+from lumen.loading.schema import load_schema
 from lumen.loading.yaml_reader import parse
-from lumen.lsp.grammar import kind_of
 from tests import ROOT
 from tests.tables import for_each
 

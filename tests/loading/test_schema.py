@@ -8,7 +8,8 @@ import jsonschema
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
-from lumen.loading.schema import FILE_KINDS, check_schema, faults, load_schema
+from lumen.loading.project_folders import FILE_KINDS
+from lumen.loading.schema import check_schema, faults, load_schema
 from lumen.loading.yaml_reader import parse
 from tests.scanning import matching
 from tests.tables import for_each

@@ -23,7 +23,8 @@ from lumen.interpreters.replay.visits import RecordedVisit, visits
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, Speak
-from lumen.loading.files import PROJECT_FOLDERS, read_files
+from lumen.loading.files import read_files
+from lumen.loading.project_folders import PROJECT_FOLDERS
 from lumen.rules import check_files
 from lumen.runtime.inputs.redaction import redact
 from tests import ROOT

@@ -5,8 +5,7 @@ import pytest
 
 import lumen
 from lumen.language.projects import Project
-from lumen.loading.files import PROJECT_FOLDERS
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from tests import ROOT
 
 

@@ -33,7 +33,7 @@ from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.files import FLEET_FILE
+from lumen.loading.project_folders import FLEET_FILE
 from lumen.ports import Bus
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
 from lumen.runtime.home import home_of

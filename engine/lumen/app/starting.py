@@ -4,9 +4,9 @@ import re
 import shutil
 from pathlib import Path, PurePosixPath
 
-from lumen.loading.files import PROJECT_FOLDERS
-from lumen.loading.packaged import MAIN_FILE, shipped_root
+from lumen.loading.packaged import shipped_root
 from lumen.loading.project import main_settings
+from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 STARTERS = {
     "tour": "the shipped exhibition, with everything",

@@ -12,9 +12,9 @@ from lumen.language.projects import Project
 from lumen.language.sayings import SAYINGS_FOLDER, SayingSet
 from lumen.language.stories import Story
 from lumen.loading.files import composed
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, STORIES
 
-FOLDER = Path("behaviors", "stories")
+FOLDER = Path(STORIES)
 
 T = TypeVar("T")
 

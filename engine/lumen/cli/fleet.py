@@ -23,7 +23,7 @@ from lumen.cli.fleet_text import fleet_lines, log_lines
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
 from lumen.interpreters.changes import changes, risk, summary
-from lumen.loading.files import FLEET_FILE
+from lumen.loading.project_folders import FLEET_FILE
 from lumen.loading.units import seconds
 from lumen.rules import check_files
 

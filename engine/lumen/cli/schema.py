@@ -10,26 +10,18 @@ from lumen.cli.formats import configure_format
 from lumen.cli.jsonc import added
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.loading.files import FLEET_FILE, MAX_FILE_BYTES
-from lumen.loading.packaged import MAIN_FILE, find_project, schema_folder
+from lumen.loading.files import MAX_FILE_BYTES
+from lumen.loading.packaged import find_project, schema_folder
+from lumen.loading.project_folders import FILE_KINDS, KINDS
 from lumen.loading.regular_files import read_regular
-from lumen.loading.schema import FILE_KINDS, load_schema
+from lumen.loading.schema import load_schema
 
 FILES: Mapping[str, tuple[str, ...]] = {
-    "lumen": (MAIN_FILE,),
-    "behavior": ("behaviors/*.yaml",),
-    "words": ("behaviors/words/*.yaml",),
-    "sayings": ("behaviors/sayings/*.yaml",),
-    "story": ("behaviors/stories/*.yaml",),
-    "knowledge": ("knowledge/*.yaml",),
-    "questions": ("knowledge/questions/*.yaml",),
-    "controller": ("fuzzy/*.yaml",),
-    "motion": ("motions/*.yaml", "models/passages/*.yaml"),
-    "life": ("motions/life/*.yaml",),
-    "gestures": ("motions/gestures/*.yaml",),
-    "body": ("models/*.yaml",),
-    "fleet": (FLEET_FILE,),
-    "message": ("schemas/messages/*.schema.json",),
+    kind: tuple(
+        f"{path}/*{'.schema.json' if kind == 'message' else '.yaml'}" for path, of in KINDS.items() if of == kind
+    )
+    or (f"{kind}.yaml",)
+    for kind in FILE_KINDS
 }
 """Which files of a project are of which kind."""
 

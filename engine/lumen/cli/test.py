@@ -26,7 +26,7 @@ from lumen.language.projects import Project
 from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.loading.own_project import own_project
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE
 from lumen.runtime.coverage import Coverage
 
 

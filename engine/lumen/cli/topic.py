@@ -21,7 +21,7 @@ from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.loading.files import read_files
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE
 from lumen.loading.running_project import running_project
 from lumen.loading.units import seconds
 from lumen.ports import Bus, Message, ReturningBus

@@ -27,7 +27,7 @@ from lumen.console.sights import STREAM, Sights
 from lumen.console.streams import Listener, Streams, positions_in
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
-from lumen.loading.files import FLEET_FILE
+from lumen.loading.project_folders import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
 _ID = re.compile(r"[A-Za-z0-9._:-]{1,100}")

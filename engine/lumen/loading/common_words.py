@@ -7,9 +7,9 @@ hashed, kept in bundles and replayed like any other.
 import re
 from collections.abc import Mapping
 from functools import cache
-from pathlib import Path
 
-from lumen.loading.words import WORDS_FOLDER
+from lumen.loading.packaged import PACKAGE
+from lumen.loading.project_folders import BEHAVIORS, WORDS_FOLDER
 
 COMMON = "common"
 COMMON_FILE = f"{WORDS_FOLDER}/{COMMON}.yaml"
@@ -17,13 +17,12 @@ COMMON_FILE = f"{WORDS_FOLDER}/{COMMON}.yaml"
 _USED = re.compile(
     rb"""(^|[\s{,])["']?hears["']?\s*:|\bwords["']?\s*:[^\n]*\bcommon\b|^\s*-\s+common\s*$""", re.MULTILINE
 )
-_FOLDER = Path(__file__).parents[1] / "words"
 
 
 @cache
 def common_words() -> bytes:
     """The words file that comes with Lumen."""
-    return (_FOLDER / "common.yaml").read_bytes()
+    return (PACKAGE / "words/common.yaml").read_bytes()
 
 
 def with_common_words(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
@@ -49,4 +48,4 @@ def is_shipped(files: Mapping[str, bytes], name: str) -> bool:
 
 def _is_behavior(file: str) -> bool:
     folder, _, name = file.rpartition("/")
-    return folder == "behaviors" and name.endswith(".yaml")
+    return folder == BEHAVIORS and name.endswith(".yaml")

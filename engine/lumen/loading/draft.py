@@ -21,9 +21,8 @@ from lumen.language.stories import Story
 from lumen.language.words import Words
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.looks import Looks
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, WORDS_FOLDER
 from lumen.loading.settings import Settings
-from lumen.loading.words import WORDS_FOLDER
 
 
 @dataclass

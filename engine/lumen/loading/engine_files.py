@@ -7,10 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from lumen.loading.packaged import schema_folder, shipped_root
-
-PACKAGE = Path(__file__).parents[1]
-"""The folder `lumen`."""
+from lumen.loading.packaged import PACKAGE, schema_folder, shipped_root
 
 
 @cache

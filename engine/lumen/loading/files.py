@@ -11,14 +11,8 @@ from lumen.loading.chosen_model import choice
 from lumen.loading.chosen_robot import CHOSEN_ROBOT, as_robot
 from lumen.loading.common_words import with_common_words
 from lumen.loading.kept_contents import KeptContents
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS, endings_in
 from lumen.loading.regular_files import MEGABYTE
-
-FLEET_FILE = "fleet.yaml"
-"""Says which houses there are, and whom a robot trusts: linted with a project, and of no bundle."""
-
-PROJECT_FOLDERS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models")
-"""What belongs to a project beside lumen.yaml."""
 
 MAX_FILE_BYTES = 4_000_000
 """Of one file; a behaviour of ten thousand states is smaller."""
@@ -44,37 +38,6 @@ MISTAKEN_FOLDERS: Mapping[str, str] = {
 }
 """Folders beside lumen.yaml of which nothing is built, and the ones that were probably meant: lint says so."""
 
-_READ: Mapping[str, tuple[str, ...]] = {
-    "behaviors": (".yaml", ".yml"),
-    "behaviors/stories": (".yaml", ".yml"),
-    "behaviors/words": (".yaml", ".yml"),
-    "behaviors/sayings": (".yaml", ".yml"),
-    "knowledge": (".yaml", ".yml", ".md"),
-    "knowledge/questions": (".yaml", ".yml"),
-    "fuzzy": (".yaml", ".yml"),
-    "motions": (".yaml", ".yml"),
-    "motions/life": (".yaml", ".yml"),
-    "motions/gestures": (".yaml", ".yml"),
-    "models": (".yaml", ".yml", ".xml"),
-    "models/passages": (".yaml", ".yml"),
-    "schemas/messages": (".json",),
-    **dict.fromkeys(MISTAKEN_FOLDERS, (".yaml",)),
-}
-
-FOLDERS = frozenset((*PROJECT_FOLDERS, *_READ))
-"""The folders in which files that count may lie, or that hold such a folder."""
-
-
-_MOTIONS = "motions"
-
-
-def endings_in(folder: str) -> tuple[str, ...]:
-    """How the names of files end that count in a folder of the project; a folder in motions/ may be any robot's own."""
-    above, _, name = folder.partition("/")
-    if folder not in _READ and above == _MOTIONS and name and not {"/", "."} & set(name):
-        return _READ[_MOTIONS]
-    return _READ.get(folder, ())
-
 
 class Unreadable(bytes):
     """Stands in place of the content of a file that can't be read; its text is the reason, in words."""
@@ -89,8 +52,8 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
     """
     read = _Reader(root, kept)
     found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}
-    for folder in dict.fromkeys((*_READ, *_robots_own(root))):
-        endings = endings_in(folder)
+    for folder in dict.fromkeys((*KINDS, *MISTAKEN_FOLDERS, *_robots_own(root))):
+        endings = (".yaml",) if folder in MISTAKEN_FOLDERS else endings_in(folder)
         if outside := next((each for each in _within(folder) if read.leads_out(each)), None):
             if folder not in MISTAKEN_FOLDERS:
                 found[outside] = Unreadable(LEADS_OUT)
@@ -133,12 +96,6 @@ def belongs(path: str) -> bool:
     return path in (MAIN_FILE, FLEET_FILE) or (not name.startswith(".") and name.endswith(endings_in(folder)))
 
 
-def counts(file: str) -> bool:
-    """Whether a file of that path, from the project's root, is one that is read."""
-    folder, _, name = file.rpartition("/")
-    return file in (MAIN_FILE, FLEET_FILE) or (name.endswith(endings_in(folder)) and not name.startswith("."))
-
-
 def fingerprint(files: Mapping[str, bytes]) -> str:
     """The hash of all paths and contents; fleet.yaml is no part of what runs, and who reads them is none of theirs."""
     digest = hashlib.sha256()
@@ -152,11 +109,11 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 def _robots_own(root: Path) -> list[str]:
     """The folders in motions/: each holds the motions of one robot, but `life` and `gestures`."""
     try:
-        listed = sorted(os.listdir(root / _MOTIONS))
+        listed = sorted(os.listdir(root / MOTIONS))
     except OSError:
         return []
-    names = [name for name in listed if "." not in name and os.path.isdir(root / _MOTIONS / name)]
-    return [f"{_MOTIONS}/{os.fsencode(name).decode('utf-8', 'replace')}" for name in names][:MAX_FOLDER_FILES]
+    names = [name for name in listed if "." not in name and os.path.isdir(root / MOTIONS / name)]
+    return [f"{MOTIONS}/{os.fsencode(name).decode('utf-8', 'replace')}" for name in names][:MAX_FOLDER_FILES]
 
 
 def _within(folder: str) -> Iterator[str]:

@@ -17,7 +17,8 @@ from lumen.language.fleet import (
 )
 from lumen.loading.built_file import BuiltFile, read_file
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import FLEET_FILE, MAX_FILE_BYTES
+from lumen.loading.files import MAX_FILE_BYTES
+from lumen.loading.project_folders import FLEET_FILE
 from lumen.loading.regular_files import read_regular
 from lumen.loading.routes import duration
 

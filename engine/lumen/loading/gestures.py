@@ -10,7 +10,6 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import PoseReader
 from lumen.loading.units import ANGLES, BAD_DURATION, seconds
 
-GESTURES_FOLDER = "motions/gestures"
 POSTURE = "Stand"
 """The posture from which a gesture begins, and to which it leads back."""
 

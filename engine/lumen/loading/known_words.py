@@ -10,7 +10,8 @@ from lumen.language.words import Words
 from lumen.loading.built_file import BuiltFile
 from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.words import WORDS_FOLDER, anyhow, tables
+from lumen.loading.project_folders import WORDS_FOLDER
+from lumen.loading.words import anyhow, tables
 
 UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "the named words file is not in behaviors/words/")
 DUPLICATE_WORDS = Code(

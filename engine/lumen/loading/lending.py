@@ -12,9 +12,8 @@ from typing import Any
 from lumen.language.projects import Project
 from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.packaged import shipped_root
+from lumen.loading.project_folders import MESSAGES, MODELS, PASSAGES
 from lumen.loading.settings import Settings
-
-MODELS, MESSAGES, PASSAGES = "models", "schemas/messages", "models/passages"
 
 
 def lend(files: Mapping[str, bytes], settings: Settings, models: Collection[str]) -> dict[str, bytes]:

@@ -11,7 +11,6 @@ from lumen.loading.poses import UNKNOWN_JOINT
 from lumen.loading.role_names import RoleNames
 from lumen.loading.units import ANGLES, BAD_DURATION, seconds
 
-LIFE_FOLDER = "motions/life"
 SHORTEST_PERIOD = 0.1
 """What comes again and again in a life takes at least so long [s]."""
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, counts, endings_in
+from lumen.loading.files import belongs
+from lumen.loading.project_folders import ALL_FOLDERS, endings_in
 
 _ENDING = re.compile(r"(?P<stem>.+?)\s*\.(?:(?P<yaml>ya?ml)|(?P<other>md|json|xml))\s*(?:\.te?xt)?\s*", re.IGNORECASE)
 
@@ -24,9 +25,9 @@ def misnamed_in(root: Path, folder: str) -> Iterator[Misnamed]:
     for name in listed:
         path = f"{folder}/{name}" if folder else name
         lowered = path.lower()
-        if lowered != path and lowered in FOLDERS - MISTAKEN_FOLDERS.keys() and not (root / lowered).exists():
+        if lowered != path and lowered in ALL_FOLDERS and not (root / lowered).exists():
             yield Misnamed(f"{path}/", f"{lowered}/")
-        elif (found := _ENDING.fullmatch(name)) and not counts(path) and (root / path).is_file():
+        elif (found := _ENDING.fullmatch(name)) and not belongs(path) and (root / path).is_file():
             ending = f".{found['other'] or 'yaml'}".lower()
             meant = found["stem"] + ending
             if ending in endings and meant not in listed and not name.startswith("."):

@@ -6,18 +6,18 @@ from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.project_folders import KINDS
 
 MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file is in the folder of another kind of file")
 
 
 class _Kind(NamedTuple):
-    """What such a file is called, where it stands, and the keys by which one knows it, or else a single one.
+    """What such a file is called, and the keys by which one knows it, or else a single one.
 
     Of a kind that has `only` keys that others have as well, one knows it by their being alone.
     """
 
     name: str
-    folder: str
     marks: frozenset[str]
     alone: str = ""
     only: frozenset[str] = frozenset()
@@ -38,46 +38,31 @@ class _Kind(NamedTuple):
 
 
 _KINDS: Mapping[str, _Kind] = {
-    "lumen": _Kind("an exhibition", "the project's folder, as lumen.yaml", frozenset(("robot", "languages"))),
-    "behavior": _Kind("a behaviour", "behaviors/", frozenset(("states",))),
-    "words": _Kind(
-        "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers", "lists"))
-    ),
-    "sayings": _Kind("a file of sayings", "behaviors/sayings/", frozenset()),
-    "knowledge": _Kind("a passage of knowledge", "knowledge/", frozenset(("questions", "answer"))),
+    "lumen": _Kind("an exhibition", frozenset(("robot", "languages"))),
+    "behavior": _Kind("a behaviour", frozenset(("states",))),
+    "words": _Kind("a words file", frozenset(), only=frozenset(("description", "phrases", "answers", "lists"))),
+    "sayings": _Kind("a file of sayings", frozenset()),
+    "knowledge": _Kind("a passage of knowledge", frozenset(("questions", "answer"))),
     "questions": _Kind(
         "a file of test questions for knowledge",
-        "knowledge/questions/",
         frozenset(),
         only=frozenset(("asked", "unanswered")),
     ),
-    "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
-    "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
-    "motion": _Kind("a motion", "motions/", frozenset(("keyframes",))),
-    "life": _Kind("a style of life", "motions/life/", frozenset(("sways",)), "blinks"),
-    "gestures": _Kind("a library of gestures", "motions/gestures/", frozenset(("gestures",))),
-    "body": _Kind("a robot's body", "models/", frozenset(("joints", "camera")), "like"),
-    "fleet": _Kind("a fleet", "the folder of lumen.yaml, as fleet.yaml", frozenset(("houses",))),
-    "message": _Kind("a message schema", "schemas/messages/", frozenset(("$schema", "properties"))),
+    "story": _Kind("a story", frozenset(("steps",))),
+    "controller": _Kind("a controller", frozenset(("inputs", "outputs"))),
+    "motion": _Kind("a motion", frozenset(("keyframes",))),
+    "life": _Kind("a style of life", frozenset(("sways",)), "blinks"),
+    "gestures": _Kind("a library of gestures", frozenset(("gestures",))),
+    "body": _Kind("a robot's body", frozenset(("joints", "camera")), "like"),
+    "fleet": _Kind("a fleet", frozenset(("houses",))),
+    "message": _Kind("a message schema", frozenset(("$schema", "properties"))),
 }
 
 
-def kind_of_file(file: str) -> str:
-    """The kind of file that belongs at that path of a project; empty for any other file."""
-    path = PurePosixPath(file)
-    by_name = {"lumen.yaml": "lumen", "fleet.yaml": "fleet"}.get(file)
-    folder = (
-        "motions"
-        if path.parent.parent == PurePosixPath("motions")
-        and path.parent.name
-        not in (
-            "life",
-            "gestures",
-        )
-        else str(path.parent)
-    )
-    by_folder = next((kind for kind, known in _KINDS.items() if known.folder == f"{folder}/"), "")
-    return by_name or (by_folder if path.suffix == ".yaml" else "")
+def _home(kind: str) -> str:
+    """Return where a file of a kind belongs, in words."""
+    folder = next((path for path, other in KINDS.items() if other == kind), "")
+    return f"{folder}/" if folder else f"the project's folder, as {kind}.yaml"
 
 
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
@@ -91,6 +76,6 @@ def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
     other, file = _KINDS[meant], PurePosixPath(report.document.file)
     where = next(key for key in data if key in other.keys)
     message = f"this is {other.name}, but {own.name} belongs here"
-    hint = f"move it to {other.folder}"
+    hint = f"move it to {_home(meant)}"
     report(MISPLACED_FILE, (where,), message, hint=hint, key=True, cause=f"{meant} {file.stem}")
     return True

@@ -6,8 +6,8 @@ from functools import cache
 from pathlib import Path
 
 from lumen.errors import UsageError
+from lumen.loading.project_folders import MAIN_FILE
 
-MAIN_FILE = "lumen.yaml"
 _MISNAMED = re.compile(r"lumen\s*\.ya?ml\s*(\.te?xt)?\s*", re.IGNORECASE)
 PACKAGE = Path(__file__).parents[1]
 """The folder of the engine, which holds the shipped exhibition if Lumen was installed from a wheel."""

@@ -24,31 +24,42 @@ from lumen.loading.common_words import COMMON, COMMON_FILE, is_shipped, with_com
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import (
-    FLEET_FILE,
-    FOLDERS,
     LEADS_OUT,
     MISTAKEN_FOLDERS,
     Unreadable,
-    endings_in,
     fingerprint,
     read_main_file,
 )
 from lumen.loading.fleet import build_fleet
-from lumen.loading.gestures import GESTURES_FOLDER, build_gestures
+from lumen.loading.gestures import build_gestures
 from lumen.loading.knowledge import build_passage, build_questions
-from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend, shipped_models
-from lumen.loading.life import LIFE_FOLDER, build_life
+from lumen.loading.lending import lend, shipped_models
+from lumen.loading.life import build_life
 from lumen.loading.linking import link, with_robots
 from lumen.loading.markdown import MARKDOWN_SUFFIX
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
-from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.passages import belongs_to
+from lumen.loading.project_folders import (
+    ALL_FOLDERS,
+    FLEET_FILE,
+    GESTURES_FOLDER,
+    LIFE_FOLDER,
+    MAIN_FILE,
+    MESSAGES,
+    MODELS,
+    MOTIONS,
+    PASSAGES,
+    WORDS_FOLDER,
+    endings_in,
+    is_robots_own,
+    kind_in,
+)
 from lumen.loading.sayings import build_sayings
 from lumen.loading.settings import Settings, build_settings, other_vocabulary
 from lumen.loading.stories import build_story
 from lumen.loading.used_routes import used_routes
-from lumen.loading.words import WORDS_FOLDER, build_words
+from lumen.loading.words import build_words
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a required file is missing")
 NOT_READ = Code("not-read", "text", WARNING, "a file is not read, because of its ending or its folder")
@@ -56,23 +67,6 @@ UNREADABLE_FILE = Code("unreadable-file", "text", ERROR, "a file can't be opened
 
 
 T = TypeVar("T")
-
-MOTIONS = "motions"
-
-FOLDER_KINDS: Mapping[str, str] = {
-    "behaviors": "behavior",
-    "behaviors/stories": "story",
-    WORDS_FOLDER: "words",
-    SAYINGS_FOLDER: "sayings",
-    KNOWLEDGE_FOLDER: "knowledge",
-    QUESTIONS_FOLDER: "questions",
-    "fuzzy": "controller",
-    "motions": "motion",
-    LIFE_FOLDER: "life",
-    GESTURES_FOLDER: "gestures",
-    PASSAGES: "motion",
-    MODELS: "body",
-}
 
 
 def draft(files: Mapping[str, bytes]) -> ProjectDraft:
@@ -271,7 +265,7 @@ def _each(
             found.say(NOT_READ, file, message, "combine them, or rename one of them")
             continue
         names.add(path.stem)
-        if (each := _read(found, file, content, FOLDER_KINDS.get(folder, "motion"), build, around)) is not None:
+        if (each := _read(found, file, content, kind_in(folder), build, around)) is not None:
             read[path.stem] = each
     found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
@@ -285,12 +279,12 @@ def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
 def _folders(found: ProjectDraft) -> None:
     """Report folders of which nothing may be read; what is missing for that is not told."""
     for name, content in found.files.items():
-        if isinstance(content, Unreadable) and (name in FOLDERS or endings_in(name)):
+        if isinstance(content, Unreadable) and (name in ALL_FOLDERS or name in MISTAKEN_FOLDERS or endings_in(name)):
             hint = "replace it with a folder inside the project: Lumen reads nothing outside"
             if content != LEADS_OUT:
                 hint = "make it a readable folder, or delete it"
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
-            found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
+            found.missing |= {folder for folder in ALL_FOLDERS if folder == name or folder.startswith(f"{name}/")}
     for folder, meant in MISTAKEN_FOLDERS.items():
         inside = [name for name in found.files if name.startswith(f"{folder}/")]
         linked = {name for name in inside if found.files.get(meant + name[len(folder) :]) == found.files[name]}
@@ -342,7 +336,7 @@ def _strangers(found: ProjectDraft) -> None:
     inside = {PurePosixPath(file).parent for file in found.files}
     folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
     for folder, name in folders.items():
-        if folder not in FOLDER_KINDS and name not in known:
+        if is_robots_own(folder) and name not in known:
             hint = f"{did_you_mean(name, known, 'there are')} as a folder for the motions of one robot"
             first = min(file for file in found.files if file.startswith(f"{folder}/"))
             found.say(NOT_READ, first, f"files in {folder}/ are not read: no model is called `{name}`", hint)

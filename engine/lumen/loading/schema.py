@@ -19,24 +19,6 @@ from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
 from lumen.loading.yaml_nodes import read_text
 
-FILE_KINDS = (
-    "lumen",
-    "behavior",
-    "words",
-    "sayings",
-    "story",
-    "knowledge",
-    "questions",
-    "controller",
-    "motion",
-    "life",
-    "gestures",
-    "body",
-    "message",
-    "fleet",
-)
-"""The kinds of file; each has a `schemas/KIND.schema.json`."""
-
 MAX_PRUNING_ROUNDS = 20
 
 _ASTRAY = (UNKNOWN_KEY, ONE_VERB)

@@ -7,7 +7,6 @@ from lumen.language.machines import Answer
 from lumen.language.words import Words
 from lumen.loading.document_report import DocumentReport
 
-WORDS_FOLDER = "behaviors/words"
 ANYHOW = "anyhow"
 
 

@@ -9,6 +9,7 @@ import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place, mean, nearest
 from lumen.language.text_lines import lines_of
+from lumen.loading.project_folders import kind_of
 from lumen.loading.yaml_composer import UnknownAliasError
 
 MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "a merge conflict is not resolved: both sides are in the file")
@@ -118,10 +119,9 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 def _misfits(file: str) -> Callable[[str], int | None] | None:
     """Counts what the schema of that file refuses in a text; None for a file without a schema."""
-    from lumen.loading.misplaced import kind_of_file  # these import what imports this module
-    from lumen.loading.schema import misfits
+    from lumen.loading.schema import misfits  # it imports what imports this module
 
-    kind = kind_of_file(file)
+    kind = kind_of(file)
     return partial(misfits, kind) if kind else None
 
 

@@ -9,11 +9,10 @@ from lumen.language.diagnostics import Diagnostic, gathered
 from lumen.loading.common_words import COMMON, COMMON_FILE, common_words, is_shipped
 from lumen.loading.document import Document
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.project import draft
+from lumen.loading.project_folders import MAIN_FILE, kind_of
 from lumen.loading.yaml_reader import parse
 from lumen.lsp.broken_files import BrokenFile, KnownFindings, broken_files, follows, signature
-from lumen.lsp.grammar import kind_of
 from lumen.lsp.index import NameIndex
 from lumen.rules import check_files
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.loading.files import Unreadable
+from lumen.loading.project_folders import kind_of
 from lumen.loading.yaml_reader import parse
-from lumen.lsp.grammar import kind_of
 from lumen.lsp.mending import MendedText, mended
 
 _QUOTED = re.compile(r"[^`.#]+(?=[`.])")

@@ -13,9 +13,10 @@ from lumen.language.events import ROBOT_EVENTS
 from lumen.language.routes import Route
 from lumen.loading.lending import shipped_message
 from lumen.loading.outline import THIS
+from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.cursor import Cursor, cursor
-from lumen.lsp.grammar import key_kind, kind_of, value_kind
+from lumen.lsp.grammar import key_kind, value_kind
 from lumen.lsp.heard_rows import ELSE, is_phrase, names_in, row_around, texts_in
 from lumen.lsp.index import WORD_KINDS, NameIndex, stem
 from lumen.lsp.names import NameKind

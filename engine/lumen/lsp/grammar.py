@@ -2,31 +2,11 @@
 
 from collections.abc import Mapping
 from functools import lru_cache
-from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.verbs import VERBS
-from lumen.loading.files import FLEET_FILE
-from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.words import ANYHOW
 from lumen.lsp.names import NameKind
-
-FOLDER_KINDS: Mapping[str, str] = {
-    "behaviors": "behavior",
-    "behaviors/stories": "story",
-    "behaviors/words": "words",
-    "behaviors/sayings": "sayings",
-    "knowledge": "knowledge",
-    "knowledge/questions": "questions",
-    "fuzzy": "controller",
-    "motions": "motion",
-    "motions/life": "life",
-    "motions/gestures": "gestures",
-    "models": "body",
-    "models/passages": "motion",
-    "schemas/messages": "message",
-}
-"""The folders and the kinds of file in them, as the schemas call those."""
 
 MAX_REMEMBERED_PATHS = 50_000
 
@@ -182,17 +162,6 @@ _SAYINGS = (NameKind.BEHAVIOR, NameKind.STATE, NameKind.ROW, NameKind.LANGUAGE)
 _DATA = {"behavior": ("data", "body"), "story": ("data", "body"), "lumen": (), "controller": ()}
 _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "renamed"))
 """Roots of a behaviour below which texts stand for themselves."""
-
-
-def kind_of(file: str) -> str:
-    """The kind of a project's file, as `schemas/KIND.schema.json` calls it; empty where it is none."""
-    if file == MAIN_FILE:
-        return "lumen"
-    if file == FLEET_FILE:
-        return "fleet"
-    path = PurePosixPath(file)
-    robots_own = "motion" if str(path.parent.parent) == "motions" else ""
-    return FOLDER_KINDS.get(str(path.parent), robots_own) if path.suffix in (".yaml", ".json") else ""
 
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)

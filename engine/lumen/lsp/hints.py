@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import Place
+from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import kind_of
 from lumen.rules.timing import duration
 
 

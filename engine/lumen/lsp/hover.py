@@ -7,9 +7,8 @@ from pathlib import PurePosixPath
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.common_words import COMMON, COMMON_FILE
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.words import WORDS_FOLDER
+from lumen.loading.project_folders import WORDS_FOLDER, kind_of
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import kind_of
 from lumen.lsp.heard_rows import is_phrase
 from lumen.lsp.index import WORDS_SCOPE
 from lumen.lsp.locating import key_at

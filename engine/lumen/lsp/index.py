@@ -12,7 +12,8 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.memoization import memoize
 from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
+from lumen.loading.project_folders import kind_of
+from lumen.lsp.grammar import defines, key_kind, value_kind
 from lumen.lsp.heard_rows import names_in
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
 from lumen.lsp.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers

@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
+from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import kind_of
 from lumen.lsp.index import stem
 
 RUN_STORY, PLAY_MOTION, SHOW_PLACES = "lumen.runStory", "lumen.playMotion", "lumen.showPlaces"

@@ -4,6 +4,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
+from lumen.loading.project_folders import BEHAVIORS, CONTROLLERS, MESSAGES, MODELS, MOTIONS, STORIES, WORDS_FOLDER
 
 
 class NameKind(StrEnum):
@@ -35,13 +36,13 @@ class NameKind(StrEnum):
 
 
 KIND_FOLDERS = {
-    NameKind.BEHAVIOR: "behaviors",
-    NameKind.WORDS: "behaviors/words",
-    NameKind.STORY: "behaviors/stories",
-    NameKind.MOTION: "motions",
-    NameKind.CONTROLLER: "fuzzy",
-    NameKind.MODEL: "models",
-    NameKind.MESSAGE: "schemas/messages",
+    NameKind.BEHAVIOR: BEHAVIORS,
+    NameKind.WORDS: WORDS_FOLDER,
+    NameKind.STORY: STORIES,
+    NameKind.MOTION: MOTIONS,
+    NameKind.CONTROLLER: CONTROLLERS,
+    NameKind.MODEL: MODELS,
+    NameKind.MESSAGE: MESSAGES,
 }
 """The kinds that are files, and where those are."""
 

@@ -4,9 +4,8 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.loading.files import composed, read_files
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE, kind_of
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import kind_of
 
 
 class OpenProjects:

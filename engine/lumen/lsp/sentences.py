@@ -11,8 +11,8 @@ from lumen.interpreters.talk.sample_sentences import SampleSentence, of_phrase, 
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Hears, MachineDefinition
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import kind_of
 from lumen.lsp.index import stem
 from lumen.lsp.locating import key_at
 

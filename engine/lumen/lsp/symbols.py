@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
 from lumen.loading.document import Document
+from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import defines, key_kind, kind_of
+from lumen.lsp.grammar import defines, key_kind
 from lumen.lsp.names import NameKind, NameUse
 
 

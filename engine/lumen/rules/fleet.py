@@ -12,7 +12,7 @@ from lumen.language.fleet import Fleet
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
-from lumen.loading.files import FLEET_FILE
+from lumen.loading.project_folders import FLEET_FILE
 from lumen.rules.alerts import loopback
 from lumen.rules.routes import PASSWORD_IN_FILE
 

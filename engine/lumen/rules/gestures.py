@@ -6,7 +6,7 @@ from lumen.language.gestures import GestureLibrary, merged
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.gestures import GESTURES_FOLDER
+from lumen.loading.project_folders import GESTURES_FOLDER
 from lumen.rules.effects import NO_EFFECT
 from lumen.rules.lookups import first
 from lumen.rules.motions import TOO_FAST

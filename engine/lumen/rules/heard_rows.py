@@ -15,7 +15,7 @@ from lumen.language.machines import Hears, MachineDefinition, State, StateKind, 
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import Same, memoize
-from lumen.loading.words import WORDS_FOLDER
+from lumen.loading.project_folders import WORDS_FOLDER
 from lumen.rules.events import descriptor_path
 from lumen.rules.naming import heard_rows
 from lumen.rules.statecharts import within

@@ -7,7 +7,7 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.life import STILL, LifeStyle, Settles, Sway
 from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.life import LIFE_FOLDER
+from lumen.loading.project_folders import LIFE_FOLDER
 from lumen.loading.units import ANGLES
 from lumen.rules.lookups import References, first, value_at
 

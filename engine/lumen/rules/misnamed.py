@@ -3,17 +3,18 @@
 from dataclasses import replace
 
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import FOLDERS
+from lumen.loading.files import MISTAKEN_FOLDERS
 from lumen.loading.misnamed import misnamed_in
-from lumen.loading.packaged import MAIN_FILE, misnamed_main_file
+from lumen.loading.packaged import misnamed_main_file
 from lumen.loading.project import MISSING_FILE, NOT_READ
+from lumen.loading.project_folders import ALL_FOLDERS, MAIN_FILE
 
 
 def check(draft: ProjectDraft) -> None:
     """Report endings with capital letters or followed by another ending, and folders with capital letters."""
     if draft.root is None:
         return
-    for folder in ("", *sorted(FOLDERS)):
+    for folder in ("", *sorted((*ALL_FOLDERS, *MISTAKEN_FOLDERS))):
         draft.looks.at(draft.root / folder)
         for there, meant in misnamed_in(draft.root, folder):
             name = meant if meant.endswith("/") else meant.rpartition("/")[2]

@@ -14,13 +14,13 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE
+from lumen.loading.project_folders import PASSAGES
 from lumen.loading.units import ANGLES
 from lumen.rules.lookups import value_at
 
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 
 
-PASSAGES = "models/passages"
 """The motions from posture to posture."""
 
 

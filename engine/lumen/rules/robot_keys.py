@@ -9,7 +9,7 @@ from lumen.errors import UsageError
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
 from lumen.language.text_lines import lines_and_breaks
 from lumen.loading.document import Document
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE
 from lumen.loading.yaml_reader import parse
 from lumen.rules.fixes import Edit, edited
 from lumen.rules.upgrading import Rewriting

@@ -14,7 +14,7 @@ from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.words import WORDS_FOLDER
+from lumen.loading.project_folders import WORDS_FOLDER
 from lumen.rules.events import UNUSED_EVENT, descriptors, hears
 from lumen.rules.naming import Named, heard_rows, named_in
 from lumen.rules.walk import action_sites

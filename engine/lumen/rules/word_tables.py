@@ -10,7 +10,8 @@ from lumen.language.machines import Answer
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
-from lumen.loading.words import ANYHOW, WORDS_FOLDER
+from lumen.loading.project_folders import WORDS_FOLDER
+from lumen.loading.words import ANYHOW
 from lumen.rules.lookups import value_at
 
 

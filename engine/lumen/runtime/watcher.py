@@ -10,8 +10,9 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
-from lumen.loading.files import PROJECT_FOLDERS, Unreadable, fingerprint, read_files
+from lumen.loading.files import Unreadable, fingerprint, read_files
 from lumen.loading.kept_contents import KeptContents
+from lumen.loading.project_folders import ALL_FOLDERS, MOTIONS
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
@@ -24,8 +25,6 @@ EARLY = 5.0
 """How long after its beginning a watcher has what judges made ready [s]: until then an exhibition has enough to do."""
 SWITCH_INTERVAL = 0.001
 """How long one thread may keep the others of an exhibition from their work [s]: a stop passes four on its way."""
-
-NESTED_FOLDERS = ("behaviors/stories", "behaviors/words", "behaviors/sayings", "schemas/messages")
 
 _log = logging.getLogger(__name__)
 WatchedFiles = Mapping[str, bytes]
@@ -215,7 +214,7 @@ class FileWatcher(Generic[T]):
         from watchfiles import watch
 
         while not self._stop.is_set():
-            folders = _folders(self._root)
+            folders = watched_folders(self._root)
             changes = watch(
                 *folders,
                 watch_filter=None,
@@ -231,7 +230,7 @@ class FileWatcher(Generic[T]):
                 with closing(changes):
                     for _ in changes:
                         self._hint.set()
-                        if _folders(self._root) != folders:
+                        if watched_folders(self._root) != folders:
                             break
             except OSError as error:
                 _log.warning("files are no longer watched, only read once a second: %r", error)
@@ -269,13 +268,13 @@ def _as_others_need() -> Iterator[None]:
         sys.setswitchinterval(usual)
 
 
-def _folders(root: Path) -> dict[Path, tuple[int, int]]:
+def watched_folders(root: Path) -> dict[Path, tuple[int, int]]:
     """The folders to be watched that are there now, and which they are: one of the same name may take their place.
 
     Where the project's folder is a link, the one that the link is in counts too.
     """
-    robots = sorted((root / "motions").glob("*/"))
-    wanted = [root, *(root / name for name in (*PROJECT_FOLDERS, *NESTED_FOLDERS)), *robots]
+    robots = sorted((root / MOTIONS).glob("*/"))
+    wanted = [root, *(root / name for name in sorted(ALL_FOLDERS)), *robots]
     if root.is_symlink():
         wanted.append(root.absolute().parent)
     found = {}

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from lumen.errors import UsageError
 from lumen.loading.files import belongs
-from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules", "alerts",

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory, keep, memory_file, remember
-from lumen.loading.files import FLEET_FILE, belongs, on_disk, read_files
+from lumen.loading.files import belongs, on_disk, read_files
+from lumen.loading.project_folders import FLEET_FILE
 from lumen.runtime.home import Home, home_of
 
 FOLDER = "fleet"

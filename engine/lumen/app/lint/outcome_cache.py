@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.projects import Project
-from lumen.loading.lending import MODELS, model_files
+from lumen.loading.lending import model_files
+from lumen.loading.project_folders import MODELS
 from lumen.ports import Perform
 from lumen.robots.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome

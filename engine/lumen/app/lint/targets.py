@@ -11,9 +11,10 @@ from lumen.app.lint.kept_findings import known_or_checked
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.common_words import own_files
-from lumen.loading.files import MAX_FILE_BYTES, composed, counts, read_files
+from lumen.loading.files import MAX_FILE_BYTES, belongs, composed, read_files
 from lumen.loading.own_project import own_project
-from lumen.loading.packaged import MAIN_FILE, project_above
+from lumen.loading.packaged import project_above
+from lumen.loading.project_folders import MAIN_FILE
 
 Wanted = Callable[[Diagnostic], bool]
 STDIN = "-"
@@ -117,7 +118,7 @@ def _typed(paths: Sequence[str], name: str | None) -> LintTarget:
     if root is None:
         raise UsageError(f"{name} belongs to no project: there is no {MAIN_FILE} in its folder or above")
     file = composed(Path(name).absolute().relative_to(root).as_posix())
-    if not counts(file):
+    if not belongs(file):
         raise UsageError(f"{name} is not a file that lint reads: docs/yaml.md lists the files of a project")
     content = sys.stdin.buffer.read(MAX_FILE_BYTES + 1)
     if len(content) > MAX_FILE_BYTES:

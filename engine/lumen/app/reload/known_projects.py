@@ -17,9 +17,9 @@ from lumen.language.projects import Project
 from lumen.loading.chosen_robot import chosen_robot
 from lumen.loading.engine_files import engine, listed
 from lumen.loading.files import fingerprint
+from lumen.loading.project_folders import MODELS
 from lumen.upkeep.cache_folder import CacheFolder
 
-MODELS = "models"
 """The folder of which lint asks which files there are, beside those that it reads."""
 _LEVEL = 1
 

@@ -19,13 +19,13 @@ from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint
+from lumen.loading.project_folders import STORIES
 from lumen.runtime.watcher import SavedFiles
 
 _log = logging.getLogger(__name__)
 
 BUDGET = 2.0
 """How long the stories that were saved may take, all together [s]."""
-STORIES = "behaviors/stories"
 
 
 @dataclass(frozen=True)

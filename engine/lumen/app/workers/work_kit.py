@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 
 from lumen.language.projects import Project
-from lumen.loading.lending import MODELS
+from lumen.loading.project_folders import MODELS
 from lumen.rules import check_files
 
 

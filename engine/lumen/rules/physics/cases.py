@@ -10,10 +10,9 @@ from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
-from lumen.loading.project import FOLDER_KINDS
+from lumen.loading.project_folders import LIFE_FOLDER, MOTIONS, PASSAGES, is_robots_own
 from lumen.ports import Live, Perform, RobotCommand
 
-MOTIONS, PASSAGES, LIFE = "motions", "models/passages", "motions/life"
 FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""
 
@@ -47,7 +46,7 @@ class Case:
     @property
     def living(self) -> bool:
         """Whether it is no motion, but a style of life."""
-        return self.folder == LIFE
+        return self.folder == LIFE_FOLDER
 
     @property
     def way(self) -> str:
@@ -85,15 +84,14 @@ def cases(project: Project) -> list[Case]:
         before = Posture(passage.start, 1.0)
         found.append(Case(PASSAGES, passage, (before,), Posture(passage.end, 1.0)))
     for name, style in project.life.items():
-        found.append(Case(LIFE, MotionDefinition(name, LIVED, {}), (), Live(style)))
+        found.append(Case(LIFE_FOLDER, MotionDefinition(name, LIVED, {}), (), Live(style)))
     return list({(case.file, case.way): case for case in found}.values())
 
 
 def _own(project: Project) -> dict[str, str]:
     """The folder of each motion that is this robot's own: only that one of all robots' folders was read."""
     files = [PurePosixPath(file) for file in project.documents]
-    inside = [file for file in files if str(file.parent.parent) == MOTIONS]
-    return {file.stem: str(file.parent) for file in inside if str(file.parent) not in FOLDER_KINDS}
+    return {file.stem: str(file.parent) for file in files if is_robots_own(str(file.parent))}
 
 
 def _to(posture: str) -> Before:

@@ -1,0 +1,82 @@
+"""The folders of a project and the kinds of file in them, for all that reads, watches, copies or completes them."""
+
+from collections.abc import Mapping
+from pathlib import PurePosixPath
+from typing import NamedTuple
+
+from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
+from lumen.language.sayings import SAYINGS_FOLDER
+
+MAIN_FILE = "lumen.yaml"
+FLEET_FILE = "fleet.yaml"
+"""The houses, and whose orders a robot accepts; lint checks it with a project, and no bundle contains it."""
+
+BEHAVIORS, STORIES, WORDS_FOLDER = "behaviors", "behaviors/stories", "behaviors/words"
+CONTROLLERS = "fuzzy"
+MOTIONS, LIFE_FOLDER, GESTURES_FOLDER = "motions", "motions/life", "motions/gestures"
+MODELS, PASSAGES = "models", "models/passages"
+MESSAGES = "schemas/messages"
+
+
+class ProjectFolder(NamedTuple):
+    """A folder of a project, from its root; files in deeper folders are not read."""
+
+    path: str
+    kind: str
+    """The kind of its YAML or JSON files: `schemas/KIND.schema.json` describes them."""
+    endings: tuple[str, ...] = (".yaml", ".yml")
+    """The endings of files that belong to the project; lint reports those in .yml, which nothing reads."""
+
+
+FOLDERS = (
+    ProjectFolder(BEHAVIORS, "behavior"),
+    ProjectFolder(WORDS_FOLDER, "words"),
+    ProjectFolder(SAYINGS_FOLDER, "sayings"),
+    ProjectFolder(STORIES, "story"),
+    ProjectFolder(KNOWLEDGE_FOLDER, "knowledge", (".yaml", ".yml", ".md")),
+    ProjectFolder(QUESTIONS_FOLDER, "questions"),
+    ProjectFolder(CONTROLLERS, "controller"),
+    ProjectFolder(MOTIONS, "motion"),
+    ProjectFolder(LIFE_FOLDER, "life"),
+    ProjectFolder(GESTURES_FOLDER, "gestures"),
+    ProjectFolder(MODELS, "body", (".yaml", ".yml", ".xml")),
+    ProjectFolder(PASSAGES, "motion"),
+    ProjectFolder(MESSAGES, "message", (".json",)),
+)
+
+KINDS: Mapping[str, str] = {folder.path: folder.kind for folder in FOLDERS}
+"""The kind of file in each folder."""
+
+FILE_KINDS = tuple(dict.fromkeys(("lumen", *KINDS.values(), "fleet")))
+"""All kinds of file; each has a `schemas/KIND.schema.json`."""
+
+PROJECT_FOLDERS = tuple(dict.fromkeys(folder.path.partition("/")[0] for folder in FOLDERS))
+"""The folders beside lumen.yaml that belong to a project."""
+
+ALL_FOLDERS = frozenset((*PROJECT_FOLDERS, *KINDS))
+
+_ENDINGS: Mapping[str, tuple[str, ...]] = {folder.path: folder.endings for folder in FOLDERS}
+
+
+def endings_in(folder: str) -> tuple[str, ...]:
+    """Return the endings of files that belong to a project in one of its folders; a folder in motions/ is a robot's."""
+    return _ENDINGS.get(MOTIONS if is_robots_own(folder) else folder, ())
+
+
+def is_robots_own(folder: str) -> bool:
+    """Return whether a folder holds the motions of one robot, by its path: `motions/pepper`."""
+    above, _, name = folder.partition("/")
+    return above == MOTIONS and bool(name) and folder not in KINDS and not {"/", "."} & set(name)
+
+
+def kind_in(folder: str) -> str:
+    """Return the kind of file in a folder of a project; empty for a folder of no kind."""
+    return KINDS.get(MOTIONS if is_robots_own(folder) else folder, "")
+
+
+def kind_of(file: str) -> str:
+    """Return the kind of a YAML or JSON file by its path in a project; empty for any other file."""
+    if file in (MAIN_FILE, FLEET_FILE):
+        return file.removesuffix(".yaml")
+    path = PurePosixPath(file)
+    return kind_in(str(path.parent)) if path.suffix in (".yaml", ".json") else ""
