@@ -5,12 +5,12 @@ import json
 import os
 import re
 from collections.abc import Iterable, Mapping
-from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from lumen.language.projects import Project
+from lumen.loading.engine_files import code_hash
 from lumen.loading.lending import model_files
 from lumen.loading.project_folders import MODELS
 from lumen.ports import Perform
@@ -19,7 +19,8 @@ from lumen.rules.physics import Case, Outcome
 from lumen.runtime.home import home_of
 from lumen.upkeep.private_folder import private_folder
 
-_ENGINE = ("robots/simulation", "robots/executor.py", "interpreters", "rules/physics")
+CODE = ("lumen.interpreters", "lumen.language", "lumen.robots", "lumen.rules.physics")
+"""The packages whose code decides what comes of a motion in simulation."""
 
 
 class OutcomeCache:
@@ -36,7 +37,7 @@ class OutcomeCache:
         passages = {file: content for file, content in files.items() if file.startswith("models/passages/")}
         shapes = [content for path, content in models.items() if path.parent.name != "passages"]
         self._models = _digest(
-            [*shapes, project.hall.encode(), repr(project.imperfections).encode(), engine().encode()]
+            [*shapes, project.hall.encode(), repr(project.imperfections).encode(), _engine().encode()]
         )
         self._passages = _digest(passages.values())
 
@@ -71,14 +72,8 @@ class OutcomeCache:
         return self._folder / f"{_name(case)}-{digest[:20]}.json"
 
 
-@cache
-def engine() -> str:
-    """A hash of the engine's code that moves the robot, and of the physics below it."""
-    root = Path(__file__).parents[2]
-    files = [
-        path for name in _ENGINE for path in ([root / name] if name.endswith(".py") else (root / name).glob("*.py"))
-    ]
-    return _digest([*(path.read_bytes() for path in sorted(files)), version("mujoco").encode()])
+def _engine() -> str:
+    return f"{code_hash(*CODE)} {version('mujoco')}"
 
 
 def _said(command: object) -> Any:

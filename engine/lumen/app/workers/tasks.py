@@ -1,6 +1,5 @@
 """What a worker does: it unpacks the kit of a piece of work once, and does one task after another with it."""
 
-import hashlib
 import pickle
 import sys
 import tempfile
@@ -13,6 +12,7 @@ from typing import Any, NamedTuple
 
 from lumen.app.workers.work_kit import UnpackedKit
 from lumen.errors import WorkersError
+from lumen.loading.engine_files import code_hash
 from lumen.loading.memoization import memoize
 
 PACKAGES = ("lumen-robot", "mujoco", "dm-control", "numpy")
@@ -50,8 +50,8 @@ def do_task(head: TaskHead, packed: bytes | str, task: tuple[Any, ...]) -> Any:
 
 
 def _unpacked(head: TaskHead, packed: bytes | str) -> UnpackedKit:
-    content = Path(packed).read_bytes() if isinstance(packed, str) else packed
-    return UnpackedKit(pickle.loads(content), head.kit, Path(head.folder or _own_folder()))
+    kit = Path(packed).read_bytes() if isinstance(packed, str) else packed
+    return UnpackedKit(pickle.loads(kit), head.kit, Path(head.folder or _own_folder()))
 
 
 @cache
@@ -65,12 +65,9 @@ def _own_folder() -> str:
 @cache
 def engine() -> str:
     """Which software this is, for people, with a hash of Lumen's own code."""
-    root, digest = Path(__file__).parents[2], hashlib.sha256()
-    for file in sorted(root.rglob("*.py")):
-        digest.update(hashlib.sha256(file.relative_to(root).as_posix().encode() + file.read_bytes()).digest())
     python = ".".join(map(str, sys.version_info[:2]))
     packages = ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
-    return f"Lumen's code {digest.hexdigest()[:8]}, Python {python}, {packages}"
+    return f"Lumen's code {code_hash('lumen')[:8]}, Python {python}, {packages}"
 
 
 def _version(package: str) -> str:

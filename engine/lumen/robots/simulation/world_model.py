@@ -14,6 +14,7 @@ import numpy as np
 from dm_control.mujoco import Physics, wrapper
 
 from lumen.language.robots import Body
+from lumen.loading.engine_files import files_hash
 from lumen.loading.memoization import memoize
 from lumen.robots.simulation.model_terms import Variation
 from lumen.upkeep.cache_folder import CacheFolder
@@ -71,10 +72,9 @@ def _kept(name: str, compiled: Callable[[], mujoco.MjModel]) -> mujoco.MjModel:
 
 
 @cache
-def _engine() -> tuple[object, ...]:
-    """What builds worlds: an edited file, or another dm_control, builds others."""
-    own = Path(__file__).parent
-    return Path(dm_control.__path__[0]).stat().st_mtime_ns, *((path.name, _version(path)) for path in _files(own))
+def _engine() -> str:
+    """The state of what builds worlds: an edited file, or another dm_control, builds others."""
+    return files_hash(Path(__file__).parent, Path(dm_control.__path__[0]))
 
 
 def _files(folder: Path) -> list[Path]:

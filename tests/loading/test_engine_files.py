@@ -1,0 +1,25 @@
+"""Which software this is: results that were kept must not outlive the code that made them."""
+
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from lumen.app.lint import outcome_cache
+from lumen.loading import engine_files
+
+DECIDE = ("lumen.interpreters.gait", "lumen.interpreters.life", "lumen.robots.executor", "lumen.rules.physics.trial")
+"""Modules that decide whether a motion falls, at different depths."""
+
+
+@pytest.mark.parametrize("name", DECIDE)
+def test_outcomes_of_motions_depend_on_code_at_every_depth(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, read = Path(str(import_module(name).__file__)), Path.read_bytes
+    before = engine_files.code_hash(*outcome_cache.CODE)
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"\n" if path == file else read(path))
+    assert engine_files.code_hash.__wrapped__(*outcome_cache.CODE) != before
+
+
+def test_code_that_moved_away_is_not_left_out_silently() -> None:
+    with pytest.raises(ModuleNotFoundError, match=r"lumen\.gone"):
+        engine_files.code_hash("lumen.interpreters", "lumen.gone")
