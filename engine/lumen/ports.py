@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+from threading import Event as Signal
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar, runtime_checkable
 
 if TYPE_CHECKING:
     import numpy as np
@@ -208,6 +209,34 @@ class Subject(Robot, Protocol):
     def strain(self) -> Strain: ...
 
 
+@runtime_checkable
+class Advances(Protocol):
+    """A robot that lives only while its world is simulated."""
+
+    def advance(self, dt: float) -> None:
+        """Simulate `dt` [s]."""
+        ...
+
+
+@runtime_checkable
+class Idles(Protocol):
+    """A robot that can tell that nothing is happening to it."""
+
+    @property
+    def idle(self) -> bool:
+        """Whether no command is under way, no event waits for `poll`, and no visitor is in front of it."""
+        ...
+
+
+@runtime_checkable
+class MeetsVisitors(Protocol):
+    """A robot in a world in which visitors can be placed: at least these two methods of a `Hall`."""
+
+    def place(self, visitor: Visitor | None) -> None: ...
+
+    def face(self) -> tuple[float, float] | None: ...
+
+
 class Hall(Protocol):
     """What a story may do to a simulated world."""
 
@@ -232,6 +261,7 @@ class Hall(Protocol):
         ...
 
 
+@runtime_checkable
 class Clock(Protocol):
     """The exhibition's time."""
 
@@ -241,6 +271,37 @@ class Clock(Protocol):
 
     def wait(self, until: float) -> None:
         """Return when `now()` has reached `until`; a simulated clock simulates the time in between."""
+        ...
+
+
+@runtime_checkable
+class Dozes(Protocol):
+    """A clock that can sleep in real time and be woken."""
+
+    def doze(self, until: float) -> float:
+        """Sleep until `now()` would be `until` [s], or until `hurry`; return the time [s]."""
+        ...
+
+    def hurry(self) -> None:
+        """End the sleep or the wait that is under way, from any thread."""
+        ...
+
+
+@runtime_checkable
+class HasSpeed(Protocol):
+    """A clock that runs at a multiple of real time."""
+
+    speed: float | None
+    """The multiple; None for as fast as possible."""
+
+
+@runtime_checkable
+class MeasuresPace(Protocol):
+    """A clock that measures how much of its speed the machine keeps."""
+
+    @property
+    def realtime(self) -> float:
+        """The part of its speed that it kept of late: 1 if it kept all."""
         ...
 
 
@@ -264,9 +325,30 @@ class Message(NamedTuple):
 
 MessageHandler = Callable[[Message], None]
 
+Ability = TypeVar("Ability")
+
+
+class Outgoing(NamedTuple):
+    """A message as it is sent; `Bus.publish` describes the fields."""
+
+    key: str
+    body: Any
+    reply_to: str = ""
+    correlation_id: str = ""
+    ttl: float | None = None
+    origin: MessageOrigin = UNKNOWN_ORIGIN
+
 
 class Bus(Protocol):
-    """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number."""
+    """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number.
+
+    A bus of your own inherits from this class and implements the methods without a body. What only some buses can do
+    is a protocol of its own, such as `CountsDrops`: ask for it with `ability`.
+    """
+
+    def ability(self, kind: type[Ability]) -> Ability | None:
+        """Return this bus as one with that ability; None if it lacks it. A wrapper passes the question inward."""
+        return self if isinstance(self, kind) else None
 
     def carry(self, routes: Mapping[str, Route]) -> None:
         """From now on, carry messages with these keys as their routes say, and all others as telemetry."""
@@ -300,9 +382,14 @@ class Bus(Protocol):
         """Send a body (JSON data); safe from any thread. Raises BusError after `close`, or if it is not JSON data.
 
         The bus fills in what `origin` leaves empty: an id that no other message has, its own `sender`, and the time.
+        """
+        self.send(Outgoing(key, body, reply_to, correlation_id, ttl, origin))
+
+    def send(self, message: Outgoing) -> None:
+        """Send a message as `publish` does.
 
         It never waits for a handler on another thread, nor for the network. A bus without its own thread (`memory://`)
-        may run handlers inside `publish`, if no other thread is delivering; so a handler should only enqueue.
+        may run handlers inside `send`, if no other thread is delivering; so a handler should only enqueue.
         """
         ...
 
@@ -337,4 +424,54 @@ class ReturningBus(Protocol):
 
         The call may come on any thread; for messages published before `close`, it comes before `close` returns.
         """
+        ...
+
+
+@runtime_checkable
+class SignsMessages(Protocol):
+    """A bus whose messages carry the name of the program that sends them."""
+
+    @property
+    def sender(self) -> str: ...
+
+
+@runtime_checkable
+class CountsDrops(Protocol):
+    """A bus that counts the messages that it dropped."""
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """The number of dropped messages by key."""
+        ...
+
+
+@runtime_checkable
+class KnowsListeners(Protocol):
+    """A bus that can tell whether a message would have a receiver."""
+
+    def heard(self, key: str) -> bool: ...
+
+
+@runtime_checkable
+class UsesBroker(Protocol):
+    """A bus through a broker on a machine of the network."""
+
+    @property
+    def host(self) -> str:
+        """The broker's machine."""
+        ...
+
+    @property
+    def away(self) -> bool:
+        """Whether the broker can't be reached now."""
+        ...
+
+
+@runtime_checkable
+class EndsWithExhibition(Protocol):
+    """A bus that an exhibition serves, and that ends with it."""
+
+    @property
+    def gone(self) -> Signal:
+        """Set once the exhibition has ended."""
         ...

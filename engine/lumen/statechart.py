@@ -147,7 +147,7 @@ class Interpreter(Generic[C]):
         observe: Callable[[Step], None] = _unobserved,
     ) -> None:
         need(machine, machines.MachineDefinition, "what an interpreter runs", "a Machine")
-        if clock is not None and not (callable(getattr(clock, "now", None)) and callable(getattr(clock, "wait", None))):
+        if clock is not None and not isinstance(clock, Clock):
             raise UsageError(f"a clock needs `now` and `wait`, but {clock!r} does not have them")
         if not callable(observe):
             raise UsageError(f"`observe` must be a function, which {observe!r} is not")

@@ -15,6 +15,7 @@ from typing import Any
 import lumen
 import lumen.bus
 from lumen.bus import Bus, Message
+from lumen.ports import Ability, Outgoing
 from tests.golden.texts import digest, in_one_line
 
 ID = re.compile(r"[0-9a-f]{10}-[0-9]+(/alias)?")
@@ -97,7 +98,7 @@ def steady(data: Any) -> Any:
     return data
 
 
-class TranscribedBus:
+class TranscribedBus(Bus):
     """A bus of which each call is written down."""
 
     def __init__(self, bus: Bus, transcript: Transcript) -> None:
@@ -121,17 +122,21 @@ class TranscribedBus:
 
         return undone
 
-    def publish(self, key: str, body: Any, **more: Any) -> None:
-        origin = more.get("origin")
-        said = {"ttl": more.get("ttl"), "reply_to": more.get("reply_to"), "body": body}
-        if origin is not None:
-            said |= {"sender": origin.sender, "cause": origin.cause}
-            said |= {"id": bool(origin.id) or None, "time": bool(origin.time) or None}
-        self._transcript.add("publish", key, {**said, "correlation_id": bool(more.get("correlation_id")) or None})
-        self._bus.publish(key, body, **more)
+    def send(self, message: Outgoing) -> None:
+        key, body, reply_to, correlation_id, ttl, origin = message
+        said = {"ttl": ttl, "reply_to": reply_to, "body": body, "sender": origin.sender, "cause": origin.cause}
+        said |= {"id": bool(origin.id) or None, "time": bool(origin.time) or None}
+        self._transcript.add("publish", key, {**said, "correlation_id": bool(correlation_id) or None})
+        self._bus.send(message)
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._bus, name)
+    def reply(self, message: Message, body: Any) -> None:
+        self._bus.reply(message, body)
+
+    def close(self) -> None:
+        self._bus.close()
+
+    def ability(self, kind: type[Ability]) -> Ability | None:
+        return self._bus.ability(kind)
 
 
 def _carried(route: Any) -> str:
@@ -141,7 +146,7 @@ def _carried(route: Any) -> str:
 def write_down(root: Path, bus: Bus, transcript: Transcript, seconds: float) -> None:
     """Run the project's exhibition on a bus, with its story, for so long [s] at most."""
     story, _ = VISITS[root.name]
-    with lumen.open(root, bus=TranscribedBus(bus, transcript), story=story) as exhibition:  # type: ignore[arg-type]
+    with lumen.open(root, bus=TranscribedBus(bus, transcript), story=story) as exhibition:
         transcript.now = lambda: exhibition.now
         exhibition.run(seconds)
     transcript.sum_up()

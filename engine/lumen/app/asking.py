@@ -31,8 +31,8 @@ def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_AN
     answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
     mark = str(uuid.uuid4())
     undo = bus.subscribe(reply_to, lambda m: answers.put(m.body) if m.correlation_id == mark else None)
-    if isinstance(bus, ReturningBus):
-        bus.returns(lambda returned: answers.put(NOBODY) if returned == key else None)
+    if returning := bus.ability(ReturningBus):
+        returning.returns(lambda returned: answers.put(NOBODY) if returned == key else None)
     bus.publish(key, body, reply_to=reply_to, correlation_id=mark)
     timeout: float | None = first
     try:
@@ -42,8 +42,8 @@ def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_AN
             yield answer
             timeout = None
     except queue.Empty:
-        if isinstance(bus, BlockableBus) and bus.blocked:
-            raise BusUnreachableError(f"the broker is short of {bus.blocked} and accepts no messages") from None
+        if (broker := bus.ability(BlockableBus)) and broker.blocked:
+            raise BusUnreachableError(f"the broker is short of {broker.blocked} and accepts no messages") from None
         raise BusUnreachableError(f"no answer came on `{key}`: check that an exhibition runs on that bus") from None
     finally:
         undo()

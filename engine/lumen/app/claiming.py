@@ -7,7 +7,7 @@ from lumen.buses.validated import ValidatedBus
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.modules import MODULES
 from lumen.language.projects import Project
-from lumen.ports import Bus
+from lumen.ports import BlockableBus, Bus
 from lumen.runtime.presence import BRAIN, MOTION, PRESENCE_ROUTE, ROBOT_PART, Presence, where_it_runs
 
 CLAIM_DURATION = 0.8
@@ -35,10 +35,10 @@ def refuse_rivals(presence: Presence) -> None:
 
 def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
     """Raises BusUnreachableError if a rival could not answer because the broker accepts no messages."""
-    if bus.blocked:
+    if (broker := bus.ability(BlockableBus)) and broker.blocked:
         parts = " or ".join(part for part in ALONE if part in presence.parts)
         raise BusUnreachableError(
-            f"the broker is short of {bus.blocked} and accepts no messages, so Lumen can't check whether another"
+            f"the broker is short of {broker.blocked} and accepts no messages, so Lumen can't check whether another"
             f" process is the {parts} of {presence.robot}: start again when the broker has"
             " enough (see `rabbitmqctl status`)"
         )

@@ -11,7 +11,7 @@ from lumen.interpreters.statechart.compiled_machine import prepare
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.ports import Bus
+from lumen.ports import Bus, HasSpeed
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.story import staged
 from lumen.runtime.story_time import story_epoch
@@ -32,7 +32,7 @@ class LiveBehavior:
     ) -> None:
         self._story, self._local_timezone = story, "" if story else local_timezone()
         self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking)
-        real = story is None and getattr(setup.clock, "speed", None) == 1.0
+        real = story is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed == 1.0
         self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
         self.trace = TracePublisher(
             bus,

@@ -7,6 +7,7 @@ import wave
 from array import array
 from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol, runtime_checkable
 
 from lumen.language.commands import PlaySound
 from lumen.loading.files import on_disk
@@ -91,3 +92,10 @@ def _mono(file: Path, length: float) -> Sound | None:
             mixed.byteswap()
         samples = mixed.tobytes()
     return Sound(rate, samples)
+
+
+@runtime_checkable
+class Sounds(Protocol):
+    """A robot that can be given a loudspeaker."""
+
+    def sound_with(self, playback: Loudspeaker) -> None: ...

@@ -16,7 +16,7 @@ from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
-from lumen.ports import Clock
+from lumen.ports import Clock, CountsDrops, Dozes
 from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
@@ -53,6 +53,7 @@ class Node:
         speed: float | None = None,
     ) -> None:
         self._project, self._clock, self._narrator, self._speed = project, clock, narrator, speed
+        self._dozes = clock if isinstance(clock, Dozes) else None
         self.bus, self.presence = bus, presence
         self.parts: list[Part] = []
         self.before: list[Callable[[float], None]] = []
@@ -176,7 +177,8 @@ class Node:
 
     def ring(self) -> None:
         """Let the clock's sleep end, where it can."""
-        getattr(self._clock, "hurry", lambda: None)()
+        if self._dozes:
+            self._dozes.hurry()
 
     def rest(self) -> float:
         """For how long nothing happens in it unless something comes [s]; 0 where that is not known."""
@@ -191,10 +193,9 @@ class Node:
 
     def doze(self, rest: float) -> int:
         """Sleep through a rest of at most NAP, until woken, where the clock can; how many ticks that were."""
-        doze: Callable[[float], float] | None = getattr(self._clock, "doze", None)
-        if doze is None or rest < 2 * TICK_PERIOD:
+        if self._dozes is None or rest < 2 * TICK_PERIOD:
             return 0
-        return int((doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
+        return int((self._dozes.doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
 
     def pass_over(self, ticks: int) -> None:
         """Let the time of so many ticks pass, in which nothing happens."""
@@ -232,7 +233,8 @@ class Node:
 
     def losses(self) -> list[str]:
         """What is said at the end of time that was not kept, and of messages that were dropped."""
-        dropped = ", ".join(f"{count:,} on {key}" for key, count in sorted(self.bus.dropped.items()))
+        counts = self.bus.ability(CountsDrops)
+        dropped = ", ".join(f"{count:,} on {key}" for key, count in sorted(counts.dropped.items() if counts else ()))
         return [*self.pace.summary(), *([f"dropped messages: {dropped}"] if dropped else [])]
 
     def _claim(self, presence: Presence) -> None:

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 
-from lumen.ports import Clock
+from lumen.ports import Clock, MeasuresPace
 
 SLOW, WELL = 0.95, 0.98
 """Under which part of its speed time is slow, and above which it is well again [1]."""
@@ -24,7 +24,7 @@ class PaceWatch:
     @property
     def realtime(self) -> float:
         """How much of its speed the clock keeps, of late; never above 1."""
-        return round(min(1.0, float(getattr(self._clock, "realtime", 1.0))), 3)
+        return round(min(1.0, self._clock.realtime if isinstance(self._clock, MeasuresPace) else 1.0), 3)
 
     def tick(self) -> str:
         if self._monotonic() < self._next:

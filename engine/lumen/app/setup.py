@@ -11,7 +11,7 @@ from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.lending import model_files
-from lumen.ports import Clock, Hall, Robot
+from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, MeetsVisitors, Robot
 from lumen.runtime.tracking import TrackingService
 
 ROBOTS = ("simulation", "naoqi", "recording", "remote", "none")
@@ -37,7 +37,8 @@ class Setup:
 
     def hurry(self) -> None:
         """Let the clock's wait that is going on return, where it can: something can't wait."""
-        getattr(self.clock, "hurry", lambda: None)()
+        if isinstance(self.clock, Dozes):
+            self.clock.hurry()
 
 
 def set_up(
@@ -90,8 +91,8 @@ def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = N
     A robot that can `advance` lives through the time that passes; one that has a face before it (`face`) is its own
     hall. One that can neither has the time of the world outside.
     """
-    hall: Any = robot if hasattr(robot, "face") and hasattr(robot, "place") else None
-    advance: Callable[[float], None] | None = getattr(robot, "advance", None)
+    hall: Any = robot if isinstance(robot, MeetsVisitors) else None
+    advance = robot.advance if isinstance(robot, Advances) else None
     if clock is None:
         return Setup(robot, SimulatedClock(advance, pace) if advance else RealClock(), hall)
     return Setup(robot, _DrivenClock(clock, advance) if advance else clock, hall)
@@ -105,7 +106,7 @@ class _DrivenClock:
 
     @property
     def realtime(self) -> float:
-        return float(getattr(self._clock, "realtime", 1.0))
+        return self._clock.realtime if isinstance(self._clock, MeasuresPace) else 1.0
 
     def now(self) -> float:
         return self._clock.now()

@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Protocol, runtime_checkable
 
 from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
@@ -96,6 +96,13 @@ class Speaker:
             self._sheet = None
 
 
+@runtime_checkable
+class Speaks(Protocol):
+    """A robot that can be given a voice."""
+
+    def speak_with(self, voice: Speaker) -> None: ...
+
+
 def voiced(
     chosen: Setup, voice: str, file: Path | None, language: str, track: AudioTrack | None = None
 ) -> Callable[[], None]:
@@ -106,7 +113,8 @@ def voiced(
     found = speaker(voice, file, chosen.robot, language, track)
     if found is None:
         return lambda: None
-    chosen.robot.speak_with(found)  # type: ignore[attr-defined]
+    if isinstance(chosen.robot, Speaks):
+        chosen.robot.speak_with(found)
     return found.close
 
 
@@ -118,7 +126,7 @@ def speaker(
         if file:
             raise UsageError("--sound needs a voice: add --voice espeak")
         return None
-    if not hasattr(robot, "speak_with"):
+    if not isinstance(robot, Speaks):
         raise UsageError("--voice needs the simulated robot: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
         raise UsageError(f"can't write a sound to {file}: name a .wav file in an existing folder")

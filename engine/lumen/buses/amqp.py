@@ -21,9 +21,8 @@ from lumen.buses.packing import packed
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
 from lumen.buses.transport import Transport
 from lumen.errors import BusClosedError, BusError
-from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.routes import Carried, Direction, Route
-from lumen.ports import Message, MessageHandler
+from lumen.ports import Bus, Message, MessageHandler, Outgoing
 
 CLOSE_TIMEOUT = 5.0
 """How long closing may take [s]: what waits is sent, what was received is handled."""
@@ -31,7 +30,7 @@ CLOSE_TIMEOUT = 5.0
 _log = logging.getLogger(__name__)
 
 
-class AmqpBus:
+class AmqpBus(Bus):
     """A handle on the exchange `amq.topic` of the broker at `url` (`amqp://` or `amqps://`).
 
     Raises BusError, saying what to do, where the broker can't be used. How a message travels is said by the route of
@@ -107,18 +106,10 @@ class AmqpBus:
         subscription = consumer.add(pattern, handler, route)
         return lambda: consumer.remove(subscription)
 
-    def publish(
-        self,
-        key: str,
-        body: Any,
-        *,
-        reply_to: str = "",
-        correlation_id: str = "",
-        ttl: float | None = None,
-        origin: MessageOrigin = UNKNOWN_ORIGIN,
-    ) -> None:
+    def send(self, message: Outgoing) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
+        key, body, reply_to, correlation_id, ttl, origin = message
         for name in (key, reply_to, correlation_id):
             check_key(name)
         route = self._routes.get(key)

@@ -21,9 +21,8 @@ from lumen.buses.bodies import check_key, check_subscription, copied
 from lumen.buses.identities import NUMBERS, PREFIX, new_id
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
-from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.routes import Route
-from lumen.ports import Message, MessageHandler
+from lumen.ports import Bus, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import DropLog
 
 HANDLER_TIMEOUT = 5.0
@@ -140,7 +139,7 @@ def _hand_over(subscriptions: tuple[_Subscription, ...], message: Message) -> li
 _shared: WeakValueDictionary[str, _Hub] = WeakValueDictionary()
 
 
-class MemoryBus:
+class MemoryBus(Bus):
     """A handle on a bus inside this process: a new one, or with a `name` the one that all handles of that name share.
 
     Every subscriber is handed a copy of the body of its own. A message goes to who was subscribed when it was
@@ -179,18 +178,10 @@ class MemoryBus:
 
         return undo
 
-    def publish(
-        self,
-        key: str,
-        body: Any,
-        *,
-        reply_to: str = "",
-        correlation_id: str = "",
-        ttl: float | None = None,
-        origin: MessageOrigin = UNKNOWN_ORIGIN,
-    ) -> None:
+    def send(self, message: Outgoing) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
+        key, body, reply_to, correlation_id, _, origin = message
         own = copied(body)
         hub = self._hub
         listeners = hub.listeners.get(key)
@@ -200,8 +191,8 @@ class MemoryBus:
             id, sender, when, cause = origin  # as `filled` fills it in, without making another
             id = id or f"{PREFIX}-{next(NUMBERS)}"
             filled = (id, sender or self.sender, when or time(), cause)
-            message = _new(Message, (key, own, reply_to, correlation_id, *filled))
-            hub.queue.append((listeners, message))
+            sent = _new(Message, (key, own, reply_to, correlation_id, *filled))
+            hub.queue.append((listeners, sent))
             if len(hub.queue) > MAX_QUEUED_MESSAGES:
                 hub.shed()
             hub.deliver()

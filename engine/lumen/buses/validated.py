@@ -10,11 +10,11 @@ from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import SchemaCheck, body_checks
 from lumen.buses.identities import NUMBERS, PREFIX
 from lumen.errors import BadMessageError, Refused
-from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
+from lumen.language.causes import MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.language.routing_keys import KEY_PREFIXES
-from lumen.ports import BlockableBus, Bus, Message, MessageHandler
+from lumen.ports import Ability, Bus, KnowsListeners, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import ReasonLog
 
 OnRefused = Callable[[str, str], object]
@@ -25,7 +25,7 @@ _new = tuple.__new__
 _log = logging.getLogger(__name__)
 
 
-class ValidatedBus:
+class ValidatedBus(Bus):
     """A bus on which only bodies pass that fit their route.
 
     A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
@@ -40,7 +40,7 @@ class ValidatedBus:
     """
 
     def __init__(self, bus: Bus, project: Project, on_refused: OnRefused | None = None) -> None:
-        self._bus = bus
+        self._bus, self._listeners = bus, bus.ability(KnowsListeners)
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
         self._checks: dict[str, SchemaCheck] = {}
         self._routed: frozenset[str] = frozenset()
@@ -49,42 +49,19 @@ class ValidatedBus:
         self.arrived: Callable[[], None] = _nothing
         self.use(project)
 
-    @property
-    def sender(self) -> str:
-        """The program whose handle this is."""
-        return str(getattr(self._bus, "sender", ""))
+    def ability(self, kind: type[Ability]) -> Ability | None:
+        return self if isinstance(self, kind) else self._bus.ability(kind)
 
     @property
     def unchecked(self) -> Bus:
         """The bus beneath, for who only looks on: also what fits no route is said there."""
         return self._bus
 
-    @property
-    def host(self) -> str:
-        """The machine of the broker, empty where there is none."""
-        return str(getattr(self._bus, "host", ""))
-
-    @property
-    def away(self) -> bool:
-        """Whether the broker can't be reached now; a bus without one is always there."""
-        return bool(getattr(self._bus, "away", False))
-
-    @property
-    def blocked(self) -> str:
-        """The resource that the broker lacks while it accepts no messages; empty otherwise, and without a broker."""
-        return self._bus.blocked if isinstance(self._bus, BlockableBus) else ""
-
-    @property
-    def dropped(self) -> Mapping[str, int]:
-        """How many messages were dropped under each key, where the bus counts them."""
-        counts: Mapping[str, int] = getattr(self._bus, "dropped", {})
-        return counts
-
     def heard(self, key: str) -> bool:
-        """Whether anybody takes what is published under this key, where the bus knows."""
-        known: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
+        """Return whether a message with this key has a receiver under its key or its alias; True if that is unknown."""
+        known = self._listeners
         alias = self._aliases.names.get(key) if self._aliases.used else None
-        return known(key) or bool(alias and known(alias))
+        return known is None or known.heard(key) or bool(alias and known.heard(alias))
 
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
@@ -124,16 +101,8 @@ class ValidatedBus:
 
         return undo
 
-    def publish(
-        self,
-        key: str,
-        body: Any,
-        *,
-        reply_to: str = "",
-        correlation_id: str = "",
-        ttl: float | None = None,
-        origin: MessageOrigin = UNKNOWN_ORIGIN,
-    ) -> None:
+    def send(self, message: Outgoing) -> None:
+        key, body, reply_to, correlation_id, ttl, origin = message
         check = self._checks.get(key)
         if (check is None or not check.fits(body)) and (reason := self._wrong(key, body)):
             raise BadMessageError(f"a message on `{key}` cannot be sent: {reason}")
@@ -141,10 +110,10 @@ class ValidatedBus:
         if not id:
             self._passed = id = f"{PREFIX}-{next(NUMBERS)}"
             origin = _new(MessageOrigin, (id, sender, when, cause))
-        self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
+            message = _new(Outgoing, (key, body, reply_to, correlation_id, ttl, origin))
+        self._bus.send(message)
         if (alias := self._aliases.names.get(key)) and self._aliases.used:
-            copy = origin._replace(id=f"{id}{COPY}")
-            self._bus.publish(alias, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=copy)
+            self._bus.send(message._replace(key=alias, origin=origin._replace(id=f"{id}{COPY}")))
 
     def reply(self, message: Message, body: Any) -> None:
         self._bus.reply(message, body)

@@ -27,7 +27,7 @@ from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
 from lumen.loading.running_project import project_to_run
 from lumen.loading.units import seconds
-from lumen.ports import Bus
+from lumen.ports import Bus, EndsWithExhibition
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
@@ -129,9 +129,9 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
 
 def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
     """Until the time is over, somebody presses Ctrl-C, the disk refuses, or the exhibition is gone."""
-    began, gone = time.monotonic(), getattr(bus, "gone", None)
+    began, ends = time.monotonic(), bus.ability(EndsWithExhibition)
     with suppress(KeyboardInterrupt), progress() as tell:
-        while not tape.trouble and not (gone and gone.is_set()):
+        while not tape.trouble and not (ends and ends.gone.is_set()):
             waited = time.monotonic() - began
             if span is not None and waited >= span:
                 return

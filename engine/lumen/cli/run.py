@@ -10,7 +10,7 @@ from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
 from lumen.app.fleet.installing import finish as finish_installing
-from lumen.app.loudspeaker import Loudspeaker
+from lumen.app.loudspeaker import Loudspeaker, Sounds
 from lumen.app.node import Node
 from lumen.app.one_robot import robots_of
 from lumen.app.parts.console import ConsolePart
@@ -302,7 +302,7 @@ def _sounding(
     options: argparse.Namespace, project: Project, setup: Setup, track: AudioTrack | None = None
 ) -> Callable[[], None]:
     """Let the simulated robot's sound files be heard here, unless time flies, and in the film; what ends it."""
-    if not hasattr(setup.robot, "sound_with"):
+    if not isinstance(setup.robot, Sounds):
         return lambda: None
     loudspeaker = Loudspeaker(Path(project.root), track, audible=options.speed != "max")
     setup.robot.sound_with(loudspeaker)

@@ -24,7 +24,7 @@ from lumen.loading.files import read_files
 from lumen.loading.project_folders import MAIN_FILE
 from lumen.loading.running_project import running_project
 from lumen.loading.units import seconds
-from lumen.ports import Bus, Message, ReturningBus
+from lumen.ports import Bus, EndsWithExhibition, Message, ReturningBus
 from lumen.rules import check_files
 
 TOPIC_VERBS = {
@@ -152,8 +152,8 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     patience = _seconds(options.wait, "--wait") if options.wait else 0.0
     key, answers = _key(options.words[0], project), queue.SimpleQueue[Any]()
     reached, returned = bus, list[str]()
-    if isinstance(bus, ReturningBus):
-        bus.returns(returned.append)
+    if returning := bus.ability(ReturningBus):
+        returning.returns(returned.append)
     if project:
         bus = validated(bus, project)
     if patience:
@@ -249,14 +249,14 @@ def _listen(
     undo = bus.subscribe(pattern, lambda message: came.put(Heard(message, time.monotonic())))
     began = time.monotonic()
     end = None if span is None else began + span
-    gone = getattr(bus, "gone", None)
+    ends = bus.ability(EndsWithExhibition)
     try:
         while end is None or time.monotonic() < end:
             tell(time.monotonic() - began)
             try:
                 yield came.get(timeout=LOOK if end is None else max(0.0, min(LOOK, end - time.monotonic())))
             except queue.Empty:
-                if gone is not None and gone.is_set():
+                if ends and ends.gone.is_set():
                     raise BusClosedError("the exhibition has ended") from None
     except KeyboardInterrupt:
         pass

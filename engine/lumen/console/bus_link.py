@@ -8,7 +8,7 @@ from contextlib import suppress
 from lumen.app.asking import OPERATOR_ANSWERS
 from lumen.app.reaching import Reached
 from lumen.errors import BusError
-from lumen.ports import Bus, MessageHandler, ReturningBus
+from lumen.ports import Bus, EndsWithExhibition, MessageHandler, ReturningBus, UsesBroker
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.2
@@ -48,7 +48,8 @@ class BusLink:
     @property
     def up(self) -> bool:
         """Whether the bus takes messages now."""
-        return self.reached is not None and not getattr(self.reached.bus, "away", False)
+        broker = self.reached.bus.ability(UsesBroker) if self.reached else None
+        return self.reached is not None and not (broker and broker.away)
 
     @property
     def trouble(self) -> str:
@@ -94,13 +95,13 @@ class BusLink:
         for pattern in self._patterns(reached):
             with suppress(BusError):  # what a broker does not let us read is not shown
                 bus.subscribe(pattern, self._heard)
-        if isinstance(bus, ReturningBus):
-            bus.returns(self._returned)
+        if returning := bus.ability(ReturningBus):
+            returning.returns(self._returned)
 
     def _watch(self, bus: Bus) -> None:
         """Return once it is gone for good; a broker that is away comes back by itself."""
-        gone, was = getattr(bus, "gone", None), self.up
-        while not self._ending.wait(LOOK_PERIOD) and not (gone and gone.is_set()):
+        ends, was = bus.ability(EndsWithExhibition), self.up
+        while not self._ending.wait(LOOK_PERIOD) and not (ends and ends.gone.is_set()):
             if self.up is not was:
                 was = self.up
                 self._changed()

@@ -15,7 +15,7 @@ from lumen.language.commands import Say
 from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
-from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
+from lumen.ports import Bus, Image, KnowsListeners, Robot, RobotCommand, Sense
 from lumen.robots.command_receiver import CommandReceiver
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.robot_routes import NOTICED_ROUTE, RECORDING_ROUTE, TEXT_ROUTE, publish_on
@@ -63,6 +63,7 @@ class RobotServer:
         direct: bool = False,
     ) -> None:
         self._robot, self._bus, self._started, self._direct = robot, bus, started, direct
+        self._listeners = bus.ability(KnowsListeners)
         self._frames, self._date = count(), date
         self._project = project
         self._routes: dict[str, Route] = {}
@@ -186,8 +187,7 @@ class RobotServer:
         """Whether it is to be read for this route: nobody draws a picture, or packs angles, that nobody takes."""
         if not route.of and route.sense != Sense.IMAGE:
             return True
-        heard: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
-        return heard(route.key_for(self._project.robot))
+        return self._listeners is None or self._listeners.heard(route.key_for(self._project.robot))
 
     def _schedule(self, name: str, route: Route, now: float) -> None:
         """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""

@@ -18,6 +18,7 @@ from unittest.mock import patch
 
 import lumen
 from lumen.bus import Bus, Message, connect
+from lumen.ports import Outgoing
 from tests.golden.adapters import matches
 from tests.golden.golden import PROJECTS
 from tests.golden.tapped import TappedWire, amqp_frames
@@ -64,11 +65,11 @@ class LockstepBus(TranscribedBus):
 
         return undone
 
-    def publish(self, key: str, body: Any, **more: Any) -> None:
+    def send(self, message: Outgoing) -> None:
         with self._counting:
             self.published += 1
-            self.expected += sum(matches(pattern, key) for pattern in self._patterns)
-        super().publish(key, body, **more)
+            self.expected += sum(matches(pattern, message.key) for pattern in self._patterns)
+        super().send(message)
         if threading.current_thread() is threading.main_thread():
             self.settle()
 

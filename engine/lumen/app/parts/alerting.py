@@ -15,6 +15,7 @@ from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.modules import MODULES
 from lumen.language.projects import Project
+from lumen.ports import BlockableBus, UsesBroker
 from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
 from lumen.runtime.resuming import FreshStart, Resumption
@@ -47,7 +48,8 @@ class AlertPart(Part, Observer):
         kept: Callable[[], str] = lambda: "",
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._desk, self._bus, self._parts, self._presence = desk, bus, parts, presence
+        self._desk, self._parts, self._presence = desk, parts, presence
+        self._broker, self._blockable = bus.ability(UsesBroker), bus.ability(BlockableBus)
         self._kept, self._clock = kept, clock
         self._falls, self._disk = FallWatch(), DiskWatch(folder)
         self.stopped: Callable[[], bool] = lambda: False
@@ -117,11 +119,11 @@ class AlertPart(Part, Observer):
         """Robot and brain tell of the broker; the others need not all say the same."""
         if not {ROBOT_PART, BRAIN} & set(self._parts):
             return
-        blocked, before = self._bus.blocked, self._blocked
+        blocked, before = self._blockable.blocked if self._blockable else "", self._blocked
         self._blocked = blocked
         if blocked and not before:
             self._desk("broker", f"the message broker is short of {blocked} and accepts no messages", "blocked")
-        if not self._bus.away:
+        if not (self._broker and self._broker.away):
             self._away = None
         elif self._away is None:
             self._away = self._clock()

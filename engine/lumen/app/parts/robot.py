@@ -11,7 +11,7 @@ from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.ports import Bus, Sense
+from lumen.ports import Bus, HasSpeed, Idles, Sense
 from lumen.robots.sense_publisher import PublishCounts
 from lumen.robots.server import RobotServer
 from lumen.runtime.loop import Observer
@@ -43,6 +43,7 @@ class RobotPart(Part, Observer):
     ) -> None:
         self._silent, self._presence = silent, presence
         self.robot = setup.robot
+        self._idles = setup.robot if isinstance(setup.robot, Idles) else None
         self.foreign = foreign
         self.server = server or RobotServer(
             self._sensed(project),
@@ -51,7 +52,7 @@ class RobotPart(Part, Observer):
             started=foreign.given,
             refused=foreign.refused,
             hurry=setup.hurry,
-            direct=presence is None and getattr(setup.clock, "speed", 1.0) is None,
+            direct=presence is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed is None,
         )
         self.server.hold.noticed.append(foreign.noticed)
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
@@ -64,7 +65,7 @@ class RobotPart(Part, Observer):
 
     def quiet_until(self, now: float) -> float:
         server = self.server  # where nobody is told what it senses, only controllers ask, and the brain knows of these
-        if server.waiting or (self.faces and self.faces.busy) or not getattr(self.robot, "idle", False):
+        if server.waiting or (self.faces and self.faces.busy) or not (self._idles and self._idles.idle):
             return now
         return inf if self._silent else max(now, server.due)
 

@@ -28,9 +28,8 @@ from lumen.buses.local.frames import (
 )
 from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
-from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.routes import Route
-from lumen.ports import Message, MessageHandler
+from lumen.ports import Bus, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
@@ -42,7 +41,7 @@ MAX_UNHANDLED_MESSAGES = 20_000
 _log = logging.getLogger(__name__)
 
 
-class LocalBusClient:
+class LocalBusClient(Bus):
     """The bus of a `LocalBusServer`; raises BusError where none listens, or does not know the key.
 
     A thread sends, one receives, one runs the handlers. Where a handler is too slow the oldest messages are dropped.
@@ -93,18 +92,10 @@ class LocalBusClient:
 
         return undo
 
-    def publish(
-        self,
-        key: str,
-        body: Any,
-        *,
-        reply_to: str = "",
-        correlation_id: str = "",
-        ttl: float | None = None,
-        origin: MessageOrigin = UNKNOWN_ORIGIN,
-    ) -> None:
+    def send(self, message: Outgoing) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
+        key, body, reply_to, correlation_id, ttl, origin = message
         for name in (key, reply_to, correlation_id):
             check_key(name)
         if self.gone.is_set():

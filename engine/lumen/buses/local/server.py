@@ -30,7 +30,7 @@ from lumen.buses.local.frames import (
 )
 from lumen.errors import BusError
 from lumen.language.causes import MessageOrigin
-from lumen.ports import Bus, Message
+from lumen.ports import Bus, KnowsListeners, Message
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
@@ -226,8 +226,8 @@ class LocalBusServer:
             client.send(frame("refused", key, str(error)))
 
     def _heard(self, key: str) -> bool:
-        known: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
-        return known(key)
+        known = self._bus.ability(KnowsListeners)
+        return known is None or known.heard(key)
 
     def _marked(self, message: Message) -> None:
         if mark := self._marks.pop(str(message.body), None):

@@ -17,7 +17,7 @@ from lumen.modules.module import Module
 from lumen.modules.show.device_link import DeviceLink
 from lumen.modules.show.health import LinkHealth
 from lumen.modules.show.refusals import Refusals
-from lumen.ports import Bus, Message, MessageHandler
+from lumen.ports import Bus, Message, MessageHandler, UsesBroker
 from lumen.upkeep.ratelimit import RateLimiter
 
 LACKING = "MQTT and OSC need two libraries: type `pip install 'lumen-robot[show]'`"
@@ -149,7 +149,8 @@ class ShowControl(Module):
     def _foreign(self, link: MqttLink) -> Mapping[str, TopicMapping]:
         """The routes but those that our own broker carries itself: what we sent would come back for ever."""
         project, routes = self.project, dict(link.routes)
-        if not same_machine(getattr(self.bus, "host", ""), link.host):
+        broker = self.bus.ability(UsesBroker)
+        if broker is None or not same_machine(broker.host, link.host):
             return routes
         for name, row in link.routes.items():
             if name in project.routes and row.topic.replace("/", ".") == project.routes[name].key_for(project.robot):
