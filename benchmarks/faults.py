@@ -170,7 +170,7 @@ class Exhibition:
             names: list[str] = []
             if told.who == "state":
                 names = told.text.partition("  (")[0].split(", ")
-            elif told.text.startswith("The last run ended without notice"):
+            elif told.text.startswith("The last run ended unexpectedly"):
                 names = told.text.rpartition(" in ")[2].rstrip(".").split(", ")
             for name in reversed(names):
                 if name in ("paused", "interrupted"):

@@ -51,11 +51,11 @@ def test_says_who_is_not_reached_and_why(folder: Path, web: Webs, capsys: pytest
     found = json.loads(capsys.readouterr().out)
     assert (found["ok"], [one["reason"] for one in found["told"]]) == (
         False,
-        ["it answers 404 Not Found", "it can't be run: No such file or directory"],
+        ["the server answers 404 Not Found", "the program can't be run: No such file or directory"],
     )
 
 
 def test_nobody_is_to_be_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     told(folder, "")
     assert main(["alerts", "test", str(folder)]) == 2
-    assert "no recipient: write one under `to` of `alerts:` in" in capsys.readouterr().err
+    assert "no alert recipients: list them in" in capsys.readouterr().err

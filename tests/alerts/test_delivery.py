@@ -53,14 +53,14 @@ def test_a_webhook_gets_json(web: Webs, monkeypatch: pytest.MonkeyPatch) -> None
 def test_what_a_web_server_answers(web: Webs, status: int, final: bool) -> None:
     here = web(status)
     error = undelivered(Webhook(here.url))
-    assert (str(error).startswith(f"it answers {status}"), error.final) == (True, final)
+    assert (str(error).startswith(f"the server answers {status}"), error.final) == (True, final)
 
 
 def test_a_web_server_that_is_not_there() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
     error = undelivered(Webhook(f"http://127.0.0.1:{port}/"))
-    assert (str(error), error.final) == ("it can't be reached: [Errno 111] Connection refused", False)
+    assert (str(error), error.final) == ("the server can't be reached: [Errno 111] Connection refused", False)
 
 
 def test_an_address_from_the_environment_is_not_said(web: Webs, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,10 +125,10 @@ def test_a_password_is_never_sent_in_the_clear(monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.parametrize(
     ("answers", "said", "final"),
     [
-        ({"RCPT": "550 nobody here"}, "it refuses day@example.org, night@example.org", True),
-        ({"RCPT": "451 later"}, "it refuses day@example.org, night@example.org", False),
-        ({"DATA": "554 no"}, "it answers 554 no", True),
-        ({"MAIL": "421 busy"}, "it answers 421 busy", False),
+        ({"RCPT": "550 nobody here"}, "the mail server refuses day@example.org, night@example.org", True),
+        ({"RCPT": "451 later"}, "the mail server refuses day@example.org, night@example.org", False),
+        ({"DATA": "554 no"}, "the mail server answers 554 no", True),
+        ({"MAIL": "421 busy"}, "the mail server answers 421 busy", False),
     ],
 )
 def test_what_a_mail_server_answers(answers: dict[str, str], said: str, final: bool) -> None:
@@ -165,9 +165,9 @@ def test_a_program_of_the_project(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "said", "final"),
     [
-        (["./nothing"], "it can't be run: No such file or directory", True),
-        (["no-such-program-at-all"], "it can't be run: No such file or directory", True),
-        (["sh", "-c", "echo first >&2; echo no pager >&2; exit 3"], "it ended with exit code 3: no pager", False),
+        (["./nothing"], "the program can't be run: No such file or directory", True),
+        (["no-such-program-at-all"], "the program can't be run: No such file or directory", True),
+        (["sh", "-c", "echo first >&2; echo no pager >&2; exit 3"], "the program ended with exit code 3: no pager", False),
     ],
 )
 def test_a_program_that_can_not(tmp_path: Path, command: list[str], said: str, final: bool) -> None:
@@ -190,7 +190,7 @@ def test_a_program_that_does_not_end_is_ended_with_its_children(
     monkeypatch.setattr(program, "subprocess", SimpleNamespace(**vars(program.subprocess) | {"Popen": begun}))
     monkeypatch.setattr(program, "PROGRAM_TIMEOUT", 0.3)
     error = undelivered(Program(("sh", "-c", "sleep 60 & echo $! > child; sleep 60")), tmp_path)
-    assert str(error) == "it has not ended within 0.3 s"
+    assert str(error) == "the program did not end within 0.3 s"
     child = int((tmp_path / "child").read_text())
     until(lambda: not _runs(child))
 

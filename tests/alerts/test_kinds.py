@@ -61,7 +61,7 @@ def test_a_stop(hall: Hall) -> None:
 def test_a_robot_whose_connection_is_lost(hall: Hall) -> None:
     hall.whole()
     hall.happen("robot.lost", seconds=2.5)
-    assert hall.told("lost") == "the robot is gone"
+    assert hall.told("lost") == "the robot no longer responds"
     hall.happen("robot.back", seconds=12.0)
     hall.until(lambda: len(hall.web.of("lost")) == 2)
     assert hall.web.of("lost")[1]["text"].endswith("the robot is back after 12 s")
@@ -72,7 +72,7 @@ def test_a_battery_and_motors(hall: Hall) -> None:
     hall.happen("battery.low", percentage=12)
     hall.happen("motors.hot", joint="LKneePitch", temperature=82.4)
     assert hall.told("battery") == "its battery is at 12 %"
-    assert hall.told("hot") == "a motor is at 82 degrees"
+    assert hall.told("hot") == "a motor is at 82 °C"
 
 
 def test_a_broker_that_is_away_for_long(hall: Hall) -> None:
@@ -112,14 +112,14 @@ def test_a_run_that_ended_without_notice(hall: Hall) -> None:
     hall.close()
     hall.closing, hall.nodes = [], []
     hall.whole()
-    assert hall.told("crashed").startswith("it ended without notice, and continues after ")
+    assert hall.told("crashed").startswith("it ended unexpectedly, and continues after ")
 
 
 def test_a_part_that_gave_up(hall: Hall) -> None:
     shown = hall.whole()
     for part in shown.node.parts:
         part.helpless("the thread `lumen-x` failed 5 times, at last on what Ani said")
-    assert hall.told("crashed") == "a part of it failed, and it can't be reached: the robot rests"
+    assert hall.told("crashed") == "a part of Lumen failed, so no person could stop the robot any more: it rests"
 
 
 def test_a_disk_that_is_full(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,7 +173,7 @@ def test_the_brains_process_tells_of_the_robot(hall: Hall) -> None:
     hall.happen("battery.low", percentage=9)
     assert hall.told("battery") == "its battery is at 9 %"
     hall.kill(robot)
-    assert hall.told("lost") == "the robot is gone"
+    assert hall.told("lost") == "the robot no longer responds"
     assert origins(hall, "battery") == origins(hall, "lost") == [["brain"]]
 
 
@@ -181,11 +181,11 @@ def test_the_brains_process_tells_of_the_robot(hall: Hall) -> None:
 def test_the_robots_process_tells_of_the_brain_and_of_what_it_notices_alone(hall: Hall) -> None:
     _, brain = apart(hall)
     hall.kill(brain)
-    assert hall.told("lost") == "the brain is gone, and the robot rests"
+    assert hall.told("lost") == "the brain no longer responds, and the robot rests"
     hall.happen("fallen")
     hall.happen("motors.hot", joint="LKneePitch", temperature=90.0)
-    assert hall.told("fallen") == "it fell, and no brain is there to get it up"
-    assert hall.told("hot") == "a motor is at 90 degrees"
+    assert hall.told("fallen") == "it fell, and no brain is connected to get it up"
+    assert hall.told("hot") == "a motor is at 90 °C"
     hall.nodes[0].interrupt()
     assert hall.told("stopped") == "a person stopped it"
     assert {tuple(body["parts"]) for body in hall.web.bodies} == {("robot",)}
@@ -227,7 +227,7 @@ def test_a_module_that_is_lost_and_a_process_without_robot_or_brain_that_says_no
     hall.until(lambda: robot.presence and robot.presence.find("memory"))
     hall.live(10)
     hall.kill(memory)
-    assert hall.told("lost") == "the memory is gone"
+    assert hall.told("lost") == "the memory no longer responds"
     assert origins(hall, "lost") == [["brain"]]
 
 
@@ -237,7 +237,7 @@ def test_a_start_that_is_refused(hall: Hall, only: tuple[str, ...], capsys: pyte
     tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
     assert main(["run", str(hall.folder), "--robot", "recording", *only]) == 1
     [body] = hall.web.told("start")
-    assert body["text"].endswith("its files have errors, first behaviors/tour.yaml:8:13 unknown-state")
+    assert body["text"].endswith("its files have errors, the first at behaviors/tour.yaml:8:13: unknown-state")
     assert body["parts"] == (only[1].split(",") if only else ["robot", "brain"])
     capsys.readouterr()
 
@@ -257,7 +257,7 @@ def test_a_start_without_a_broker_and_with_a_main_file_that_can_not_be_read(
     assert body["text"].endswith("it could not start or continue: no broker listens at 127.0.0.1:1")
     (hall.folder / "lumen.yaml").write_text("alerts: [")
     assert main(["run", str(hall.folder), "--robot", "recording"]) == 1
-    assert hall.web.told("start", 2)[1]["text"].endswith("first lumen.yaml:1:9 yaml-syntax")
+    assert hall.web.told("start", 2)[1]["text"].endswith("the first at lumen.yaml:1:9: yaml-syntax")
     capsys.readouterr()
 
 
@@ -268,7 +268,7 @@ def test_a_fault_of_our_own_is_told_without_what_it_says(hall: Hall, monkeypatch
     monkeypatch.setattr("lumen.cli.run.set_up_robot", fail)
     with pytest.raises(ZeroDivisionError):
         main(["run", str(hall.folder), "--robot", "recording"])
-    assert hall.web.told("crashed")[0]["text"].endswith("it ended because of a fault in Lumen, ZeroDivisionError")
+    assert hall.web.told("crashed")[0]["text"].endswith("it ended because of a fault in Lumen (ZeroDivisionError)")
 
 
 def test_a_story_is_no_trouble_and_nobody_is_told_of_what_was_typed_wrong(

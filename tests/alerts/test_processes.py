@@ -57,7 +57,7 @@ def test_an_exhibition_that_is_stopped_killed_and_begun_again(
     second.wait()
     assert {body["text"].partition(": ")[2].partition(" after")[0] for body in web.bodies} == {
         "a person stopped it",
-        "it ended without notice, and continues",
+        "it ended unexpectedly, and continues",
     }
 
 
@@ -73,5 +73,5 @@ def test_a_brain_that_is_killed(hall: tuple[Path, Web], start: Callable[..., Gua
     bus.close()
     brain.kill()
     until(lambda: web.of("lost"))
-    assert web.of("lost")[0]["text"].endswith("the brain is gone, and the robot rests")
+    assert web.of("lost")[0]["text"].endswith("the brain no longer responds, and the robot rests")
     assert [body["parts"] for body in web.bodies] == [["robot"]]

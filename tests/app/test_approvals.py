@@ -149,7 +149,7 @@ def test_what_waits_is_dropped_where_its_state_is_left(exhibition: Exhibition, a
     raised(exhibition, "leave")
     assert exhibition.configuration == {"street"}
     assert ask("now")["waiting"] == []
-    assert ask("approve", id="", go=True)["reason"].endswith("none waits")
+    assert ask("approve", id="", go=True)["reason"].endswith("none is waiting")
 
 
 def test_alone_it_goes_by_itself_and_so_does_what_waits(exhibition: Exhibition, ask: Asker) -> None:

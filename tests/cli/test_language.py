@@ -133,7 +133,7 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
         "behaviors/hello.yaml:22:28 de is missing: Hello!",
         "behaviors/hello.yaml:9:5 de is missing: goodbye; bye",
         "de: 3 of 3 are missing",
-        "de: no action switches the robot to it: add the action `language: de` for visitors who ask for it",
+        "de: no action switches the robot to this language: add the action `language: de` for visitors who ask for it",
     ]
     file.write_text(text.replace('de: "TODO Hello!"', "de: Hallo!"), "utf-8")
     assert main(["language", "check", "--format", "json", "--project", str(hall)]) == 1
@@ -149,7 +149,7 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["add", "en"], "has `en` already"),
+        (["add", "en"], "already has `en`"),
         (["add"], "write `lumen language add LANG`"),
         (["add", "de", "--from", "fr"], "has no language `fr`"),
         (["add", "German"], "`German` is not a language code: write two or three lowercase letters, such as `de`"),

@@ -209,7 +209,7 @@ def test_the_doctor_finds_what_is_silent(run: Run, monkeypatch: pytest.MonkeyPat
     code, out, _ = run("doctor")
     assert code == 1
     assert "no message came on `image` in 0.4 s" in out
-    assert "permissions" not in out or "this user may use all" in out
+    assert "permissions" not in out or "this user is allowed to use all" in out
     found = json.loads(run("doctor", "--format", "json")[1])
     assert found["ok"] is False
     assert {"what", "severity", "text"} == set(found["findings"][0])

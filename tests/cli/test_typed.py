@@ -84,7 +84,7 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
             "the robot has no place `heda` to touch: did you mean `head`? there are `head`, `left bumper`",
         ),
         ("/touch chest", "the robot has no place `chest` to touch"),
-        ("/help", "/touch head       touch its head; also left bumper"),
+        ("/help", "/touch head       touch the robot's head; also left bumper"),
     ],
 )
 def test_what_can_be_typed_is_said(line: str, says: str) -> None:

@@ -45,7 +45,7 @@ def test_it_is_begun_begun_again_and_ended(copy: Path, monkeypatch: pytest.Monke
 
     until(another)
     until(serves)
-    assert any(line.startswith("the console has ended (-9)") for line in told)
+    assert any(line.startswith("the console has ended (exit code -9)") for line in told)
     part.close()
     with pytest.raises(OSError, match="refused"):
         browser.get("/api/now")

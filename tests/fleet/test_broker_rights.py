@@ -55,7 +55,7 @@ def other_user(there: Any) -> None:
             "its x-max-length is null, not 50000",
             f"rabbitmqctl delete_queue {UP}, which deletes",
         ),
-        (leak, f"the binding of lumen.# from amq.topic to {UP}", "sends more messages", "delete_queue"),
+        (leak, f"the binding of lumen.# from amq.topic to {UP}", "sends additional messages", "delete_queue"),
         (lost_binding, "the binding of fleet.desired.itb from lumen.fleet to amq.topic", "it is missing", "import_"),
         (other_user, "the user robots", "it is missing", "import_definitions"),
     ],

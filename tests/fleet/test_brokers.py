@@ -187,7 +187,7 @@ def test_what_a_house_lacks_is_told_with_the_command_that_mends_it(
     found = seen[-1]
     assert found["the broker"]["note"] == "it answers, without TLS"
     assert {"all users", "all permissions", "all bindings", "all parameters", "all policies"} <= found.keys()
-    assert found["the line up to the centre"]["note"].startswith("it has run since ")
+    assert found["the line up to the centre"]["note"].startswith("it has been running since ")
     own_broker.cables["itb"].refuse()
     cut: list[BrokerFinding] = []
     until(

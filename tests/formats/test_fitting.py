@@ -171,7 +171,7 @@ def test_a_broken_motion_keeps_nobody_from_importing_and_playing(
     monkeypatch.chdir(tmp_path)
     assert main(["import", "nod.motion", "-o", "motions/nod.yaml"]) == 0
     assert (
-        "motions/nod.yaml:1:1 warning[too-fast] `HeadPitch` would have to move up to 4.2 times too fast"
+        "motions/nod.yaml:1:1 warning[too-fast] `HeadPitch` would have to move at up to 4.2 times the speed limit"
         in capsys.readouterr().err
     )
     assert main(["import", "nod.motion", "--retime", "-o", "motions/nod.yaml"]) == 0

@@ -98,17 +98,17 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     hall.end(process)
     code, said = hall.call("status", "--robot-name", "ana")
     assert code == 2
-    assert "ana       does not run: it ended without notice at " in said
-    assert f"stopped   by {by}: it stays so when it runs again, until `lumen resume`" in said
+    assert "ana       does not run: it ended unexpectedly at " in said
+    assert f"stopped   by {by}: it stays stopped after a restart, until `lumen resume`" in said
     process, told = hall.begin()
     until(hall.both)
     assert hall.status()["ana"]["stopped_by"] == by
     hall.end(process, signal.SIGTERM)
-    assert told.read_text("utf-8").count("The last run ended without notice") == 2
+    assert told.read_text("utf-8").count("The last run ended unexpectedly") == 2
     assert "ana       does not run: it was ended at " in hall.call("status", "--robot-name", "ana")[1]
     said = hall.call("run", "--robot", "recording", "--for", "0.1s")[1]
     assert said.count("The last run was ended") == 2
-    assert "without notice" not in said
+    assert "unexpectedly" not in said
 
 
 def test_a_robot_whose_process_is_killed_is_told_and_the_other_goes_on(hall: Hall) -> None:

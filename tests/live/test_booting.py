@@ -69,8 +69,8 @@ def test_files_that_end_every_start_give_way_to_the_last_good_ones(
     for _ in range(MAX_CRASHES + 1):
         assert main(run) == 0
         told = capsys.readouterr()
-        assert "THESE FILES ENDED THE EXHIBITION 2 TIMES" in told.err
-        assert "refused: these files ended the exhibition 2 times" in told.out.replace("\n" + " " * 18, " ")
+        assert "THE EXHIBITION ENDED 2 TIMES" in told.err
+        assert "refused: the exhibition ended 2 times" in told.out.replace("\n" + " " * 18, " ")
         entry = journal(copy)[-1]
         assert (entry["verdict"], entry["who"], entry["before"], entry["after"]) == ("refused", "start", good, bad)
     save(copy, PARDON, "en: What was that?")

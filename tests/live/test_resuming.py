@@ -144,7 +144,7 @@ def test_what_another_lumen_has_left_is_told_and_begun_anew(copy: Path) -> None:
     assert isinstance(found, FreshStart)
     assert found.rests
     assert "its snapshot has version 7, this one reads 1" in found.why
-    assert "start that version to continue" in found.why
+    assert "start it with the same version of Lumen" in found.why
     files = {**read_files(copy), "lumen.yaml": b"lumen: 9\n" + (copy / "lumen.yaml").read_bytes()}
     bundle = SnapshotStore(home).store(files)
     home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": bundle}).encode())
@@ -243,9 +243,9 @@ def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.Capture
     assert "no exhibition of" in capsys.readouterr().err
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s"]
     assert main(run) == 0
-    assert "The last run ended without notice" in capsys.readouterr().out
+    assert "The last run ended unexpectedly" in capsys.readouterr().out
     assert main(run) == 0
-    assert "ended without notice" not in capsys.readouterr().out
+    assert "ended unexpectedly" not in capsys.readouterr().out
     tour = copy / "behaviors" / "tour.yaml"
     tour.write_text(tour.read_text("utf-8") + "broken: [", "utf-8")
     assert main(run) == 1

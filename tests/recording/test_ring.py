@@ -96,7 +96,7 @@ def test_a_run_that_was_killed_leaves_its_last_minutes(folder: RecordingsFolder,
     assert times(path)[-1] == 90
     assert folder.parts() == []
     assert len(told) == 2
-    assert "elsewhere.mcap was cut off, and is complete again" in told[0]
+    assert "elsewhere.mcap was cut off and has been repaired" in told[0]
     assert RecordingRescue(folder, told.append)._thread.started is False
 
 

@@ -85,7 +85,7 @@ def test_coverage_names_what_no_story_did(story: Write, capsys: pytest.CaptureFi
     [
         (["vistor"], "no project or story `vistor`: did you mean `visitor`?"),
         (["--fail-under", "101"], "--fail-under must be a number from 0 to 100"),
-        (["--bound", "0", "--explore"], "--bound must be a number of configurations"),
+        (["--bound", "0", "--explore"], "--bound must be at least 1"),
         (["--home", "idle"], "--behavior and --home need --explore"),
         (["--explore", "--behavior", "tuor"], "no behaviour `tuor`: did you mean `tour`?"),
         (["--explore", "--home", "idel"], "no state `idel` in `tour`: did you mean `idle`?"),

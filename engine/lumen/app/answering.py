@@ -48,7 +48,7 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
     except (ValueError, OverflowError, OSError):
         raise UsageError(f"`{at[:40]}` is not a time: write it as in 2026-11-22T14:03:00Z") from None
     if not steps:
-        raise TooLongAgoError("no steps of that time are in memory")
+        raise TooLongAgoError("no steps from that time are in memory")
     until = _on_its_day(moment - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)
     if until < steps[0].at:
         first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)
@@ -91,7 +91,7 @@ class AnsweringThread:
         try:
             self._waiting.put_nowait((message, make))
         except queue.Full:
-            self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} others already wait for an answer")
+            self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} questions are already waiting for an answer")
 
     def close(self) -> None:
         """End the thread."""
@@ -117,7 +117,7 @@ def _made(make: AnswerMaker) -> Any:
         return make()
     except Exception as error:
         _log.exception("a question could not be answered")
-        return {"verdict": "refused", "reason": f"the exhibition failed on that question: {error}"}
+        return {"verdict": "refused", "reason": f"an error in Lumen prevented an answer: {error}"}
 
 
 def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:

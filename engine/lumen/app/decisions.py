@@ -46,7 +46,10 @@ class Decisions:
         if self._approvals.decide(id, by, go=go):
             return {"verdict": "done"}
         waiting = ", ".join(f"`{held.id}` ({held.event.name})" for held in self._approvals.waiting)
-        return {"verdict": "refused", "reason": f"no event with the id `{id[:20]}` waits: {waiting or 'none waits'}"}
+        return {
+            "verdict": "refused",
+            "reason": f"no event with the id `{id[:20]}` is waiting for GO: {waiting or 'none is waiting'}",
+        }
 
     def autonomy(self, level: Autonomy, by: str) -> dict[str, Any]:
         """Whether marked transitions wait for GO from now on."""

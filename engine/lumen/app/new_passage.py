@@ -33,7 +33,7 @@ def write_passage(root: Path, question: str, answer: str, language: str) -> Path
     try:
         folder.mkdir(exist_ok=True)
         if folder.is_symlink():
-            raise UsageError(f"{KNOWLEDGE_FOLDER}/ is a link: nothing is written there")
+            raise UsageError(f"{KNOWLEDGE_FOLDER}/ is a symbolic link: replace it with a folder")
         for name in _names(question):
             file = folder / f"{name}.yaml"
             if not file.with_suffix(".md").exists() and _created(file, text):

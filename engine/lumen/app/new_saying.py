@@ -70,7 +70,9 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
     read, found = parse(DAY_FILE, after)
     if found or read is None or read.data != _expected(document.data, keys, saying.text):
         entry = _flow(keys, saying.text)
-        raise UsageError(f"{DAY_FILE} has no place for it in its present form: add `{entry}` by hand")
+        raise UsageError(
+            f"the saying can't be added to {DAY_FILE} because of how the file is written: add `{entry}` by hand"
+        )
     return after
 
 
@@ -109,9 +111,9 @@ def _save(root: Path, before: bytes, after: bytes) -> None:
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         if file.parent.is_symlink() or file.is_symlink():
-            raise UsageError(f"{DAY_FILE} is a link: nothing is written there")
+            raise UsageError(f"{DAY_FILE} or its folder is a symbolic link: replace it with a file or folder")
         if (file.read_bytes() if file.exists() else b"") != before:
-            raise UsageError(f"{DAY_FILE} was saved meanwhile: try again")
+            raise UsageError(f"{DAY_FILE} has changed in the meantime: try again")
         replace_file(file, after)
     except OSError as error:
         raise UsageError(f"{DAY_FILE} can't be written: {(error.strerror or str(error)).lower()}") from None

@@ -42,4 +42,4 @@ class PaceWatch:
 
     def summary(self) -> list[str]:
         """What is said of it at the end."""
-        return [f"at worst it ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []
+        return [f"at its slowest, it ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []

@@ -19,7 +19,7 @@ from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 
-NOT_ASKED = "no running exhibition is asked"
+NOT_ASKED = "no running exhibition was asked"
 MAX_FILES = 8
 """Of a run that many files before the moment asked about are read, some hours each."""
 

@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="send a test alert to each recipient in `alerts:` of lumen.yaml, even in quiet hours",
     )
     add("project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)")
-    add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    add("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -26,7 +26,7 @@ def run(options: argparse.Namespace) -> int:
     root = own_project(options.project)
     settings = main_settings(root)
     if settings is None or not settings.alerts.to:
-        raise UsageError(f"no recipient: write one under `to` of `alerts:` in {root / 'lumen.yaml'}")
+        raise UsageError(f"no alert recipients: list them in {root / 'lumen.yaml'} under `alerts:`, `to:`")
     desk = AlertDesk(settings.alerts, Origin(settings.name or root.name, settings.robot), root, lambda _: None)
     told = []
     for whom, why in desk.test():

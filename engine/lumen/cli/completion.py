@@ -16,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Print a script that lets a shell complete verbs, options, and the names of stories, motions, states and codes."
     )
-    what = "`words` is for these scripts: it completes the last of the words after `lumen`, each with a dot in front"
+    what = "`words` is for these scripts: it completes the last word of a command line; each word has a leading dot"
     parser.add_argument("shell", metavar="SHELL", choices=(*SHELLS, WORDS), help=f"{', '.join(SHELLS)}; {what}")
     parser.add_argument("words", nargs="*", metavar="WORD", help=argparse.SUPPRESS)
 
@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
         for word, says in candidates(command_line(typed[:1]), typed, names_of):
             print(f"{word}\t{' '.join(says.replace('%%', '%').split())}")
     elif options.words:
-        raise UsageError(f"write `lumen completion {options.shell}`, without further words")
+        raise UsageError(f"too many words: write only `lumen completion {options.shell}`")
     else:
         print(files("lumen.cli").joinpath("shells", f"lumen.{options.shell}").read_text(encoding="utf-8"), end="")
     return 0

@@ -23,12 +23,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--port",
         type=int,
         metavar="PORT",
-        help=f"the port to listen on (default: that of lumen.yaml, else {CONSOLE_PORT})",
+        help=f"the port to listen on (default: the one in lumen.yaml, else {CONSOLE_PORT})",
     )
     add(
         "--host",
         metavar="HOST",
-        help=f"the address to listen on (default: that of lumen.yaml, else {CONSOLE_HOST})",
+        help=f"the address to listen on (default: the one in lumen.yaml, else {CONSOLE_HOST})",
     )
     add("--beside", action="store_true", help=argparse.SUPPRESS)
 

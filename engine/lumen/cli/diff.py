@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     which = f"a folder, a revision of this project (HEAD~1), or `{LIVE}`: the files that run now"
     parser.add_argument("old", metavar="OLD", help=which)
     parser.add_argument(
-        "new", metavar="NEW", nargs="?", help="the other version, likewise (default: this folder or one above)"
+        "new", metavar="NEW", nargs="?", help="the other version, in the same form (default: this folder or one above)"
     )
     parser.add_argument(
         "--configurations", action="store_true", help="show the outcome of a reload in every configuration"
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bound", type=int, metavar="N", default=BOUND, help=f"explore at most N configurations (default: {BOUND:,})"
     )
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -50,9 +50,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)"
     )
     parser.add_argument(
-        "--bus", metavar="URL", help="the bus (default: LUMEN_BUS, then that of lumen.yaml, then this machine)"
+        "--bus", metavar="URL", help="the bus (default: LUMEN_BUS, then the one in lumen.yaml, then this machine)"
     )
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -113,7 +113,7 @@ def _permissions(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
             refused = True
             yield Finding("permissions", "error", f"`{route.name}` can't be {'read' if reading else 'sent'}: {reason}")
     if not refused:
-        yield Finding("permissions", "ok", f"this user may use all {len(project.routes)} routes")
+        yield Finding("permissions", "ok", f"this user is allowed to use all {len(project.routes)} routes")
 
 
 def _life(bus: Bus, project: Project) -> Iterator[Finding]:
@@ -140,7 +140,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     elif senses:
         yield Finding("senses", "ok", f"messages come on {_names([route.name for route in senses.values()])}")
     if not skews:
-        yield Finding("clocks", "note", "no message had a date to compare")
+        yield Finding("clocks", "note", "no message had a timestamp to compare")
         return
     skew = min(skews, key=abs)
     text = f"this machine's clock and the robot's are {abs(skew):.1f} s apart"
@@ -156,7 +156,7 @@ def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) 
         yield Finding("robot", "ok", f"{project.robot} is connected")
     else:
         taken = f"a process receives `{COMMAND_ROUTE}`"
-        text = f"{taken}, but {project.robot} does not report its presence: end the process that hangs"
+        text = f"{taken}, but {project.robot} shows no sign of life: end that process and start it again"
         yield Finding("robot", "warning", text)
 
 
@@ -170,9 +170,9 @@ def _served(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
         if served.readers:
             taken.append(route.name)
         elif route.name == MOTION:
-            yield Finding("routes", "note", "no motion module runs: the brain does its work")
+            yield Finding("routes", "note", "no motion module runs: the brain plays motions itself")
         else:
-            waiting = f", and {served.waiting} messages wait" if served.waiting else ""
+            waiting = f", and {served.waiting} messages are waiting" if served.waiting else ""
             yield Finding("routes", "warning", f"no process serves `{route.name}` ({key}){waiting}")
     if taken:
         yield Finding("routes", "ok", f"served: {_names(taken)}")

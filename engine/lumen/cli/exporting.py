@@ -39,8 +39,8 @@ WRITERS: Mapping[str, Writer] = {
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; a fuzzy"
-        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. If the"
-        " format can't express something, it is listed with its line, the rest is written, and the exit code is 1."
+        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. Parts"
+        " that the format can't express are left out and listed with their lines; the exit code is then 1."
     )
     targets = (*WRITERS, "fll", "asyncapi")
     parser.add_argument("target", metavar="FORMAT", choices=targets, help=" | ".join(targets))
@@ -56,7 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--format",
         choices=tuple(FORMATS),
         default="text",
-        help="how to print what is left out (default: text)",
+        help="format of the list of omissions (default: text)",
     )
 
 

@@ -20,7 +20,7 @@ def film_path(path: Path | None, robot: str) -> Path | None:
     if robot != "simulation":
         raise UsageError("--video films the simulation: leave out --robot")
     if path.suffix != ".mp4" or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise UsageError(f"can't write a film to {path}: name an .mp4 file in an existing folder that you may write to")
+        raise UsageError(f"can't write a film to {path}: name an .mp4 file in an existing folder that you can write to")
     return path
 
 

@@ -47,7 +47,7 @@ def write(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -
         path = on_disk(root, file).resolve()
         try:
             if path.read_bytes() != before[file]:
-                raise UsageError(f"{path} was saved meanwhile and is left as it is: run lint again")
+                raise UsageError(f"{path} has changed in the meantime and was not rewritten: run the command again")
             replace_file(path, after[file])
         except OSError as error:
             raise UsageError(f"can't write {path}: {(error.strerror or str(error)).lower()}") from None

@@ -28,22 +28,22 @@ from lumen.loading.units import seconds
 from lumen.rules import check_files
 
 WHATS: Mapping[str, str] = {
-    "keygen": "make the key that bundles are signed with",
+    "keygen": "make the key that signs bundles",
     "init": "write the settings that each RabbitMQ broker needs",
     "check": "check that a RabbitMQ broker has these settings",
     "serve": "run the centre",
     "publish": "send a project to the centre as a bundle",
     "try": "let all robots try a bundle without switching to it",
     "rollout": "roll a bundle out to the robots, step by step",
-    "log": "list incidents, and the counts of each bundle",
+    "log": "list incidents, and what was counted for each bundle",
     "status": "show the houses, the robots and the rollout",
     "pause": "pause the rollout",
     "go": "continue a rollout that is paused, or that waits because its result is unknown",
-    "abort": "abort the rollout: all robots go back",
+    "abort": "abort the rollout, and roll all robots back",
     "pin": "leave a robot out of rollouts",
     "unpin": "let a robot join rollouts again",
     "diff": "list what a bundle would change",
-    "take-over": "replace a centre that is gone",
+    "take-over": "take over from a centre that no longer runs",
 }
 LINES = {"status": fleet_lines, "log": log_lines}
 KEY_FILE = "fleet.key"
@@ -60,12 +60,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
     )
     add("--project", metavar="DIR", help="the folder of fleet.yaml (default: this one)")
-    add("--bus", metavar="URL", help="the broker (default: LUMEN_BUS, then that of fleet.yaml)")
+    add("--bus", metavar="URL", help="the broker (default: LUMEN_BUS, then the one in fleet.yaml)")
     add("--key", metavar="FILE", type=Path, help=f"the private key (default: {KEY_FILE} in that folder)")
     add("--first", metavar="TO", help="rollout: the first step: a group, a share such as 10%%, or all")
     add("--then", metavar="TO", action="append", default=[], help="rollout: the next step; may be repeated")
     add("--pause", metavar="30min", help="rollout: how long each step is watched")
-    add("--abort-if", metavar="TEXT", help="rollout: send all robots back if this condition holds, as in fleet.yaml")
+    add("--abort-if", metavar="TEXT", help="rollout: roll all robots back if this condition holds (see fleet.yaml)")
     add(
         "--try",
         dest="try_first",
@@ -85,7 +85,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--ca",
         metavar="FILE",
         default="",
-        help="init: path of the CA file for the centre on a house's broker; check: the CA file for this broker",
+        help="init: where the brokers of houses have the CA file for the centre; check: the CA file for this broker",
     )
     add("--rabbitmqctl", metavar="CMD", default=USUAL, help="check: the command to run, such as 'sudo rabbitmqctl'")
     configure_format(parser)
@@ -133,9 +133,7 @@ def _keygen(options: argparse.Namespace, root: Path) -> int:
     if options.format == "json":
         print_object({"file": str(file), "key": public})
     else:
-        print(
-            f"{file} is the private key: keep it where only the centre reads it.\nAdd to fleet.yaml:\n\nkey: {public}"
-        )
+        print(f"{file} is the private key: let only the centre read it.\nAdd to fleet.yaml:\n\nkey: {public}")
     return 0
 
 

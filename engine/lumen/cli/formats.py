@@ -9,7 +9,7 @@ from typing import Any
 
 
 def configure_format(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def print_object(data: Any) -> None:

@@ -26,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("behavior", nargs="?", help="a behaviour's name (default: the one that runs)")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--region", metavar="NAME", help="only the states inside this state, and their targets")
-    which.add_argument("--state", metavar="NAME", help="only this state, with the transitions to it and from it")
+    which.add_argument("--state", metavar="NAME", help="only this state, with the transitions into and out of it")
     add(
         "--project",
         metavar="DIR",

@@ -28,8 +28,8 @@ HEAD = ("", "state", "row", "found", "words", "alone", "negated", "asked", "guar
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Explain which row of `hears` is taken for a sentence, and why the others are not: which phrase was found, how"
-        " many of its words count, whether it is a whole clause, negated or part of a question, and what the"
-        " guard is for the first values of the context."
+        " many of its words count, whether it is a whole clause, negated or part of a question, and whether the"
+        " guard is true for the initial values of the context."
     )
     add = parser.add_argument
     add("text", metavar="TEXT", help="what a visitor says")

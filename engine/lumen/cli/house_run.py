@@ -163,8 +163,10 @@ def _check(options: argparse.Namespace, parts: Sequence[str]) -> None:
     for name in ALONE:
         if getattr(options, name, None):
             flag = name.replace("_", "-")
-            raise UsageError(f"--{flag} is for one robot: choose it with `--robot-name NAME`")
+            raise UsageError(f"--{flag} works with only one robot: choose it with `--robot-name NAME`")
     if options.voice != "none":
-        raise UsageError("--voice is for one robot: choose it with `--robot-name NAME`")
+        raise UsageError("--voice works with only one robot: choose it with `--robot-name NAME`")
     if parts and options.speed == "max":
-        raise UsageError("several processes run in real time: leave out --speed max, or run everything in one process")
+        raise UsageError(
+            "several processes can run only in real time: leave out --speed max, or run everything in one process"
+        )

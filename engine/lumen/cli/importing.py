@@ -54,9 +54,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
         " Python) into a motion file, a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
-        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. If something"
-        " can't be converted, it is listed with its line, the rest is written, and the exit code is 1. If Lumen could"
-        " not load the result, nothing is written, and the exit code is 2."
+        " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. Parts that"
+        " can't be converted are left out and listed with their lines; the exit code is then 1. If Lumen could not load"
+        " the result, nothing is written, and the exit code is 2."
     )
     add = parser.add_argument
     add(
@@ -82,7 +82,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--format",
         choices=tuple(FORMATS),
         default="text",
-        help="how to print what is left out (default: text)",
+        help="format of the list of omissions (default: text)",
     )
 
 
@@ -105,10 +105,10 @@ def run(options: argparse.Namespace) -> int:
         except ForeignFileError as error:
             raise UsageError(one_line(error.diagnostic)) from None
         except RecursionError:
-            raise UsageError(f"{options.file} nests too deeply to be read: use fewer levels") from None
+            raise UsageError(f"{options.file} is nested too deeply: use fewer levels") from None
         tell(READ, 100, f"% of {options.file}: writing")
         text = document_yaml(data, kind)
-        tell(READ + WRITTEN, 100, f"% of {options.file}: reading again")
+        tell(READ + WRITTEN, 100, f"% of {options.file}: checking the result")
         faults = _faults(str(options.output or "the result"), text, kind, body)
         if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
             raise UsageError(_refusal(options.file, text, refused, diagnostics))
@@ -197,6 +197,6 @@ def _too_fast(file: str, fast: list[Excess]) -> Diagnostic:
     worst = max(fast, key=lambda excess: excess.value / excess.limit)
     others = len({excess.joint for excess in fast}) - 1
     joints = f"`{worst.joint}`" + (f" and {others} other joint{'s' if others > 1 else ''}" if others else "")
-    message = f"{joints} would have to move up to {worst.value / worst.limit:.1f} times too fast"
+    message = f"{joints} would have to move at up to {worst.value / worst.limit:.1f} times the speed limit"
     hint = "use --retime to lengthen the motion"
     return Diagnostic(TOO_FAST, message, Place(file), hint, Severity.WARNING)

@@ -34,8 +34,8 @@ def robot_body(
     if not urdf:
         found += _refused(path)
     if output is not None and not urdf and path.resolve() != (output.parent / mjcf).resolve():
-        message = f"the body file expects {mjcf} in its own folder, but the model is {path}"
-        hint = f"copy it to {output.parent / mjcf}, with the files that it names"
+        message = f"the body file expects {mjcf} in its own folder, but the model is at {path}"
+        hint = f"copy it to {output.parent / mjcf}, with the files that it refers to"
         found.append(Diagnostic(LOST, message, Place(str(path)), hint, Severity.WARNING))
     return text, found, beside
 
@@ -65,12 +65,12 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
         from lumen.robots.simulation import installed  # noqa: F401
         from lumen.robots.simulation.urdf_conversion import urdf_as_mjcf
     except MissingExtraError as error:
-        return {}, [Diagnostic(LOST, f"there is no {title}.xml: {error}", here, "then import it again")]
+        return {}, [Diagnostic(LOST, f"{title}.xml was not written: {error}", here, "then import the robot again")]
     try:
         robot = urdf_as_mjcf(content, path.parent, title)
     except LumenError as error:
-        hint = f"correct the URDF, or write models/{title}.xml by hand; the body file is written all the same"
-        return {}, [Diagnostic(LOST, f"there is no {title}.xml: {error}", here, hint)]
+        hint = f"correct the URDF, or write models/{title}.xml by hand; the body file is written anyway"
+        return {}, [Diagnostic(LOST, f"{title}.xml was not written: {error}", here, hint)]
     places = [element for element in parse_xml(str(path), content).walk() if element.tag == "mesh"]
     lost = [_without(places[number], reason) for number, reason in robot.lost.items()]
     folder = output.parent

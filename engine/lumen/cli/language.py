@@ -19,8 +19,8 @@ from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language
 
 CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 VERBS = {
-    "list": "list the languages of the project, and how much each lacks",
-    "add LANG": f"add an entry for it to each text and phrase, with {TO_DO}and the words to translate",
+    "list": "list the languages of the project, and how much is missing in each",
+    "add LANG": f"add an entry in this language to each text and phrase, with {TO_DO}and the words to translate",
     "check [LANG…]": "list what is missing in these languages (default: all); exit code 1 if anything is",
 }
 
@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--from", dest="source", metavar="LANG", help="add: the language to translate from (default: the first)"
     )
     parser.add_argument("--project", metavar="DIR", help="the project's folder (default: this folder or one above)")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
         _tell(entries, missing)
         for language in sorted({*missing} - {*spoken[:1]} - switched_to(found)):
             hint = f"add the action `language: {language}` for visitors who ask for it"
-            print(f"{language}: no action switches the robot to it: {hint}")
+            print(f"{language}: no action switches the robot to this language: {hint}")
     return int(options.what == "check" and any(missing.values()))
 
 
@@ -74,7 +74,7 @@ def _add(options: argparse.Namespace, root: Path, files: dict[str, bytes], found
     source = options.source or spoken[0]
     if language in spoken:
         raise UsageError(
-            f"the project has `{language}` already: `lumen language check {language}` lists what is missing"
+            f"the project already has `{language}`: `lumen language check {language}` lists what is missing"
         )
     if not CODE.fullmatch(language):
         raise UsageError(f"`{language}` is not a language code: write two or three lowercase letters, such as `de`")
@@ -89,7 +89,7 @@ def _add(options: argparse.Namespace, root: Path, files: dict[str, bytes], found
     write(root, files, changed)
     for file, content in sorted(changed.items()):
         print(f"{file}: {content.count(TO_DO.encode()) - files[file].count(TO_DO.encode())} to translate")
-    print(f"Translate the texts that begin with {TO_DO.strip()}; `lumen language check {language}` lists the rest.")
+    print(f"Translate the texts that begin with {TO_DO.strip()}; `lumen language check {language}` lists what is left.")
     print(f"The robot speaks it after the action `language: {language}`, or with `lumen run --language {language}`.")
     return 0
 
@@ -101,7 +101,7 @@ def _tell(entries: list[LanguageEntry], missing: dict[str, list[Untranslated]]) 
     for language, gaps in missing.items():
         print(
             f"{language}: "
-            + (f"{len(gaps)} of {len(entries)} are missing" if gaps else f"all {len(entries)} are there")
+            + (f"{len(gaps)} of {len(entries)} are missing" if gaps else f"all {len(entries)} are present")
         )
 
 

@@ -20,8 +20,8 @@ from lumen.upkeep.garbage import gc_paused
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("paths", nargs="*", metavar="PATH", help="projects, or files of a project (default: this folder or one above)")
-    add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
-    add("--select", metavar="CODES", action="append", help="show only these: codes, beginnings of codes, or families")
+    add("--format", choices=tuple(FORMATS), default="text", help="output format (default: text)")
+    add("--select", metavar="CODES", action="append", help="show only these codes, first letters of codes, or families")
     add("--ignore", metavar="CODES", action="append", help="do not show these")
     add(
         "--against",
@@ -29,14 +29,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="also report what a reload from OLD would refuse: a folder, a revision, or `live`",
     )
     add("--physics", action="store_true", help="also play every motion in simulation (takes minutes; results are kept)")
-    add("--robots", metavar="N", help="with --physics: also play it on N slightly different robots (default: 20)")
+    add(
+        "--robots",
+        metavar="N",
+        help="with --physics: also play each motion on N slightly different robots (default: 20)",
+    )
     configure_workers(parser, "with --physics: ")
     configure_imperfections(parser)
     add("--strict", action="store_true", help="count warnings as errors")
-    add("--fix", action="store_true", help="repair what can be repaired without asking")
+    add("--fix", action="store_true", help="make every repair that needs no decision")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
     add("--watch", action="store_true", help="lint again whenever a file is saved, until Ctrl-C")
-    add("--no-cache", action="store_true", help="check all files again, and keep no results")
+    add("--no-cache", action="store_true", help="check all files again, and store no results")
     add("--whole", action="store_true", help="check the whole project of each named file")
     configure_model(parser)
     add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")

@@ -53,7 +53,7 @@ VERBS = {
     "explain": "explain a lint code, with an example",
     "completion": "print the completion script for bash, zsh or fish",
     "lsp": "run the language server for editors (LSP)",
-    "language": "add a language to a project, or list what one lacks",
+    "language": "add a language to a project, or list what is missing in one",
     "schema": "print the JSON Schema of a kind of file, for editors",
     "upgrade": "rewrite a project's files for the current vocabulary",
     "test": "play the stories, try the sayings, and list those that fail",
@@ -73,7 +73,7 @@ def command_line(wanted: Collection[str]) -> Suggesting:
     """What reads the command line. Only the verbs that are wanted know their options: each is imported for that."""
     parser = Suggesting(
         prog="lumen",
-        description="Give a humanoid robot its behaviour in YAML.",
+        description="Describe the behaviour of a humanoid robot in YAML, and run it.",
         epilog="Run `lumen VERB --help` for the options of a verb.",
         formatter_class=Help,
     )

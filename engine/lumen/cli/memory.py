@@ -32,7 +32,7 @@ WHATS = ("visitors", "journal", "forget")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("what", choices=WHATS, help="list the visitors or the journal, or forget a visitor for good")
+    add("what", choices=WHATS, help="list the visitors or the journal, or forget a visitor permanently")
     add(
         "name",
         nargs="?",
@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--bus", metavar="URL", help="forget: the exhibition's bus (default: LUMEN_BUS, then this machine)")
     configure_robot_name(parser)
     add("--limit", metavar="N", type=int, default=50, help="journal: the newest N entries (default: 50)")
-    add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    add("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -148,11 +148,11 @@ def _told(found: Forgetting) -> dict[str, object]:
 
 def _lines(name: str, folder: Path, found: Forgetting) -> Iterator[str]:
     counts = f"{found.visitors} visitors, {found.entries} entries, {found.pictures} pictures"
-    yield f"forgot {name}: {counts}" if found.deleted else f"nothing about {name} is in {folder}"
+    yield f"forgot {name}: {counts}" if found.deleted else f"{folder} has nothing about {name}"
     for title, places in (("deleted", found.deleted), ("STILL THERE", found.left), ("not here", found.elsewhere)):
         yield from (f"  {title}: {where}: {what}" for where, what in places)
     if found.others:
-        yield f"  still remembered, because the name is only part of theirs: {', '.join(found.others)}"
+        yield f"  still remembered, because their names only contain this name: {', '.join(found.others)}"
 
 
 def _visitor(row: dict[str, object]) -> str:

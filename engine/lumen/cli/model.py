@@ -12,7 +12,7 @@ from lumen.cli.reach import configure_reach, for_each_robot, reach
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "state", metavar="STATE", choices=("on", "off"), help="`on`, or `off` until it is switched on again"
+        "state", metavar="STATE", choices=("on", "off"), help="`on` or `off`; it stays off until you switch it on again"
     )
     configure_reach(parser)
     configure_format(parser)

@@ -25,13 +25,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--minimal", dest="like", action="store_const", const="minimal", help="the same as --like minimal"
     )
     parser.add_argument(
-        "--robot", metavar="NAME", default="", help=f"the robot that performs it: {', '.join(shipped_models())}"
+        "--robot", metavar="NAME", default="", help=f"the robot of the project: {', '.join(shipped_models())}"
     )
     parser.add_argument(
         "--action",
         metavar=ACTION,
         default=ACTION,
-        help="Lumen's GitHub action: its repository, and the 40 digits of a commit",
+        help="Lumen's GitHub action: its repository, and the full hash of a commit",
     )
     configure_format(parser)
 

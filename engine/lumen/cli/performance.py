@@ -36,7 +36,7 @@ class Performance:
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready():.1f} s.")
         if run_directory.taken:
-            print("This project already runs in another process: commands such as `lumen reload` reach that one.")
+            print("This project already runs in another process: commands such as `lumen reload` go to that process.")
         if self._setup.blind:
             print(f"It runs without camera images: {self._setup.blind}.")
         if exhibition.node.story:

@@ -17,8 +17,9 @@ from lumen.motion import Motion
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Draw a fuzzy controller: the memberships of its variables and what its outputs do over its inputs; with --at,"
-        " how its rules fire for these inputs and the result. Or a motion: each joint over time, within its limits."
+        "Draw a fuzzy controller: the membership functions of its variables, and its outputs over its inputs; with"
+        " --at, how its rules fire for these inputs, and the result. Or draw a motion: each joint over time, within its"
+        " limits."
     )
     parser.add_argument("file", metavar="FILE", help="fuzzy/NAME.yaml or motions/NAME.yaml")
     parser.add_argument("--at", metavar="INPUT=VALUE", nargs="+", default=[], help="a value for each input")

@@ -57,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--recover", metavar="FILE.mcap", type=Path, help="repair a recording that was cut off")
     add("--project", metavar="DIR", help="the exhibition's folder (default: this folder or one above)")
     add("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
-    add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    add("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
         return _recover(options)
     span = seconds(options.span) if options.span else None
     if options.span and not span:
-        raise UsageError(f"--for {options.span}: write a number and its unit, such as `20s` or `2min`")
+        raise UsageError(f"invalid `--for {options.span}`: write a number and its unit, such as `20s` or `2min`")
     reached = reach(options)
     try:
         return _record(options, reached, span) if options.mark is None else _mark(options, reached)

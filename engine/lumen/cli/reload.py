@@ -12,7 +12,7 @@ REQUESTS = {
     "status": "show which files run, what is staged, and how the last reload ended",
     "apply": "activate the staged files",
     "try": "activate the staged files for one visitor, then go back",
-    "refuse": "drop the staged files",
+    "refuse": "discard the staged files",
     "rollback": "go back to the files that ran before",
     "dry-run": "only show what the saved files would change",
 }
@@ -23,8 +23,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     which = parser.add_mutually_exclusive_group()
     for verb, summary in REQUESTS.items():
         which.add_argument(f"--{verb}", dest="command", action="store_const", const=verb, help=summary)
-    parser.add_argument("--now", action="store_true", help="do not wait for what the robot is doing: cancel it")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--now", action="store_true", help="cancel what the robot is doing instead of waiting for it")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -27,7 +27,7 @@ def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
     if len(report.differ) > SHOWN:
         yield f"  and {len(report.differ) - SHOWN} more"
     if report.lost:
-        yield f"  missing in the journal: {report.lost:,} entries, because the disk was full or too slow"
+        yield f"  missing from the journal: {report.lost:,} entries, because the disk was full or too slow"
     for why, count in report.unknown.items():
         yield f"  not compared: {count:,} {why if other else f'entries: {why}'}"
 

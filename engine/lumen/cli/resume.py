@@ -34,7 +34,7 @@ def _resume(options: argparse.Namespace) -> int:
         ask = {"type": "motion", "method": "stopped"}
         stopped = answered(reached.bus, reached.stop, ask, RESUME_TIMEOUT)
         if not options.yes and not _sure(stopped, options.robot_name or "the robot"):
-            print("it stays as it is")
+            print("nothing has changed")
             return 1
         answer = answered(reached.bus, reached.stop, resume_body(person()), RESUME_TIMEOUT)
     finally:

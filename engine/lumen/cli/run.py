@@ -72,12 +72,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     configure_model(parser)
     add("--robot-name", metavar="NAMES", help="robots of `robots:`, separated by commas (default: all)")
-    add("--robot", choices=ROBOTS, default="simulation", help="the robot that performs it (default: simulation)")
+    add(
+        "--robot",
+        choices=ROBOTS,
+        default="simulation",
+        help="the robot that performs the exhibition (default: simulation)",
+    )
     add(
         "--only",
         metavar="PARTS",
-        help="run only these parts (a list): robot, brain, motion, visitor, memory, eyes, ears, voice, social, show,"
-        " answers",
+        help="run only these parts, separated by commas: robot, brain, motion, visitor, memory, eyes, ears, voice,"
+        " social, show, answers",
     )
     add("--robot-url", metavar="URL", help="with --robot naoqi: the robot's address (default: tcp://nao.local:9559)")
     add("--speed", choices=SPEEDS, default="1", help="speed of simulated time, as a multiple of real time (default: 1)")
@@ -102,7 +107,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="use saved files at once, at `lumen reload`, or never (default: auto)",
     )
     add("--last-good", action="store_true", help="if the files have errors, start with the last ones that had none")
-    add("--fresh", action="store_true", help="start from the beginning, even if the last run ended without notice")
+    add("--fresh", action="store_true", help="start from the beginning, even if the last run ended unexpectedly")
     configure_format(parser)
 
 
@@ -154,7 +159,7 @@ def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, p
     project = startup_project(root, run_directory, last_good=options.last_good, warn=complain)
     story = chosen_story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
-        raise UsageError(f"the story `{story.name}` makes the robot fail with `robot:`: play it with --robot recording")
+        raise UsageError(f"the story `{story.name}` has faults of the robot (`robot:`): play it with --robot recording")
     if story and options.robot == "none":
         raise UsageError("a story needs a robot: leave out --robot none")
     period, language = period_of(options.period), language_of(project, options.language)
@@ -287,14 +292,16 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
     if url.startswith("memory:"):
         raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
     if options.speed == "max":
-        raise UsageError("several processes run in real time: leave out --speed max, or run everything in one process")
+        raise UsageError(
+            "several processes can run only in real time: leave out --speed max, or run everything in one process"
+        )
     if options.video:
-        raise UsageError("--video films an exhibition in one process: leave out --only")
+        raise UsageError("--video works only if everything runs in one process: leave out --only")
     if options.robot == "none" and ROBOT_PART in parts:
         raise UsageError("`--only robot` needs a robot: leave out --robot none")
     if story and story.robot and ROBOT_PART not in parts:
         raise UsageError(
-            f"the story `{story.name}` makes the robot fail with `robot:`: pass it to the robot's process, too"
+            f"the story `{story.name}` has faults of the robot (`robot:`): pass --story to the robot's process, too"
         )
 
 

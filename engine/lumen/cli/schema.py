@@ -33,9 +33,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         choices=FILE_KINDS,
         metavar="KIND",
-        help=f"one of {', '.join(FILE_KINDS)}; without it, list them",
+        help=f"one of {', '.join(FILE_KINDS)}; leave it out to list them",
     )
-    add("--vscode", action="store_true", help="print the settings of VS Code that give each file its schema")
+    add("--vscode", action="store_true", help="print the VS Code settings that assign a schema to each file")
     configure_format(parser)
     add(
         "-o",
@@ -49,7 +49,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0. Raises UsageError where something can't be written, or both a kind and settings are asked for."""
     if options.vscode and options.kind:
-        raise UsageError("--vscode is for all kinds: leave out the kind")
+        raise UsageError("--vscode prints the settings for all kinds: leave out the kind")
     if options.vscode:
         ours = settings(find_project())
         text = _added(options.output, ours) if options.output else _json(ours)
@@ -98,7 +98,7 @@ def _added(file: Path, ours: dict[str, Any]) -> str:
         return _json(ours)
     except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or f"it is not JSON with comments ({error})"
-        raise UsageError(f"can't add to {file}: {reason}; leave out -o, and copy what is printed") from None
+        raise UsageError(f"can't add to {file}: {reason}; leave out -o, and copy the printed settings") from None
 
 
 def _json(data: Any) -> str:

@@ -20,17 +20,17 @@ AMONG_OTHERS = 5.0
 QUESTION = {"ask": "status"}
 EARS = {
     "always": "listen",
-    "face": "listen: a face is near and looks",
+    "face": "listen: a face is near and looks at the robot",
     "touch": "listen: a hand touched the robot",
     "speaks": "hear only interruptions: the robot speaks",
-    "nobody": "hear only interruptions: no face is near and looks, and no hand touches the robot",
+    "nobody": "hear only interruptions: no visitor looks at the robot from nearby or touches it",
 }
 """How the ears are, by why (the route `listening`)."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -84,12 +84,12 @@ def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     if status["held"]:
         yield name, "does not answer, although its process on this machine is alive"
     elif status["ended"]:
-        how = "was ended" if status["told"] else "ended without notice"
+        how = "was ended" if status["told"] else "ended unexpectedly"
         yield name, f"does not run: it {how} at {_ago(status['ended'], now)}"
     else:
         yield name, "does not run"
     if status["stopped"]:
-        yield "stopped", f"by {status['stopped_by']}: it stays so when it runs again, until `lumen resume`"
+        yield "stopped", f"by {status['stopped_by']}: it stays stopped after a restart, until `lumen resume`"
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:

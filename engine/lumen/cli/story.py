@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     made = visit_story(project, old, one.visit, name=stem, title=title, renamed=renaming(names))
     remarks = [f"The visit {one.when}, written by `lumen story`. It contains what people said: check it for names."]
     if not made.same:
-        remarks.append(f"The robot does something else with the files of today. Then: {made.was}. Now: {made.now}.")
+        remarks.append(f"With today's files, the robot does something else. Then: {made.was}. Now: {made.now}.")
     text = story_text(made.story, remarks)
     if options.format == "json":
         if output:

@@ -38,12 +38,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="[PROJECT] STORY",
         help="the project's folder, then stories or files of sayings: names, files or 'safety_*' (default: all)",
     )
-    add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
+    add("--format", choices=tuple(FORMATS), default="text", help="output format (default: text)")
     configure_model(parser)
     add("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
     add("-x", "--exitfirst", action="store_true", help="stop at the first story that fails")
-    add("-v", "--verbose", action="store_true", help="print all that happened in each story")
-    add("--coverage", action="store_true", help="list the states never entered and the transitions never taken")
+    add("-v", "--verbose", action="store_true", help="print everything that happens in each story")
+    add("--coverage", action="store_true", help="list the states and transitions that were never used")
     add("--fail-under", metavar="N", type=float, help="fail if less than N %% is covered (implies --coverage)")
     add("--explore", action="store_true", help="search the behaviour for dead ends instead of playing the stories")
     add("--behavior", metavar="NAME", help="with --explore: a behaviour other than the one that runs")
@@ -110,7 +110,7 @@ def _check(options: argparse.Namespace) -> None:
     if options.fail_under is not None and not 0 <= options.fail_under <= 100:
         raise UsageError("--fail-under must be a number from 0 to 100")
     if options.bound < 1:
-        raise UsageError("--bound must be a number of configurations, at least 1")
+        raise UsageError("--bound must be at least 1")
     if not options.explore and (options.behavior or options.home):
         raise UsageError("--behavior and --home need --explore")
 
@@ -118,7 +118,9 @@ def _check(options: argparse.Namespace) -> None:
 def _chosen(project: Project, names: list[str]) -> tuple[list[Story], list[SayingSet]]:
     """The stories and the files of sayings of these names, each once."""
     if not (project.stories or project.sayings):
-        raise UsageError("the project has no stories: write one in behaviors/stories/, as docs/stories.md shows")
+        raise UsageError(
+            "the project has no stories and no sayings: write a story in behaviors/stories/, as docs/stories.md shows"
+        )
     stories, sayings = zip(*(tests_of(project, name) for name in names or ["*"]), strict=True)
     return (
         list({story.name: story for each in stories for story in each}.values()),

@@ -29,9 +29,9 @@ from lumen.rules import check_files
 
 TOPIC_VERBS = {
     "list": "list the routes, and count the messages on them",
-    "echo PATTERN": "print messages as they come",
+    "echo PATTERN": "print messages as they arrive",
     "pub KEY BODY": "send a message, checked against its route's schema; a BODY that is not JSON is sent as text",
-    "hz PATTERN": "measure how often messages come, and the longest gap",
+    "hz PATTERN": "measure how often messages arrive, and the longest gap",
     "bw PATTERN": "measure the size of messages, and the bytes per second",
 }
 """A PATTERN is a key (`*` is one word, `#` any number of them) or a route's name."""
@@ -62,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--wait", metavar="TIME", help="pub: wait this long for an answer, and print it")
     parser.add_argument("--project", metavar="DIR", help="the exhibition's folder (default: this folder or one above)")
     parser.add_argument("--bus", metavar="URL", help="the exhibition's bus (default: LUMEN_BUS, then this machine)")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -179,7 +179,7 @@ def _body(text: str) -> Any:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
         if text.lstrip()[:1] in ("{", "[") and not isinstance(error, RecursionError):
-            hint = "write it as '{\"count\": 3}', in single quotes"
+            hint = "write it in single quotes, such as '{\"count\": 3}'"
             raise UsageError(f"the BODY begins like JSON but is not valid ({error}): {hint}") from None
         return text
 
@@ -287,7 +287,7 @@ def _span(options: argparse.Namespace) -> float:
 def _seconds(text: str, option: str) -> float:
     length = seconds(text)
     if length is None or length <= 0.0:
-        raise UsageError(f"{option} {text}: write a number and its unit, such as `500ms`, `20s` or `2min`")
+        raise UsageError(f"invalid `{option} {text}`: write a number and its unit, such as `500ms`, `20s` or `2min`")
     return length
 
 

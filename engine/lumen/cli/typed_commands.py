@@ -24,10 +24,10 @@ PLACES = {
 """Where people touch a NAO, in their words."""
 HELP = """\
 Type what the visitor says. A line that begins with / is a command:
-  /touch head       touch its head; also {places}
+  /touch head       touch the robot's head; also {places}
   /touch head 3s    keep the hand there for 3 s (default: {tap})
-  /press Next       press a button as the operator, by its label in any language
-  /go, /stay        approve or refuse, as the operator, what waits for approval
+  /press Next       as the operator, press a button, by its label in any language
+  /go, /stay        as the operator, approve or refuse what waits for approval
   /help             show this list"""
 
 

@@ -26,14 +26,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit code 1 if something must be rewritten"
     )
-    parser.add_argument("--keys", action="store_true", help="also add {robot} to keys from 2015, which become aliases")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+    parser.add_argument(
+        "--keys", action="store_true", help="also add {robot} to keys from 2015, and keep the old keys as aliases"
+    )
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
     """0 where the files say the newest vocabulary now; 1 where errors are left, or with --check where they did not."""
     if options.diff and (options.check or options.format != "text"):
-        raise UsageError("--diff shows the lines that change: leave out --check and --format")
+        raise UsageError("--diff can't be combined with --check or --format")
     root = own_project(Path(options.project) if options.project else None)
     before = read_files(root)
     after, done = upgraded(before)

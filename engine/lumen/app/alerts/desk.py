@@ -71,4 +71,4 @@ class AlertDesk:
         deliver(recipient.channel, alert, self._origin, self._root)
 
     def _failed(self, recipient: Recipient, why: str) -> None:
-        self._tell(f"{address(recipient.channel)} did not get the alert: {one_line(why)}")
+        self._tell(f"{address(recipient.channel)} did not receive the alert: {one_line(why)}")

@@ -28,16 +28,20 @@ def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
             refused = server.send_message(message)
     except smtplib.SMTPRecipientsRefused as error:
         final = all(code >= 500 for code, _ in error.recipients.values())
-        raise UndeliveredError(f"it refuses {', '.join(error.recipients)}", final=final) from None
+        raise UndeliveredError(f"the mail server refuses {', '.join(error.recipients)}", final=final) from None
     except smtplib.SMTPResponseException as error:
         said = error.smtp_error.decode("utf-8", "replace") if isinstance(error.smtp_error, bytes) else error.smtp_error
-        raise UndeliveredError(f"it answers {error.smtp_code} {said[:200]}", final=error.smtp_code >= 500) from None
+        raise UndeliveredError(
+            f"the mail server answers {error.smtp_code} {said[:200]}", final=error.smtp_code >= 500
+        ) from None
     except ValueError as error:
         raise UndeliveredError(str(error), final=True) from None
     except (smtplib.SMTPException, OSError) as error:
-        raise UndeliveredError(f"it can't be used: {error}") from None
+        raise UndeliveredError(f"the mail server can't be used: {error}") from None
     if refused:
-        raise UndeliveredError(f"it refuses {', '.join(refused)}, and accepted the mail for the others", final=True)
+        raise UndeliveredError(
+            f"the mail server refuses {', '.join(refused)}, but accepted the mail for the others", final=True
+        )
 
 
 def _connected(mail: Mail) -> smtplib.SMTP:

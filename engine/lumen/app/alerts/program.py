@@ -30,16 +30,20 @@ def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> Non
             start_new_session=True,
         )
     except (OSError, ValueError) as error:
-        raise UndeliveredError(f"it can't be run: {getattr(error, 'strerror', None) or error}", final=True) from None
+        raise UndeliveredError(
+            f"the program can't be run: {getattr(error, 'strerror', None) or error}", final=True
+        ) from None
     try:
         _, said = process.communicate(json.dumps(body).encode(), PROGRAM_TIMEOUT)
     except subprocess.TimeoutExpired:
-        raise UndeliveredError(f"it has not ended within {PROGRAM_TIMEOUT:g} s") from None
+        raise UndeliveredError(f"the program did not end within {PROGRAM_TIMEOUT:g} s") from None
     finally:
         _end(process)
     if process.returncode:
         last = said.decode("utf-8", "replace").strip().splitlines()[-1:]
-        raise UndeliveredError(f"it ended with exit code {process.returncode}{': ' * bool(last)}{''.join(last)[:200]}")
+        raise UndeliveredError(
+            f"the program ended with exit code {process.returncode}{': ' * bool(last)}{''.join(last)[:200]}"
+        )
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:

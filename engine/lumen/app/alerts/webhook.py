@@ -37,13 +37,15 @@ def post(url: str, body: dict[str, Any]) -> None:
             pass
     except urllib.error.HTTPError as error:
         error.close()
-        raise UndeliveredError(f"it answers {error.code} {error.reason}", final=error.code not in PASSING) from None
+        raise UndeliveredError(
+            f"the server answers {error.code} {error.reason}", final=error.code not in PASSING
+        ) from None
     except urllib.error.URLError as error:
-        raise UndeliveredError(f"it can't be reached: {error.reason}") from None
+        raise UndeliveredError(f"the server can't be reached: {error.reason}") from None
     except (TimeoutError, ConnectionError) as error:
-        raise UndeliveredError(f"it can't be reached: {error}") from None
+        raise UndeliveredError(f"the server can't be reached: {error}") from None
     except (OSError, ValueError, HTTPException) as error:  # whose text may hold the address, which may be a secret
-        raise UndeliveredError(f"it can't be used: {type(error).__name__}") from None
+        raise UndeliveredError(f"the request failed: {type(error).__name__}") from None
 
 
 def _of_variable(name: str) -> str:
@@ -52,6 +54,6 @@ def _of_variable(name: str) -> str:
     if not url:
         raise UndeliveredError(f"the environment variable {name} is not set", final=True)
     if not url.startswith(("https://", "http://")):
-        why = f"the environment variable {name} must begin with https:// or http://"
+        why = f"the address in the environment variable {name} must begin with https:// or http://"
         raise UndeliveredError(why, final=True)
     return url

@@ -150,7 +150,7 @@ class FleetAgent:
         elif (failed := memory.failed.get(goal)) and failed[0] == memory.order:
             self.state, self.trouble = str(failed[1]), str(failed[2])
         elif memory.done == memory.order and self._taker.running != memory.before:
-            self.state, self.trouble = BROKEN, "its files were changed here after the bundle arrived"
+            self.state, self.trouble = BROKEN, "its files were changed on this machine after the bundle arrived"
         else:
             self._go(goal, own=back)
 

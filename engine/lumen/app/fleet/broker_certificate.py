@@ -13,8 +13,8 @@ NOTICE = 30
 """How long before its end a certificate is told as wrong [days]."""
 DAY = 86_400.0
 RENEW = (
-    "put a new server.pem and server.key into /etc/rabbitmq; then rabbitmqctl eval 'ssl:clear_pem_cache().' lets the "
-    "broker read them"
+    "put a new server.pem and server.key into /etc/rabbitmq; then run rabbitmqctl eval 'ssl:clear_pem_cache().', so "
+    "that the broker reads them"
 )
 
 

@@ -76,6 +76,10 @@ def _passive(probe: BrokerProbe, kind: str, name: str) -> BrokerFinding:
     except ChannelClosedByBroker as error:
         if error.reply_code == 404:
             return BrokerFinding(what, "it is missing", mend=IMPORT)
-        return BrokerFinding(what, f"the broker refuses this: {error.reply_text}")
-    note = f"{waiting:,} messages wait for the line to the centre" if waiting else "nothing waits for the centre"
+        return BrokerFinding(what, f"the broker refuses the check: {error.reply_text}")
+    note = (
+        f"{waiting:,} messages are waiting for the line to the centre"
+        if waiting
+        else "nothing is waiting for the centre"
+    )
     return BrokerFinding(what, note=note)

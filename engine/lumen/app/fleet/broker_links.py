@@ -32,7 +32,7 @@ def _judged(what: str, rows: list[dict[str, Any]], state: str, again: str) -> Br
         return BrokerFinding(what, "it is missing", mend=IMPORT)
     row = rows[0]
     if row.get(state) == RUNNING:
-        return BrokerFinding(what, note=f"it has run since {row.get('last_changed')}")
+        return BrokerFinding(what, note=f"it has been running since {row.get('last_changed')}")
     return BrokerFinding(
         what,
         f"it is {row.get(state)}{_why(row)}: the centre can't be reached from here, its certificate is not valid, "

@@ -106,7 +106,7 @@ def _leaks(wanted: BrokerDefinitions, there: Any) -> Iterator[BrokerFinding]:
         if row["destination"] == UP and (row["source"], UP, row["routing_key"]) not in known:
             yield BrokerFinding(
                 f"the binding of {row['routing_key']} from {row['source']} to {UP}",
-                "Lumen did not make it, and it sends more messages to the centre",
+                "Lumen did not create it, and it sends additional messages to the centre",
                 mend=f"rabbitmqctl delete_queue {UP}, which deletes its messages; then {IMPORT}",
             )
 

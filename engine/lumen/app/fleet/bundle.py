@@ -43,7 +43,9 @@ def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, An
     """The bundle that these files are, signed, in messages that a bus takes. Raises UsageError if it is too large."""
     hash, data = fingerprint(files), packed(files)
     if len(data) > MAX_BYTES:
-        raise UsageError(f"the packed bundle has {len(data) / 1e6:.1f} MB: at most {MAX_BYTES / 1e6:g} MB are allowed")
+        raise UsageError(
+            f"the packed bundle is too large ({len(data) / 1e6:.1f} MB): at most {MAX_BYTES / 1e6:g} MB are allowed"
+        )
     signature = signer.sign(BUNDLE, hash.encode())
     pieces = [data[at : at + PIECE] for at in range(0, len(data), PIECE)]
     common = {"hash": hash, "signature": signature, "parts": len(pieces)}
@@ -81,9 +83,9 @@ class BundleParts:
             case _:
                 raise BadBundleError("a message is not a valid bundle")
         if hash != wanted:
-            raise BadBundleError(f"bundle {hash[:12]} came in place of {wanted[:12]}")
+            raise BadBundleError(f"bundle {hash[:12]} arrived instead of {wanted[:12]}")
         if not 0 <= part < parts <= MAX_BYTES // PIECE + 1:
-            raise BadBundleError(f"bundle {hash[:12]} came in {parts} parts, which is not possible")
+            raise BadBundleError(f"bundle {hash[:12]} has an invalid part: number {part} of {parts}")
         if not verified(key, BUNDLE, hash.encode(), signature):
             raise BadBundleError(f"bundle {hash[:12]} is not signed with the key of fleet.yaml")
         if self._of != (hash, parts):
@@ -111,7 +113,7 @@ def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
     except DAMAGED_BUNDLE:
         raise BadBundleError(f"bundle {wanted[:12]} is damaged or incomplete") from None
     if fingerprint(files) != wanted:
-        raise BadBundleError(f"bundle {wanted[:12]} holds other files than its hash promises")
+        raise BadBundleError(f"the files in bundle {wanted[:12]} do not match its hash")
     return files
 
 

@@ -130,5 +130,5 @@ class CentreDesk:
             )
         others = tuple(name for name in state.pinned if name != robot)
         pinned = (*others, robot) if on else others
-        what = "stays as it is" if on else "takes part in rollouts"
+        what = "is left out of rollouts" if on else "takes part in rollouts"
         centre.change(replace(state, pinned=pinned), f"{by}: {robot} {what}")

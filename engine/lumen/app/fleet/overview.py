@@ -50,7 +50,7 @@ def _robot(name: str, state: CentreState, heard: HeardPresence | None, fleet: Fl
     here = abs(now - heard.at) <= FRESH
     trouble = said.trouble
     if here and said.clock and abs(said.clock - heard.at) > MOST_SKEW:
-        trouble = trouble or f"its clock is wrong by {said.clock - heard.at:+.0f} s"
+        trouble = trouble or f"its clock is off by {said.clock - heard.at:+.0f} s"
     return row | {
         "bundle": said.bundle,
         "state": said.state if here else "away",

@@ -45,13 +45,13 @@ class RabbitMQControl:
                 command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", timeout=TIMEOUT
             )
         except subprocess.TimeoutExpired:
-            raise BusError(f"`{self.command}` did not answer within {TIMEOUT:g} s") from None
+            raise BusError(f"`{self.command}` did not end within {TIMEOUT:g} s") from None
         except (OSError, ValueError) as error:
             raise BusError(f"`{self.command}` can't be run: {error}") from None
         if done.returncode:
-            said = (done.stderr or done.stdout).strip().splitlines() or [f"it ended with {done.returncode}"]
+            said = (done.stderr or done.stdout).strip().splitlines() or [f"exit code {done.returncode}"]
             raise BusError(f"`{self.command} {words[0]}` failed: {said[0][:200]}")
         try:
             return json.loads(done.stdout)
         except ValueError:
-            raise BusError(f"`{self.command} {words[0]}` did not answer in JSON") from None
+            raise BusError(f"`{self.command} {words[0]}` did not print JSON") from None

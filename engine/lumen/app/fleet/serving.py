@@ -49,7 +49,9 @@ class ServedCentre:
         self._bus = bus
         fleet = fleet_in(root)
         if fleet.key != signer.public:
-            raise UsageError(f"this key is not the one that robots trust: fleet.yaml has `key: {fleet.key}`")
+            raise UsageError(
+                f"this key is not the one that robots trust, `key: {fleet.key}` of fleet.yaml: pass --key FILE"
+            )
         private_folder(home := home_of(root))
         self._home = Home(home / FOLDER)
         if not self._home.hold():

@@ -21,7 +21,7 @@ def generate(file: Path) -> str:
     try:
         handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
-        raise UsageError(f"{file} already exists: a key that robots trust is not replaced") from None
+        raise UsageError(f"{file} already exists and is not replaced: robots may trust this key") from None
     except OSError as error:
         raise UsageError(f"{file} can't be written: {error.strerror}") from None
     with open(handle, "wb") as opened:

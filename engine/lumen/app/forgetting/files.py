@@ -115,8 +115,8 @@ def _recording(file: Path, person: PersonName, found: Forgetting) -> None:
         gone, changed = redacted(file, person)
         if gone:
             rewrite([file], file, changed)
-            said = f"the name, in messages: {gone.messages}, attached files: {gone.files}"
-            found.deleted.append(ForgottenPlace(str(file), f"{said}; pictures and sounds: {gone.pictures}"))
+            said = f"the name: {gone.messages} messages, {gone.files} attached files"
+            found.deleted.append(ForgottenPlace(str(file), f"{said}; {gone.pictures} pictures and sounds"))
     except LumenError as error:
         raise ModuleError(str(error)) from None
 

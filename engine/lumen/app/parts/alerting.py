@@ -65,9 +65,9 @@ class AlertPart(Part, Observer):
         """How this run begins, which tells how the last one ended; the same again."""
         if isinstance(found, Resumption):
             if not found.told:
-                self._desk("crashed", f"it ended without notice, and continues after {found.away:.0f} s")
+                self._desk("crashed", f"it ended unexpectedly, and continues after {found.away:.0f} s")
         elif found.crashed:
-            self._desk("crashed", "it ended without notice, and starts from the beginning")
+            self._desk("crashed", "it ended unexpectedly, and starts from the beginning")
         return found
 
     def stepped(self, step: Step) -> None:
@@ -86,7 +86,7 @@ class AlertPart(Part, Observer):
         if self._presence and self._presence.find(BRAIN) is None:
             self._notice(event)
             if event.name == "fallen":
-                self._desk("fallen", "it fell, and no brain is there to get it up")
+                self._desk("fallen", "it fell, and no brain is connected to get it up")
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._now = now
@@ -105,7 +105,7 @@ class AlertPart(Part, Observer):
         self._desk.use(project.alerts)
 
     def helpless(self, reason: str) -> None:
-        self._desk("crashed", "a part of it failed, and it can't be reached: the robot rests")
+        self._desk("crashed", "a part of Lumen failed, so no person could stop the robot any more: it rests")
 
     def close(self) -> None:
         self._disk.close()
@@ -143,7 +143,7 @@ class AlertPart(Part, Observer):
             self._brain = None
         elif self._brain is not None and self._clock() - self._brain > BRAIN_PATIENCE and not self._missed:
             self._missed = True
-            self._desk("lost", "the brain is gone, and the robot rests", BRAIN)
+            self._desk("lost", "the brain no longer responds, and the robot rests", BRAIN)
 
     def _look_for_stop(self) -> None:
         """A robot that is stopped without a brain, which else tells of it."""
@@ -170,13 +170,13 @@ def told_of(event: Event) -> tuple[str, str, str] | None:
     part, _, what = event.name.partition(".")
     match part, what:
         case _, "lost" if part in PARTS:
-            return "lost", f"the {part} is gone", part
+            return "lost", f"the {part} no longer responds", part
         case _, "back" if part in PARTS:
             return "lost", f"the {part} is back after {_number(event, 'seconds')} s", event.name
         case "battery", "low":
             return "battery", f"its battery is at {_number(event, 'percentage')} %", ""
         case "motors", "hot":
-            return "hot", f"a motor is at {_number(event, 'temperature')} degrees", ""
+            return "hot", f"a motor is at {_number(event, 'temperature')} °C", ""
     return None
 
 

@@ -100,7 +100,7 @@ class BrainPart(Part):
         """Go on where the run before ended."""
         states = ", ".join(sorted(innermost(self.project.machine, found.snapshot.configuration)))
         self._narrator.note(
-            f"The last run {'was ended' if found.told else 'ended without notice'} {found.away:.0f} s ago: "
+            f"The last run {'was ended' if found.told else 'ended unexpectedly'} {found.away:.0f} s ago: "
             f"this one continues from there, in {states}.\n"
             f"`lumen run --fresh` starts from the beginning.{''.join(f' {note}.' for note in found.notes)}"
         )

@@ -52,7 +52,7 @@ class ConsolePart(Part):
             self._process = None
             self._pause = FIRST_PAUSE if here - self._began > STABLE else min(2 * self._pause, LONGEST_PAUSE)
             self._next = here + self._pause
-            self._tell(f"the console has ended ({code}); it restarts in {self._pause:g} s")
+            self._tell(f"the console has ended (exit code {code}); it restarts in {self._pause:g} s")
         if self._process is None and here >= self._next:
             self._begin(here)
 

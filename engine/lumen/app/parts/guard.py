@@ -44,7 +44,7 @@ class BrainGuard:
         self._ticked = at
         if self._woke and (other := self._presence.find(ROBOT_PART)):
             raise BusRefusedError(
-                f"this robot's process was paused, and {where_it_runs(other)} now runs in its place: it ends"
+                f"this robot's process was paused, and {where_it_runs(other)} has taken its place: this process ends"
             )
         followed = self._presence.get(self.follows) if self.follows else None
         if followed and not self._resting:
@@ -57,7 +57,7 @@ class BrainGuard:
             self._follow(brain, now)
         elif self._last is not None and not self._resting and at - self._last > BRAIN_TIMEOUT:
             self._resting = True
-            self._tell(f"rests: its brain has been gone for {BRAIN_TIMEOUT:g} s")
+            self._tell(f"rests: its brain has not responded for {BRAIN_TIMEOUT:g} s")
             self._robot.start("guard", Rest())
 
     def _wake(self, at: float) -> None:

@@ -27,7 +27,7 @@ from lumen.runtime.tracking import LocalTracking
 
 SESSION = "brain.json"
 """Where a brain keeps under which sessions its commands travel, for the one that goes on after it."""
-GONE = "the robot is gone"
+GONE = "the connection to the robot is lost"
 
 
 class RemoteBody:

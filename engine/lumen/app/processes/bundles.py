@@ -73,7 +73,7 @@ class BundleFollower:
                 missed = ""
                 self._loaded.put(project)
             elif not missed:
-                missed = "the files here differ from the brain's new files: only the brain uses those"
+                missed = "the files on this machine differ from the brain's new files, which only the brain uses"
                 self._loaded.put(missed)
 
     def _files(self, wanted: str) -> Mapping[str, bytes] | None:

@@ -42,7 +42,7 @@ class RecordingRescue:
             path = self._cut.pop()
             with _telling(self._tell, path):
                 remove_drafts(path)
-                self._tell(f"{path} was cut off, and is complete again: {recover(path) or 0:,} messages")
+                self._tell(f"{path} was cut off and has been repaired: {recover(path) or 0:,} messages")
         pieces, self._pieces = self._pieces, []
         if pieces:
             path = kept_as(self._folder, pieces[-1].stat().st_mtime, "crashed")
@@ -52,7 +52,7 @@ class RecordingRescue:
                 for piece in pieces:
                     piece.unlink(missing_ok=True)
                 if count:
-                    self._tell(f"the last minutes of the run that ended without notice: {path}, {count:,} messages")
+                    self._tell(f"the last minutes of the run that ended unexpectedly are in {path}: {count:,} messages")
                 else:
                     path.unlink(missing_ok=True)
 

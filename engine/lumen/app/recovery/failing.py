@@ -42,7 +42,7 @@ def _tell(
     if isinstance(error, LumenError):
         desk("start", f"it could not start or continue: {_why(error)}")
     else:  # what a fault of ours says may hold anything
-        desk("crashed", f"it ended because of a fault in Lumen, {type(error).__name__}")
+        desk("crashed", f"it ended because of a fault in Lumen ({type(error).__name__})")
     desk.close()
 
 
@@ -51,7 +51,9 @@ def _why(error: LumenError) -> str:
     if not isinstance(error, ProjectError):
         return str(error)
     found = [diagnostic for diagnostic in error.diagnostics if diagnostic.severity is Severity.ERROR]
-    return f"its files have errors, first {found[0].place} {found[0].code}" if found else "its files have errors"
+    return (
+        f"its files have errors, the first at {found[0].place}: {found[0].code}" if found else "its files have errors"
+    )
 
 
 def _alerts(settings: Settings | None, run_directory: RunDirectory) -> Alerts:

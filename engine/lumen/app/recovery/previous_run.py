@@ -44,7 +44,7 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
         return _anew(kept, f"The last run {how_ended(kept)} {_ago(away)}: this one starts from the beginning.")
     if records.died(project.hash) >= MAX_CRASHES:
         return _anew(
-            kept, "The last runs ended without notice soon after their start: this one starts from the beginning."
+            kept, "The last runs ended unexpectedly soon after their start: this one starts from the beginning."
         )
     try:
         old = _before(root, keeper, kept, project)
@@ -59,8 +59,8 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
 
 
 def how_ended(kept: StoredSnapshot) -> str:
-    """`ended without notice`, for a line to a person."""
-    return "was ended" if kept.told else "ended without notice"
+    """`ended unexpectedly`, for a line to a person."""
+    return "was ended" if kept.told else "ended unexpectedly"
 
 
 def rested(records: RunRecords) -> FreshStart:
@@ -74,9 +74,9 @@ def _after_another(keeper: SnapshotStore) -> FreshStart:
     """How to begin where another Lumen may have written down where the behaviour stood."""
     version, rests = keeper.of_another_version()
     why = (
-        f"The last run ended without notice, under another version of Lumen (its snapshot has version {version}, "
+        f"The last run ended unexpectedly, under another version of Lumen (its snapshot has version {version}, "
         f"this one reads {SNAPSHOT_VERSION}): this run starts from the beginning. "
-        "Next time, start that version to continue."
+        "To continue such a run, start it with the same version of Lumen."
     )
     return FreshStart(f"{why}\n{AT_REST}" if rests else why, rests, crashed=True) if version else FreshStart()
 

@@ -39,7 +39,7 @@ def startup_project(
     if (died := run_directory.records.died(project.hash)) >= MAX_CRASHES:
         good = run_directory.last_good()
         if good and good.hash != project.hash:
-            why = f"these files ended the exhibition {died} times within {PERIOD:.0f} s of their start"
+            why = f"the exhibition ended {died} times within {PERIOD:.0f} s of its start with these files"
             warn(_instead_of_yours(why.upper(), "Save them again or run `lumen reload` to try them again.\n"))
             return _instead(run_directory, good, project.hash, why)
     run_directory.begin(project, files)

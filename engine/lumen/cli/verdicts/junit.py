@@ -51,7 +51,7 @@ def _properties(verdict: Verdict) -> dict[str, str]:
 def _uncovered(verdict: Verdict) -> Iterator[JunitCase]:
     """A failure where less is covered than was wanted."""
     if verdict.coverage and verdict.uncovered:
-        said = f"{verdict.coverage.percent:.1f} % is covered, less than the {verdict.wanted:g} % wanted"
+        said = f"{verdict.coverage.percent:.1f} % is covered, less than the required {verdict.wanted:g} %"
         details = "\n".join(f"{gap.place}: {gap.what}" for gap in verdict.coverage.gaps())
         yield JunitCase("coverage", "coverage", {"time": "0"}, JunitFailure(said, details))
 

@@ -82,7 +82,7 @@ def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
 
 
 def _wanted(each: WrongAnswer) -> str:
-    return f"should be by {each.wanted}" if each.wanted else "no passage answers it"
+    return f"should be answered by {each.wanted}" if each.wanted else "no passage answers it"
 
 
 def count(number: int, one: str, many: str) -> str:
@@ -100,7 +100,7 @@ def _coverage(verdict: Verdict, coverage: Coverage, coloured: bool) -> Iterator[
         yield f"{paint(str(gap.place), 'bold', on=coloured)}: {gap.what}"
     counted = [f"{some} of {every} {what}" for (some, every), what in _counts(coverage)]
     percent = paint(f"{coverage.percent:.0f} %", "bold", "red" if verdict.uncovered else "green", on=coloured)
-    wanted = f", less than the {verdict.wanted:g} % wanted" if verdict.uncovered else ""
+    wanted = f", less than the required {verdict.wanted:g} %" if verdict.uncovered else ""
     yield f"\nCovered: {' and '.join(counted)}: {percent}{wanted}"
 
 
