@@ -167,7 +167,11 @@ def test_a_program_of_the_project(tmp_path: Path) -> None:
     [
         (["./nothing"], "the program can't be run: No such file or directory", True),
         (["no-such-program-at-all"], "the program can't be run: No such file or directory", True),
-        (["sh", "-c", "echo first >&2; echo no pager >&2; exit 3"], "the program ended with exit code 3: no pager", False),
+        (
+            ["sh", "-c", "echo first >&2; echo no pager >&2; exit 3"],
+            "the program ended with exit code 3: no pager",
+            False,
+        ),
     ],
 )
 def test_a_program_that_can_not(tmp_path: Path, command: list[str], said: str, final: bool) -> None:

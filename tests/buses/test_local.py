@@ -203,7 +203,7 @@ def test_when_the_exhibition_ends_its_clients_are_told(opened: Opened) -> None:
     with pytest.raises(BusError, match="gone"):
         client.publish("lumen.a", 1)
     client.close()
-    with pytest.raises(BusError, match="no exhibition is there"):
+    with pytest.raises(BusError, match="no exhibition answers"):
         LocalBusClient(opened.server.address)
     assert not Path(opened.server.address.path).exists()
 

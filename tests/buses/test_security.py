@@ -42,7 +42,7 @@ def test_messages_come_over_tls(secure: RabbitMQ) -> None:
 @pytest.mark.parametrize(
     ("host", "ca", "says"),
     [
-        ("127.0.0.1", False, "name the certificate of its signer, as in amqps://HOST/?ca=FILE"),
+        ("127.0.0.1", False, "pass the certificate of its signer, as in amqps://HOST/?ca=FILE"),
         ("localhost", True, "cannot be trusted: Hostname mismatch, certificate is not valid for 'localhost'"),
     ],
 )

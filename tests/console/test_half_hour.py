@@ -137,7 +137,7 @@ def a_fall(house: House, operator: Operator) -> None:
 def a_robot_that_is_gone(house: House, operator: Operator) -> None:
     operator.sees_it_in("watching")
     house.kill(ROBOT)
-    operator.sees("the robot is gone", "The process of NAO has ended", "lumen run --only robot")
+    operator.sees("the robot is not connected", "The process of NAO has ended", "lumen run --only robot")
     operator.sees_it_in("robot_lost")
     operator.rests("NOT SENT", "The robot does not rest")
     house.begin(ROBOT)

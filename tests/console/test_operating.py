@@ -185,11 +185,11 @@ def test_what_waits_for_go_is_asked_about_and_goes_or_stays(viewer: Viewer, hall
 
 def test_a_time_that_runs_out_decides_and_is_seen_coming(viewer: Viewer, hall: Hosted) -> None:
     says(hall, "rest")
-    viewer.shows("Stays without a GO in", ".countdown")
+    viewer.shows("Without a GO, expires in", ".countdown")
     until(lambda: not viewer.all(".approval"), HANG)
     assert hall.exhibition.configuration == {"hall"}
     says(hall, "sing")
-    viewer.shows("Goes by itself in", ".countdown")
+    viewer.shows("Continues by itself in", ".countdown")
     viewer.shows("stage", ".leaf")
     until(lambda: viewer.run(CHOOSE, "says “Here I am.”"), HANG)
     viewer.shows("says “Here I am.”", ".chain .link:first-child")

@@ -118,7 +118,7 @@ FAULTS: list[tuple[str, Reply, list[str], str]] = [
     ("name", says("It was built by Wagner."), [], "the name `Wagner`"),
     ("address", says("Please see organ.example.com for more."), [], "an address"),
     ("a fault in the second", says("It is old. It has nine pipes. It is good."), ["It is old."], "the number `nine`"),
-    ("unknown tool", calls("walk", "{}"), [], "`walk`, which is not offered"),
+    ("unknown tool", calls("walk", "{}"), [], "`walk`, which was not offered"),
     ("route as a tool", calls("avatar_NAO_command", '{"method": "rest"}'), [], "not offered"),
     ("arguments that do not fit", calls("wish_dance", '{"times": "many"}'), [], "does not match its schema"),
     ("arguments too many", calls("wish_dance", '{"motion": "dance"}'), [], "does not match its schema"),
@@ -164,7 +164,10 @@ def test_the_budget_of_a_visitor_and_of_an_hour(desk: Make) -> None:
     here = desk(says("Yes."), budget={"hour": 3, "visitor": 2})
     assert [here.said(visit=visit) for visit in (1, 1, 1, 2, 3)] == [["Yes."], ["Yes."], [], ["Yes."], []]
     assert len(here.model.requests) == 3
-    assert [line.rpartition(", ")[2] for line in here.told] == ["the most that are allowed"] * 2
+    assert [line.rpartition("limit of ")[2] for line in here.told] == [
+        "2 questions to the language model",
+        "3 questions per hour",
+    ]
 
 
 def test_no_key_no_request(desk: Make, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,7 +123,7 @@ def test_the_command_line_runs_all_of_them(two: Path, capsys: pytest.CaptureFixt
     assert main(["run", str(two), *flags, "--robot-name", "bob"]) == 2
     assert "there is no robot `bob`: there are `ana`, `ben`" in capsys.readouterr().err
     assert main(["run", str(two), *flags, "--video", "film.mp4"]) == 2
-    assert "--video is for one robot" in capsys.readouterr().err
+    assert "--video works with only one robot" in capsys.readouterr().err
     assert main(["run", str(two), *flags, "--voice", "espeak"]) == 2
     assert "--voice works with only one robot" in capsys.readouterr().err
 

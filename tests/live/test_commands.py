@@ -119,7 +119,7 @@ def test_a_rollback_brings_back_what_ran_before_and_stays(live: Live) -> None:
     live.edit(SORRY, PARDON)
     live.until_told("are active")
     assert live.ask("rollback")["verdict"] == "applied"
-    assert "the files before are active again" in live.transcript
+    assert "the previous files are active again" in live.transcript
     assert live.show.loop.project.hash == before
     live.live(5.0)
     assert live.show.loop.project.hash == before
@@ -216,7 +216,7 @@ def test_what_needs_a_restart_is_named(live: Live) -> None:
 def test_a_story_saved_with_the_files_is_played_and_refuses_them(live: Live) -> None:
     before = live.show.loop.project
     live.edit("steps:\n", "steps:\n  - expect: {state: dance, within: 2s}\n", "behaviors/stories/refuses.yaml")
-    live.until_told("the saved story `refuses` fails with these files")
+    live.until_told("stories that fail with these files: `refuses`")
     assert "behaviors/stories/refuses.yaml:" in live.transcript
     assert live.show.loop.project is before
 

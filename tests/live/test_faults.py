@@ -23,7 +23,9 @@ def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.M
     with monkeypatch.context() as patched:
         patched.setattr(Here, "load", fail)
         live.edit(SORRY, PARDON)
-        live.until_told("refused: Lumen failed on these files: ZeroDivisionError('a fault of ours')")
+        live.until_told(
+            "refused: an error in Lumen prevented the check of these files: ZeroDivisionError('a fault of ours')"
+        )
     assert live.show.loop.project is before
     live.edit("en: Never mind.", "en: No problem.")
     live.until_told("the saved files are active")
@@ -64,7 +66,7 @@ def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
     live.speak("my name is Ada", "how_are_you")
     assert live.show.loop.runtime.snapshot.context["visitor"] == "Ada"
     assert live.show.loop.project.hash == before
-    assert f"the new files failed: {error}: back to the files before" in live.transcript
+    assert f"the new files failed: {error}: back to the previous files" in live.transcript
     assert live.verdicts[-1] == "rolled back"
 
 

@@ -134,7 +134,7 @@ def test_that_there_is_no_player_is_said_once(
     speaker = Loudspeaker(project)
     for now in (0.0, 1.0):
         speaker.play(PlaySound("sounds/bell.wav", LENGTH), 1.0, now)(now + LENGTH)
-    assert capsys.readouterr().err == "No sound player is installed: sounds are not played, but they take their time.\n"
+    assert capsys.readouterr().err == "No sound player is installed: sounds are silent, but take as long as usual.\n"
 
 
 @for_each(

@@ -110,7 +110,10 @@ def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
         assert name(step) in validation.fault
         bench.take(validation)
         assert bench.live.show.loop.project is running
-        assert f"refused: Lumen failed on these files: FaultError('{name(step)}')" in bench.live.transcript
+        assert (
+            f"refused: an error in Lumen prevented the check of these files: FaultError('{name(step)}')"
+            in bench.live.transcript
+        )
     bench.take(bench.validation(bench.saved()))
     assert bench.live.verdicts[-1] == "applied"
 

@@ -174,7 +174,7 @@ def test_refuse_keeps_the_files_until_a_person_takes_them(folder: Path) -> None:
     before = live.show.loop.project
     live.edit("en: Goodbye!", "en: So long!", HELLO)
     live.until_told("refused: recorded visits would go differently with these files")
-    assert "(`lumen reload --apply` activates them all the same)" in live.transcript
+    assert "(`lumen reload --apply` activates them anyway)" in live.transcript
     assert live.show.loop.project is before
     answer = live.ask("dry-run")
     assert answer["verdict"] == "judging"

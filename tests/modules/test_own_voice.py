@@ -102,7 +102,7 @@ def test_which_words_interrupt_is_written(stand: Make, ear: Ear) -> None:
 
 def test_phrases_that_no_state_hears_are_told(stand: Make, ear: Ear) -> None:
     other = Ear(stand(with_options(ear.stand.project, "ears", interrupts=["stop", "stpo"])))
-    assert other.stand.told == ["`interrupts` names phrases that no state hears: `stpo` (did you mean `stop`?)"]
+    assert other.stand.told == ["`interrupts` has `stpo`, which no state hears (did you mean `stop`?)"]
     assert ear.stand.project.machine.phrases["german"]
     unheard = Ear(stand(with_options(ear.stand.project, "ears", interrupts=["german"])))
     assert "no state hears: `german`" in unheard.stand.told[0]

@@ -202,7 +202,12 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
         finally:
             lamp.close()
         rabbitmq.kill()
-        until(lambda: here.told[3:] == [f"{name} is gone: Lumen keeps trying to reach it"] or len(here.told) > 4)
+        until(
+            lambda: (
+                here.told[3:] == [f"{name} has closed the connection: Lumen keeps trying to reach it"]
+                or len(here.told) > 4
+            )
+        )
         assert all(name in line for line in here.told[2:])
     finally:
         rabbitmq.stop()

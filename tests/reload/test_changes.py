@@ -240,7 +240,10 @@ def test_lint_finds_what_a_reload_would_refuse_or_move(repository: Path, capsys:
     tour.write_text(tour.read_text().replace("talk: {", "talk: {onReload: .dance, "))
     assert main(["lint", "--against", "HEAD", "--select", "reload", "--format", "concise"]) == 0
     out = capsys.readouterr().out
-    assert f"{TOUR}:2:46: info[reload-moves] a reload would move from `talk.ask`, which is gone, to `talk.dance`" in out
+    assert (
+        f"{TOUR}:2:46: info[reload-moves] a reload would move from `talk.ask`, which no longer exists, to `talk.dance`"
+        in out
+    )
     assert out.count("reload-moves") == 1
     assert main(["lint", "--against", "HEAD", "--select", "reload", "--format", "concise", "fuzzy/head.yaml"]) == 0
     assert "reload-moves" not in capsys.readouterr().out

@@ -131,7 +131,7 @@ def test_nothing_waits_for_long_behind_a_flood() -> None:
     said = [command for _, command in stand.robot.started if isinstance(command, Say)]
     assert 15.0 < sum(speech_duration(text.text) for text in said) < 20.0
     assert len([command for _, command in stand.robot.started if isinstance(command, Perform)]) == 16
-    assert ("say 39", "command failed: the commands before it take 17 s: send it later, or `stop` them") in (
+    assert ("say 39", "command failed: earlier commands still take 17 s: send this one later, or `stop` them") in (
         caller.told
     )
     stand.server.answer(Event("done.command.m1"))

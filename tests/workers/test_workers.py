@@ -45,7 +45,7 @@ def test_what_a_dead_worker_was_at_is_done_again_and_told(tmp_path: Path, caplog
     tasks = [(number, str(tmp_path / "died")) for number in range(6)]
     assert sorted(Workers(2).results(square_or_die, KIT, tasks)) == [(number, number**2) for number in range(6)]
     (told,) = caplog.messages
-    assert told.startswith("a worker process ended too early (perhaps it had too little memory): ")
+    assert told.startswith("a worker process ended unexpectedly (it may have run out of memory): ")
     assert told.endswith(" tasks are repeated")
 
 
@@ -71,7 +71,7 @@ def test_a_crew_of_one_is_this_process() -> None:
 @pytest.mark.slow
 def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    with pytest.raises(WorkersError, match=r"for the second time: use fewer of them with --workers 1$"):
+    with pytest.raises(WorkersError, match=r"for the second time: use fewer workers, such as --workers 1$"):
         list(Workers(2).results(die, KIT, TASKS))
     assert list(tmp_path.iterdir()) == []
 

@@ -63,7 +63,7 @@ class Loudspeaker:
         if self._player is None:
             if self._audible and not self._told:
                 self._told = True
-                print("No sound player is installed: sounds are not played, but they take their time.", file=sys.stderr)
+                print("No sound player is installed: sounds are silent, but take as long as usual.", file=sys.stderr)
             return None
         try:
             playing = subprocess.Popen([*self._player, str(file)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -44,8 +44,8 @@ Change a text while `lumen run` is running, and save: the robot says the new one
 language. `.github/workflows/exhibition.yml` lints and tests what is pushed to GitHub.
 """
 MEANINGS = {
-    MAIN_FILE: "the robot, its languages, and the messages that come and go",
-    "behaviors": "what it does: states; `stories` has scripted visitors, and what must happen",
+    MAIN_FILE: "the robot, its languages, and the messages that it sends and receives",
+    "behaviors": "what it does, as states; `stories` has scripted visitors, and what must happen",
     "behaviors/words": "what it says and listens for, by language",
     "behaviors/sayings": "what visitors say, and what must follow: `lumen test` tries each of them",
     "knowledge": "questions of visitors and their answers: one passage per file",
@@ -54,12 +54,12 @@ MEANINGS = {
     "motions": "gestures",
     "sounds": "what it plays",
     "models": "the robot's body, and the hall of the simulation",
-    "schemas": "the schemas of the files and messages: your editor completes with them",
+    "schemas": "the schemas of the files and messages: your editor uses them for completion",
 }
 
 WORKFLOW = """\
 # Lints and tests this exhibition on GitHub with each push.
-# {action} is Lumen's action: its repository, and the 40 digits of one of its commits.
+# {action} is Lumen's action: its repository, and the full hash of one of its commits.
 name: exhibition
 on: [push, pull_request]
 permissions: {{contents: read}}

@@ -84,7 +84,7 @@ def _number(number: float) -> float:
         raise BadMessageError("an integer in a body must be between -2**63 and 2**63")
     if isfinite(number):
         return number
-    raise BadMessageError(f"{number} is not a number that JSON has")
+    raise BadMessageError(f"JSON has no number `{number}`")
 
 
 def _key(key: object) -> str:

@@ -95,7 +95,7 @@ class BrokerAddress:
 
     def short_of(self, what: str) -> str:
         """Return the message for a broker that accepts nothing because it is short of memory or disk space."""
-        more = "type `rabbitmqctl status` to see its alarms and how much it has"
+        more = "run `rabbitmqctl status` to see its alarms and limits"
         return f"the broker at {self} is short of {what} and accepts no messages until it has enough: {more}"
 
     def _unreachable(self, cause: BaseException) -> str:
@@ -108,7 +108,7 @@ class BrokerAddress:
         if isinstance(cause, ssl.SSLCertVerificationError):
             what = cause.verify_message.rstrip(".")
             if "self-signed" in what or "issuer" in what:
-                what += "; name the certificate of its signer, as in amqps://HOST/?ca=FILE"
+                what += "; pass the certificate of its signer, as in amqps://HOST/?ca=FILE"
             return f"the certificate of the broker at {self} cannot be trusted: {what}"
         if isinstance(cause, ssl.SSLError):
             return f"the broker at {self} does not speak TLS: use amqp://, or the port for TLS (5671)"
@@ -148,9 +148,7 @@ def _credentials(file: str) -> Any:
     if not separator or not name or "\n" in password:
         raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names must hold one line `NAME:PASSWORD`")
     if os.name == "posix" and Path(file).stat().st_mode & 0o077:
-        logging.getLogger(__name__).warning(
-            "other users can read the password in `%s`: type `chmod 600 %s`", file, file
-        )
+        logging.getLogger(__name__).warning("other users can read the password in `%s`: run `chmod 600 %s`", file, file)
     return pika.PlainCredentials(name, password)
 
 

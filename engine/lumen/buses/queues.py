@@ -130,7 +130,7 @@ def declared_otherwise(reply: str) -> str:
     delete = f"rabbitmqctl delete_queue {name}" if kind == "queue" else f"rabbitmqadmin delete exchange name={name}"
     return (
         f"the {kind} `{name}` was declared with other arguments (its `{argument}` is {there}, not {wanted}), and its"
-        f" messages are lost: type `{delete}`, then restart the programs that use it"
+        f" messages are lost: run `{delete}`, then restart the programs that use it"
     )
 
 

@@ -13,7 +13,7 @@ from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.2
 """How often it is looked whether the bus is still there [s]."""
-AWAY = "the broker is away: no command reaches a robot until it is back"
+AWAY = "the broker is not connected: no command reaches a robot until it is back"
 RETRY_PERIOD = 0.5
 """How long after a bus could not be reached it is tried again [s]."""
 

@@ -140,17 +140,20 @@ class Commands:
                 self._stop_behavior(robot)
 
     async def _robot_answers(self, exchange: Exchange, view: KnownRobot | None) -> None:
-        """Return when there is an answer. Raises BusUnreachableError where the robot's process is gone."""
+        """Return when there is an answer. Raises BusUnreachableError where the robot's process has ended."""
         sent = time.monotonic()
         while exchange.answers.empty():
             if view and view.lacks(ROBOT_PART) and time.monotonic() - sent > PRESENCE_PATIENCE:
-                raise BusUnreachableError("the robot's process is gone")
+                raise BusUnreachableError("the robot's process has ended")
             await asyncio.sleep(LOOK_PERIOD)
 
     def _unsent(self, exchange: Exchange, key: str) -> str:
         if exchange.nobody.is_set():
             return f"no process accepts this command (`{key}`)"
-        return self._watch.link.trouble or "the bus does not accept it: the broker is away, or the exhibition hangs"
+        return (
+            self._watch.link.trouble
+            or "the bus does not accept it: the broker is not connected, or the exhibition hangs"
+        )
 
     def _note(self, robot: str, text: str, by: str) -> None:
         """Have it in the journal who did that, where the behaviour does not hear of it."""

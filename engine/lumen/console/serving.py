@@ -47,7 +47,7 @@ class Console:
             raise UsageError(
                 f"other machines can reach the console on {host}, but no PINs are set: write `console: "
                 "{pins: {operator: $LUMEN_PIN}}` into lumen.yaml, and the PIN into that environment variable; or leave "
-                "out --host"
+                "out `--host`"
             )
         self._listener = _listen(host, port)
         shown = f"[{host}]" if ":" in host else host
@@ -112,6 +112,6 @@ def _listen(host: str, port: int) -> socket.socket:
     except (OSError, OverflowError) as error:
         why = (getattr(error, "strerror", "") or str(error)).lower()
         raise UsageError(
-            f"port {port} of {host} is not available: {why}; choose another with --port, or find "
-            "the program that has it with `ss -ltnp`"
+            f"port {port} of {host} is not available: {why}; choose another port with --port, "
+            "or find the program that uses it with `ss -ltnp`"
         ) from None

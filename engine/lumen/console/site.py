@@ -149,7 +149,7 @@ def _check_button(view: KnownRobot, data: dict[str, object]) -> None:
     for button in buttons if isinstance(buttons, list) else ():
         if button.get("event") == data.get("event") and (button.get("data") or {}) == (data.get("data") or {}):
             return
-    raise DeniedError(403, "the role show may only press the buttons on the page: sign in as operator")
+    raise DeniedError(403, "the role `show` may only press the buttons on the page: sign in as operator")
 
 
 async def _outcome(command: PageCommand) -> AsyncIterator[bytes]:

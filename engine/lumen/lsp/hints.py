@@ -42,13 +42,13 @@ def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
                 yield Hint(
                     place,
                     "after entering",
-                    f"the time begins when `{state.name}` is entered, and is cancelled when the state is left",
+                    f"this time starts when `{state.name}` is entered, and is cancelled when the state is left",
                 )
             elif delay >= length:
                 yield Hint(
                     place,
                     f"{delay - length:.0f} s after its `do`",
-                    f"{what}; this time begins when the state is entered",
+                    f"{what}; this time starts when the state is entered",
                 )
             else:
                 yield Hint(place, f"{length - delay:.0f} s before its `do` ends", f"{what}, so it would be cut short")
@@ -69,7 +69,7 @@ def _beats(analysis: Analysis, file: str) -> Iterator[Hint]:
         if path and path[-1] == "beat":
             beat = _value(document.data, path)
             if isinstance(beat, int | float) and not isinstance(beat, bool):
-                yield Hint(document.place(path), f"{60 * beat / tempo:.2f} s", f"{tempo:g} beats are a minute")
+                yield Hint(document.place(path), f"{60 * beat / tempo:.2f} s", f"at {tempo:g} beats per minute")
 
 
 def _value(data: Any, path: tuple[str | int, ...]) -> Any:

@@ -20,9 +20,9 @@ MAX_SENTENCES, MAX_TRIED = 4, 40
 """Sentences that are shown for a row or a phrase, and those that are tried."""
 _TAKEN = {
     "": "taken if one of its phrases is said",
-    "not": "taken if it is refused",
+    "not": "taken if the visitor refuses it",
     "asked": "taken if a who, why or when question is asked about it",
-    "else": "taken if no state hears anything else",
+    "else": "taken if no other row of the active states matches",
 }
 
 

@@ -338,7 +338,7 @@ class CommandReceiver:
         if isinstance(command, Say) and takes > MAX_SPEECH:
             raise RobotRefusedError(f"this text takes {takes:.0f} s to say: send one of at most {MAX_SPEECH:g} s")
         if (ahead := self._reports.ahead(record.parts)) > MAX_BACKLOG:
-            raise RobotRefusedError(f"the commands before it take {ahead:.0f} s: send it later, or `stop` them")
+            raise RobotRefusedError(f"earlier commands still take {ahead:.0f} s: send this one later, or `stop` them")
 
     def _clear(self, command: RobotCommand) -> None:
         """End what is of the same kind: this one is to take its place."""

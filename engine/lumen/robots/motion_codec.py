@@ -99,7 +99,7 @@ def _angle(joint: str, angle: Any, body: Body) -> float:
     value, limit = _number(angle, f"an angle of `{joint}`"), body.joints[_joint(joint, body)]
     if not limit.minimum - LIMIT_TOLERANCE <= value <= limit.maximum + LIMIT_TOLERANCE:
         raise BadCommandError(
-            f"`{joint}` moves from {limit.minimum:.3f} to {limit.maximum:.3f} rad, not to {value:.3f}"
+            f"`{joint}` can move from {limit.minimum:.3f} to {limit.maximum:.3f} rad, not to {value:.3f}"
         )
     return value
 

@@ -43,8 +43,8 @@ def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator
             if (where := _says(old.machine, new.machine, identity, names[name])) is not None:
                 place = _place(new, new.behavior, where)
                 goals = ", ".join(f"`{state}`" for state in fate.after if state not in fate.states)
-                message = f"a reload would move from `{name}`, which is gone, to {goals}"
-                hint = "if it has a new name, write it under `renamed`"
+                message = f"a reload would move from `{name}`, which no longer exists, to {goals}"
+                hint = f"if `{name}` has a new name, write it under `renamed`"
                 yield _finding(RELOAD_MOVES, message, place, hint)
 
 
@@ -67,7 +67,7 @@ def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
     was, checks, hint = (
         Identity(before, after).keys(),
         type_checks(after),
-        "if it has a new name, write it under `renamed`",
+        "if the key has a new name, write it under `renamed`",
     )
     for key in before.context:
         if key not in was.values():
@@ -78,7 +78,7 @@ def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
         if name in before.context and check and not check.accepts(before.context[name]):
             place = _place(new, new.behavior, ("context", key))
             was_type = type_name(before.context[name])
-            message = f"a reload would lose the value of `{key}`: it is a {was_type}, and must be {check} now"
+            message = f"a reload would lose the value of `{key}`: it is a {was_type}, but must now be {check}"
             yield _finding(RELOAD_FORGETS, message, place, "let `types` allow both")
 
 

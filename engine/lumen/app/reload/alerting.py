@@ -32,7 +32,7 @@ class RefusalPart(Part):
 def refusal(report: ReloadReport) -> str:
     """What is told of a report, empty where that is nothing."""
     if report.verdict == "rolled back":
-        return "the saved files failed while they ran: the files before run again"
+        return "the saved files failed while they ran: the previous files run again"
     if report.verdict != "refused":
         return ""
     errors = [found for found in report.diagnostics if found.severity is Severity.ERROR]

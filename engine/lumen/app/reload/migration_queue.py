@@ -20,9 +20,9 @@ from lumen.interpreters.replay.visits import home_of
 from lumen.language.projects import Project
 
 OTHER_VISITS = "recorded visits would go differently with these files"
-APPLY = "`lumen reload --apply` activates them all the same"
-ONE_VISITOR = "for one visitor: when that visit is over, the files before come back"
-VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` activates them for good"
+APPLY = "`lumen reload --apply` activates them anyway"
+ONE_VISITOR = "for one visitor: after that visit, the previous files come back"
+VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` activates them permanently"
 BETWEEN = "a visit is under way"
 BY_A_PERSON = "a person refused them"
 

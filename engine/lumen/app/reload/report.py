@@ -76,7 +76,7 @@ class ReloadReport:
             case "applied":
                 yield f"{self._taken()}{', ' + self.reason if self.reason else ''}: {self._what()}"
             case "rolled back":
-                yield f"{self.reason}: back to the files before, revision {self.revision}"
+                yield f"{self.reason}: back to the previous files, revision {self.revision}"
             case "refused":
                 goes_on = "the last good files run" if self.who == START else "the exhibition continues unchanged"
                 yield f"refused: {self._why()}{goes_on}"
@@ -85,7 +85,7 @@ class ReloadReport:
             case "staged":
                 yield f"staged: {self._what()}; `lumen reload --apply` activates it"
             case "unchanged":
-                yield self.reason or "the saved files already run"
+                yield self.reason or "the saved files are already active"
             case "dry run":
                 yield f"{self._what()}; {self.reason}"
             case _:
@@ -93,7 +93,7 @@ class ReloadReport:
 
     def _taken(self) -> str:
         if self.back:
-            return "the files before are active again"
+            return "the previous files are active again"
         all_later = 0 < len(self.changes) == len(self.restart)
         return "the saved files are good" if all_later else "the saved files are active"
 
@@ -103,7 +103,7 @@ class ReloadReport:
     def _why(self) -> str:
         if self.validation and self.validation.failed:
             names = ", ".join(f"`{rehearsal.story.name}`" for rehearsal in self.validation.failed)
-            return f"the saved story {names} fails with these files; "
+            return f"stories that fail with these files: {names}; "
         hint = f" ({self.hint})" if self.hint else ""
         return f"{self.reason}{hint}; " if self.reason else ""
 

@@ -183,8 +183,8 @@ def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
 def _how(code: int) -> str:
     """How a process ended, by its exit code."""
     if code == OUT_OF_MEMORY:
-        return f"it took more than {MAX_MEMORY >> 20} MB"
+        return f"it needed more than {MAX_MEMORY >> 20} MB of memory"
     if code < 0:
         with suppress(ValueError):
             return f"it was ended by {signal.Signals(-code).name}"
-    return f"it ended with {code}"
+    return f"it ended with exit code {code}"

@@ -180,4 +180,4 @@ def told(rehearsal: Rehearsal) -> str:
 def fault_of(error: Exception) -> str:
     """What is said of a fault of ours, with where it was raised in the log."""
     _log.error("Lumen failed on the saved files", exc_info=error)
-    return f"Lumen failed on these files: {error!r}"
+    return f"an error in Lumen prevented the check of these files: {error!r}"

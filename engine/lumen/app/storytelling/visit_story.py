@@ -167,7 +167,7 @@ def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequenc
                 break
             left_out.add(number)
         left_out = set()
-    raise UsageError("that visit can't be played as a story: its events do not happen again in the same way")
+    raise UsageError("that visit can't be played as a story: its events do not repeat in the same way")
 
 
 def _steps(

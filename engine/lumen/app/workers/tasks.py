@@ -41,7 +41,7 @@ def do_task(head: TaskHead, packed: bytes | str, task: tuple[Any, ...]) -> Any:
     """
     if head.engine != engine():
         raise WorkersError(
-            f"a worker runs other software than this program: there {engine()}; here {head.engine}. "
+            f"a worker has other software versions than this machine: there {engine()}; here {head.engine}. "
             "Install the same Lumen, Python and packages on both"
         )
     with _alone:

@@ -77,10 +77,10 @@ class Workers:
     def _trouble(self) -> str:
         if self.address:
             return f"the cluster at {self.address.replace('tcp://', SCHEME)} has lost workers, or its scheduler"
-        return "a worker process ended too early (perhaps it had too little memory)"
+        return "a worker process ended unexpectedly (it may have run out of memory)"
 
     def _remedy(self) -> str:
-        return "read the logs of its workers" if self.address else "use fewer of them with --workers 1"
+        return "read the logs of its workers" if self.address else "use fewer workers, such as --workers 1"
 
 
 def workers_of(text: str | None) -> Workers:

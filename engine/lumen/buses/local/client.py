@@ -99,7 +99,7 @@ class LocalBusClient(Bus):
         for name in (key, reply_to, correlation_id):
             check_key(name)
         if self.gone.is_set():
-            raise BusClosedError("the exhibition is gone")
+            raise BusClosedError("the exhibition has ended")
         self._put(framed(["publish", key, reply_to, correlation_id, ttl, *filled(origin, self.sender)], encode(body)))
 
     def returns(self, handler: Callable[[str], None]) -> None:
@@ -207,7 +207,7 @@ def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
     try:
         wire = address.connect()
     except OSError as error:
-        raise BusUnreachableError(f"no exhibition is there: {error.strerror or error}") from None
+        raise BusUnreachableError(f"no exhibition answers: {error.strerror or error}") from None
     try:
         question = nonce()
         match _next(wire, buffer):

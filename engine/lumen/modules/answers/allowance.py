@@ -21,9 +21,9 @@ class Allowance:
         if visit != self._visit:
             self._visit, self._asked = visit, 0
         if len(self._times) >= self.hour:
-            return f"the language model has had {self.hour} questions this hour, the most that are allowed"
+            return f"the language model has reached its limit of {self.hour} questions per hour"
         if self._asked >= self.visitor:
-            return f"this visitor has asked the language model {self.visitor} questions, the most that are allowed"
+            return f"this visitor has reached the limit of {self.visitor} questions to the language model"
         self._times.append(now)
         self._asked += 1
         return ""

@@ -131,7 +131,7 @@ class Answers(Module):
     def _say(self, id: str, sentence: str, asked: Mapping[str, Any], passages: list[str]) -> None:
         """Have a sentence said. Raises ModuleError where it may not be: nothing that comes after it is, either."""
         if reason := refusal(sentence, asked["language"], passages, (self.project.robot,)):
-            raise ModuleError(f"a sentence of the language model is not spoken: {reason}")
+            raise ModuleError(f"a sentence from the language model was not spoken: {reason}")
         body = {"id": id, "text": sentence, "language": asked["language"], "source": "model", "more": True}
         self.publish("answer", body)
 
@@ -139,7 +139,7 @@ class Answers(Module):
         """Have the event of the first call raised, where it is offered and its data fits."""
         for call in calls:
             if call.name not in offers:
-                raise ModuleError(f"the language model calls `{call.name[:40]}`, which is not offered")
+                raise ModuleError(f"the language model calls `{call.name[:40]}`, which was not offered to it")
             event, schema = offers[call.name]
             data = _arguments(call)
             if not JsonSchema({"type": "object", **schema}).fits(data):

@@ -104,7 +104,7 @@ class Ears(Module):
         for name in self.settings.options.get("interrupts", ()):
             if name not in known:
                 hint = did_you_mean(name, known)
-                self.tell(f"`interrupts` names phrases that no state hears: `{name}`{f' ({hint})' if hint else ''}")
+                self.tell(f"`interrupts` has `{name}`, which no state hears{f' ({hint})' if hint else ''}")
 
     def _state(self, message: Message) -> None:
         self._own_voice.state(message.body, self.came)

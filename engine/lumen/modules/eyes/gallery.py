@@ -53,7 +53,7 @@ class FaceGallery:
             del self._faces[mine[0]]
         if len(self._faces) >= MAX_PICTURES:
             raise ModuleError(
-                f"the gallery is full, with {MAX_PICTURES} pictures of faces: forget a visitor, then learn `{name}`"
+                f"the gallery is full ({MAX_PICTURES} pictures of faces): forget a visitor, then learn `{name}` again"
             )
         self._faces.append((name, self._clock(), self._cut(grey, face)))
         self._save()

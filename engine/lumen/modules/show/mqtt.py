@@ -120,7 +120,9 @@ class MqttBroker:
             raise ModuleError(f"it cannot be published: {error}") from None
         if done.rc is not MQTTErrorCode.MQTT_ERR_SUCCESS:
             raise ModuleError(
-                "the broker accepts no more messages" if done.rc is MQTTErrorCode.MQTT_ERR_QUEUE_SIZE else "it is away"
+                "the broker accepts no more messages"
+                if done.rc is MQTTErrorCode.MQTT_ERR_QUEUE_SIZE
+                else "the broker is not connected"
             )
 
     def _connected(self, client: Client, data: Any, flags: Any, reason: Any, properties: Any) -> None:
@@ -138,7 +140,7 @@ class MqttBroker:
 
     def _disconnected(self, client: Client, data: Any, flags: Any, reason: Any, properties: Any) -> None:
         if not self._closing:
-            self._health.down("is gone: Lumen keeps trying to reach it")
+            self._health.down("has closed the connection: Lumen keeps trying to reach it")
 
     def _subscribed(self, client: Client, data: Any, number: int, reasons: Any, properties: Any) -> None:
         if any(reason.is_failure for reason in reasons):

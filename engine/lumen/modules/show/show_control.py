@@ -20,7 +20,7 @@ from lumen.modules.show.refusals import Refusals
 from lumen.ports import Bus, Message, MessageHandler, UsesBroker
 from lumen.upkeep.ratelimit import RateLimiter
 
-LACKING = "MQTT and OSC need two libraries: type `pip install 'lumen-robot[show]'`"
+LACKING = "MQTT and OSC need two libraries: run `pip install 'lumen-robot[show]'`"
 TICK = 0.2
 """How often the devices are looked after [s]."""
 

@@ -53,7 +53,7 @@ class Reconnector:
         self._lost_at = time.monotonic()
         self._changes.append(ConnectionChange("robot.lost", 0.0, reason))
         if not self._ending.is_set():
-            _log.warning("the robot is lost: %s; Lumen tries to reach it again", reason)
+            _log.warning("the connection to the robot is lost: %s; Lumen tries to reach it again", reason)
         self._broken.set()
 
     def changes(self) -> list[ConnectionChange]:
@@ -83,7 +83,7 @@ class Reconnector:
             self._session.ready = self._session.up
         except RobotError as error:
             self._session.close()
-            _log.info("the robot is still away: %s", error)
+            _log.info("the robot is still unreachable: %s", error)
             return
         except Exception:  # a fault of ours must not end the trying
             self._session.close()

@@ -129,7 +129,7 @@ class NaoqiRobot:
         """Take note of what has happened since the last tick."""
         for name, seconds, reason in self._reconnector.changes():
             if name == "robot.lost":
-                self._executor.fail(f"the robot is lost: {reason}")
+                self._executor.fail(f"the connection to the robot is lost: {reason}")
                 self._life.lose()
             self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
         felt = self._senses[Sense.TACTILE].newest

@@ -84,4 +84,4 @@ class SensePoller:
     def _tell(self, reason: str) -> None:
         if reason != self._told:
             self._told = reason
-            _log.warning("the sense `%s` is gone: %s; everything else continues", self.name, reason)
+            _log.warning("the sense `%s` is not available: %s; everything else continues", self.name, reason)

@@ -46,7 +46,7 @@ def read_legs(model: mujoco.MjModel, body: Body) -> LegGeometry:
     names = {side: tuple(body.roles.name(f"legs.{SIDE_ROLES[side]}.{role}") for role in LEG_ROLES) for side in SIDES}
     for side in SIDES:
         if lost := [role for role, name in zip(LEG_ROLES, names[side], strict=True) if not name]:
-            raise _refused(f"the {SIDE_ROLES[side]} one has no {', '.join(f'`{role}`' for role in lost)}")
+            raise _refused(f"the {SIDE_ROLES[side]} leg has no {', '.join(f'`{role}`' for role in lost)}")
     reader = _LegReader(model, body)
     left, right = (reader.leg(side, names[side]) for side in SIDES)
     _compare(left, right)
