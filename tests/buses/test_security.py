@@ -93,7 +93,7 @@ def test_the_name_and_the_password_come_from_a_file(
         connect(plain)
     for content in ("visual", ":visual", "visual:visual\nmore"):
         file.write_text(content)
-        with pytest.raises(BusError, match="must hold one line `NAME:PASSWORD`"):
+        with pytest.raises(BusError, match="must contain one line `NAME:PASSWORD`"):
             connect(plain)
     file.write_text("visual:visual\n")
     file.chmod(0o644)

@@ -175,7 +175,7 @@ def test_no_key_no_request(desk: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("FAKE_KEY")
     assert here.said() == []
     assert (here.told, here.model.requests) == (
-        ["the environment variable FAKE_KEY holds no key for the language model"],
+        ["the environment variable FAKE_KEY has no key for the language model"],
         [],
     )
 
@@ -196,7 +196,7 @@ def test_what_is_no_question_is_a_line(desk: Make, body: dict[str, Any]) -> None
     here = desk(says("Yes."))
     here.bus.publish("lumen.NAO.ask", body)
     assert here.module.settle(HANG)
-    assert "is required on lumen.NAO.ask" in here.told[0]
+    assert "a message on lumen.NAO.ask needs `id`" in here.told[0]
 
 
 def test_nobody_is_there(desk: Make) -> None:

@@ -334,7 +334,7 @@ def test_a_key_is_written_for_its_owner_alone_and_never_over(tmp_path: Path) -> 
     with pytest.raises(UsageError, match="already exists"):
         generate(file)
     file.write_text("nothing")
-    with pytest.raises(UsageError, match="holds no private key"):
+    with pytest.raises(UsageError, match="contains no private key"):
         Signer(file)
 
 

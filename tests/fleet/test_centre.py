@@ -196,7 +196,7 @@ def test_a_pinned_robot_takes_no_part(hall: Hall) -> None:
         ({"ask": "pin", "robot": "itb/nao9"}, "the fleet has no robot `itb/nao9`: did you mean"),
         ({"ask": "statsu"}, "the centre has no request `statsu`: did you mean `status`"),
         ({"ask": "publish", "bundle": {"hash": "a" * 64}}, "a message is not a valid bundle"),
-        ("x", "is expected"),
+        ("x", "the request has no `ask`"),
     ],
 )
 def test_what_can_not_be_is_answered_in_words(hall: Hall, body: Any, said: str) -> None:

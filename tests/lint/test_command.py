@@ -174,8 +174,7 @@ def test_what_is_typed_without_end_is_a_line(
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"#" * 5_000_000)))
     assert main(["lint", "-", "--stdin-filename", str(project / "behaviors/tour.yaml")]) == 2
     assert (
-        capsys.readouterr().err
-        == "lumen lint: standard input holds more than 4 MB, more than a file of a project may have\n"
+        capsys.readouterr().err == "lumen lint: standard input is larger than 4 MB, the limit for a file of a project\n"
     )
 
 
@@ -192,7 +191,7 @@ def test_what_is_typed_without_end_is_a_line(
         (["--watch", "--fix"], "--watch"),
         (["--watch", "--format", "json"], "for people"),
         (["FOREIGN"], "belongs to no project"),
-        (["PROJECT/README"], "holds no file that lint reads"),
+        (["PROJECT/README"], "has no file that lint reads"),
         (["-", "--stdin-filename", "PROJECT/README"], "is not a file that lint reads"),
         (["-", "--stdin-filename", "FOREIGN"], "belongs to no project"),
     ],

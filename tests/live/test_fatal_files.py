@@ -36,7 +36,7 @@ process.main()
 """
 ENDS = {
     "os.kill(os.getpid(), signal.SIGSEGV)": "it was ended by SIGSEGV",
-    "os._exit(3)": "it ended with 3",
+    "os._exit(3)": "it ended with exit code 3",
     "bytearray(1 << 40)": "it needed more than 1024 MB",
     "while True: pass": "it took more than 2 s",
     "os.kill(os.getpid(), signal.SIGSTOP)": "it took more than 2 s",

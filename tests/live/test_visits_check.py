@@ -217,7 +217,11 @@ validation_process.main()
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("ends", "told"),
-    [("os._exit(3)", "it ended with 3"), ("1 / 0", "ZeroDivisionError"), ("bytearray(1 << 40)", "more than 1024 MB")],
+    [
+        ("os._exit(3)", "it ended with exit code 3"),
+        ("1 / 0", "ZeroDivisionError"),
+        ("bytearray(1 << 40)", "more than 1024 MB"),
+    ],
 )
 def test_a_check_that_crashes_costs_the_check_only(
     folder: Path, monkeypatch: pytest.MonkeyPatch, ends: str, told: str

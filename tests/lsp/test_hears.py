@@ -166,7 +166,11 @@ def test_a_words_file_of_the_project_replaces_lumens_own() -> None:
         (T, "my_¦name:", ["taken if one of its phrases is said", "`heard.name` is \"Budi\"", "phrase `my_name`"]),
         (T, "my_¦name:", ["It comes with Lumen. To replace it, define it in a file of behaviors/words/"]),
         (T, "      fa¦q:", ["- “how tall”: `heard.answer` is \"57 cm\"", "answers table `faq`"]),
-        (T, "el¦se: .", ["**hears else**: taken if no other row of the active states matches", "- “lorem ipsum dolor sit amet”"]),
+        (
+            T,
+            "el¦se: .",
+            ["**hears else**: taken if no other row of the active states matches", "- “lorem ipsum dolor sit amet”"],
+        ),
         (W, "tour_¦of:", ["- “exhibit 3”: `heard.n` is 3"]),
         (W, "(show|ta¦ke) me", ["- “take me to the rex”: `heard.exhibits` is "]),
         (W, "{exhibits}, ple¦ase.", ["found in, as a whole clause:", "- “the rex , please”"]),

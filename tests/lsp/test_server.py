@@ -119,7 +119,7 @@ def test_rename_of_a_motion_moves_its_file(client: Client) -> None:
         "kind": "rename", "oldUri": client.uri("motions/dance.yaml"), "newUri": client.uri("motions/horse.yaml"),
     }  # fmt: skip
     refused = client.ask("rename", TOUR, line, character, newName="sing")
-    assert "there is a motion `sing` already" in refused["message"]
+    assert "there is already a motion `sing`" in refused["message"]
     assert client.ask("prepareRename", TOUR, *at(text, "# What the ro|bot remembers")) is None
 
 
@@ -127,7 +127,7 @@ def test_a_refused_rename_leaves_no_traceback(project: Path) -> None:
     with Client(project) as client:
         text = client.open(TOUR)
         refused = client.ask("rename", TOUR, *at(text, "play: dan|ce"), newName="sing")
-        assert "there is a motion `sing` already" in refused["message"]
+        assert "there is already a motion `sing`" in refused["message"]
     assert client.process.stderr
     assert client.process.stderr.read() == b""
 

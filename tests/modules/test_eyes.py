@@ -207,7 +207,7 @@ def test_a_name_that_is_none(eyes: Make, name: object) -> None:
     here = eyes()
     here.bus.publish("lumen.visual.command", name)
     here.settle()
-    assert "a name of up to 60 characters is required" in here.told[0]
+    assert "needs a `name` of at most 60 characters" in here.told[0]
 
 
 def test_a_model_that_does_not_load(tmp_path: Path) -> None:
@@ -220,7 +220,7 @@ def test_a_model_that_does_not_load(tmp_path: Path) -> None:
 
 def test_faces_that_are_damaged(tmp_path: Path) -> None:
     (tmp_path / "faces.npz").write_bytes(b"no faces")
-    with pytest.raises(ModuleError, match="holds no faces or is damaged"):
+    with pytest.raises(ModuleError, match="contains no faces or is damaged"):
         FaceGallery(tmp_path / "faces.npz", lambda: 0.0)
 
 

@@ -34,7 +34,7 @@ def test_what_can_not_be_posted_is_one_line(stand: Make, tmp_path: Path, monkeyp
     here.bus.publish(EXPRESSION, {"text": "Hello"})
     here.settle()
     assert here.told == [
-        f"a body with a `text` is required on {EXPRESSION}: nothing is posted",
+        f"a message on {EXPRESSION} needs a `text`: nothing was posted",
         f"{tmp_path} cannot be written: Is a directory",
     ]
     full = stand()

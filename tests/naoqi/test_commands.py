@@ -179,7 +179,7 @@ def test_sonars_stop_a_walk(robot: Lockstep, live: Live) -> None:
     assert echo.left == 0.3
     assert "0.30 m ahead" in reason(live(1.5))
     robot.start("b", Walk(0.1))
-    assert "did not set out" in reason(live(0.2))
+    assert "did not start walking" in reason(live(0.2))
 
 
 def test_a_walk_ends_where_nobody_knows_where_it_is(robot: Lockstep, live: Live) -> None:

@@ -216,7 +216,7 @@ def test_where_the_bus_refuses_the_new_key_the_old_one_stays(caplog: pytest.LogC
     stand.bus.publish("avatar.NAO.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == [("m1", Rest())]
-    assert "commands are still accepted on `avatar.NAO.command`: you may not read that" in caplog.text
+    assert "commands are still accepted on the old key `avatar.NAO.command`: you may not read that" in caplog.text
     stand.server.close()
 
 

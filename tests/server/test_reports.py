@@ -123,7 +123,7 @@ def test_who_asks_is_told_the_outcome_and_that_nobody_knows_it(desk: Desk) -> No
     desk.order("", "outcome")
     desk.live(0.1)
     assert (desk.states("a")[-1], desk.states("b")) == ("finished", ["unknown"])
-    assert desk.answers.bodies[-1] == "command failed: name the command with `id`"
+    assert desk.answers.bodies[-1] == "command failed: pass the `id` of the command"
 
 
 @pytest.mark.parametrize(("key", "method"), [("stop", "rest"), ("command", "stopMove"), ("stop", "stop")])

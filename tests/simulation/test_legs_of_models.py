@@ -68,11 +68,11 @@ ROLL = '<body name="{}HipPitch" pos="0 0 0">'
 REFUSED = {
     "hip axes that pass each other": (
         [(ROLL.format(side), ROLL.format(side).replace("0 0 0", "0 0 -0.02")) for side in "LR"],
-        "the axes of `LHipPitch` and `LHipRoll` pass each other by 20.0 mm: they must meet",
+        "the axes of `LHipPitch` and `LHipRoll` are 20.0 mm apart: they must intersect",
     ),
     "a yaw axis beside the hip": (
         [(f'<body name="{side}HipRoll" pos="0 0 0">', f'<body name="{side}HipRoll" pos="0.01 0 0">') for side in "LR"],
-        "the axes of `LHipYawPitch` and `LHipRoll` pass each other by 10.0 mm",
+        "the axes of `LHipYawPitch` and `LHipRoll` are 10.0 mm apart",
     ),
     "a knee that rolls": (
         [(KNEE.format("L"), KNEE.format("L").replace("0 1 0", "1 0 0"))],

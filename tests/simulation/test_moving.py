@@ -172,7 +172,7 @@ def test_what_is_pressed_ends_it_and_what_is_no_number_changes_nothing(staged: S
     staged.touch("ChestButton", True)
     assert answer(until_answered(staged, "m", 1.2), "m") == "error: the chest button is pressed: the walk was stopped"
     staged.start("n", Move(0.05))
-    assert "the robot did not set out" in answer(until_answered(staged, "n", 1.0), "n")
+    assert "the robot did not start walking" in answer(until_answered(staged, "n", 1.0), "n")
 
 
 def test_a_walk_or_a_posture_ends_it_and_begins(staged: SimulatedRobot) -> None:

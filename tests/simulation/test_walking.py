@@ -217,7 +217,7 @@ def test_a_button_ends_a_walk_and_lets_none_begin(staged: SimulatedRobot, sensor
     assert answer(until_answered(staged, "w", 1.2), "w") == f"error: {name} is pressed: the walk was stopped"
     staged.advance(1.0)
     assert staged.greatest_tilt < 10
-    assert refused(staged, Walk(0.2)) == f"error: {name} is pressed: the robot did not set out"
+    assert refused(staged, Walk(0.2)) == f"error: {name} is pressed: the robot did not start walking"
     staged.touch(sensor, False)
     staged.start("w", Walk(0.1))
     assert answer(until_answered(staged, "w"), "w") == "done"
@@ -231,7 +231,7 @@ def test_somebody_near_ends_a_walk_and_lets_none_begin(staged: SimulatedRobot) -
     result = answer(until_answered(staged, "w", 1.3), "w")
     assert result.startswith("error: something is 0.")
     assert result.endswith("m ahead, nearer than 0.4 m: the walk was stopped")
-    assert "the robot did not set out" in refused(staged, Walk(0.2))
+    assert "the robot did not start walking" in refused(staged, Walk(0.2))
     assert staged.greatest_tilt < 10
 
 

@@ -123,7 +123,7 @@ def test_it_stays_on_its_stage() -> None:
 def test_a_robot_that_is_held_says_so(greeter: SimulatedRobot) -> None:
     greeter.world.model.actuator_forcerange[wheels(greeter).drive.geometry.motors] = 0.0
     reason = drive(greeter, Walk(0.5))
-    assert "the robot did not get there: 50 cm" in reason
+    assert "the robot did not reach its target: it is 50 cm" in reason
 
 
 def test_a_small_push_moves_it_a_hard_one_tips_it_over() -> None:
@@ -186,7 +186,7 @@ UNFIT = {
         'name="right_tyre" class="touch" type="cylinder" size="0.09',
         "0.09",
         "0.07",
-        "must be of one size",
+        "must have the same size",
     ),
     "no motor for speeds": ('<velocity name="left_wheel"', "velocity", "motor", "a velocity actuator for the wheel"),
 }

@@ -62,7 +62,7 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
         return ended + f"\n{_block(keys, saying.text, 0)}\n".encode()
     document, _ = parse(DAY_FILE, content)
     if document is None or not isinstance(document.data, Mapping) or not document.data:
-        raise UsageError(f"{DAY_FILE} holds no sayings: add one by hand, or delete the file")
+        raise UsageError(f"{DAY_FILE} has no sayings: add one by hand, or delete the file")
     depth = next((n for n in range(len(keys)) if keys[n] not in _at(document.data, keys[:n])), len(keys))
     if depth == len(keys) and saying.text in _at(document.data, keys):
         return content

@@ -139,7 +139,9 @@ def encode(body: Any) -> bytes:
     try:
         data = orjson.dumps(copied(body))
     except orjson.JSONEncodeError as error:
-        raise BadMessageError("a text in the body is not valid Unicode: it holds half a surrogate pair") from error
+        raise BadMessageError(
+            "a text in the body is not valid Unicode: it contains half of a surrogate pair"
+        ) from error
     if len(data) > MAX_BODY_BYTES:
         raise BadMessageError(f"a body must have at most {MAX_BODY_BYTES:,} bytes, not {len(data):,}")
     return data
@@ -167,7 +169,7 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
     except BadMessageError as error:
         raise ValueError(str(error)) from error
     except ValueError as error:  # Python reads 4,300 digits
-        raise ValueError("it holds an integer of thousands of digits") from error
+        raise ValueError("it contains an integer with thousands of digits") from error
 
 
 def _is_utf_16(data: bytes) -> bool:
@@ -199,11 +201,11 @@ def text_of_json(body: Any) -> str:
         _decoder.decode(body)
     except (ValueError, RecursionError, BadMessageError):
         return ""
-    return f"it is a text that holds JSON: encode it once, and send it with the content type {JSON}, not {TEXT}"
+    return f"it is JSON inside a text: encode it once, and send it with the content type {JSON}, not {TEXT}"
 
 
 def _no_constant(name: str) -> Any:
-    raise BadMessageError(f"it is not JSON (it holds {name})")
+    raise BadMessageError(f"it is not JSON (it contains {name})")
 
 
 _decoder = json.JSONDecoder(parse_constant=_no_constant)

@@ -80,7 +80,7 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
             yield Finding("broker", "error", blocked)
             return
         if project is None:
-            yield Finding("project", "error", "it has errors: see `lumen lint`")
+            yield Finding("project", "error", "its files have errors: run `lumen lint`")
             return
         yield from _permissions(probe, project)
         with closing(connect(url)) as bus:
@@ -100,7 +100,7 @@ def _embedded(options: argparse.Namespace, url: str, project: Project | None) ->
     with closing(reach(options).bus) as bus:
         yield Finding("bus", "ok", "an exhibition with an embedded bus runs on this machine")
         if project is None:
-            yield Finding("project", "error", "its files have errors now: see `lumen lint`")
+            yield Finding("project", "error", "its saved files have errors: run `lumen lint`")
         else:
             yield from _life(bus, project)
 

@@ -59,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
     )
-    add("--project", metavar="DIR", help="the folder of fleet.yaml (default: this one)")
+    add("--project", metavar="DIR", help="the folder with fleet.yaml (default: this folder)")
     add("--bus", metavar="URL", help="the broker (default: LUMEN_BUS, then the one in fleet.yaml)")
     add("--key", metavar="FILE", type=Path, help=f"the private key (default: {KEY_FILE} in that folder)")
     add("--first", metavar="TO", help="rollout: the first step: a group, a share such as 10%%, or all")

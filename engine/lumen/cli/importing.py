@@ -93,7 +93,7 @@ def run(options: argparse.Namespace) -> int:
     if begins_robot(content) or options.file.suffix.lower() == ".urdf":
         return _robot(options, content, title)
     if hint := choregraphe_list(content):
-        raise UsageError(f"{options.file} is the file list of a Choregraphe project and holds no motion: {hint}")
+        raise UsageError(f"{options.file} is the file list of a Choregraphe project and contains no motion: {hint}")
     body = _body(options.project) if options.file.suffix.lower() in GESTURE_ENDINGS else None
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"

@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     if options.format == "json":
         print_object({"folder": str(folder), "like": options.like, "behavior": behavior, "story": story})
         return 0
-    print(f"{folder} now holds a complete exhibition; its README.md lists the files. Next:")
+    print(f"{folder} now has a complete exhibition; its README.md lists the files. Next:")
     print(f"  cd {folder}")
     print(f"  {f'lumen run --story {story}':<29}a scripted visitor meets the robot")
     print("  lumen lint                   after every change: what is wrong, and where")

@@ -16,7 +16,7 @@ from lumen.errors import BusUnreachableError, UsageError
 
 def configure_question(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
-    parser.add_argument("--at", metavar="T", help="the time to ask about, 14:03 or 14:03:20 (default: now)")
+    parser.add_argument("--at", metavar="T", help="the time to ask about, such as 14:03 or 14:03:20 (default: now)")
     configure_format(parser)
 
 

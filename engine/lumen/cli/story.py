@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     home = one.visit.home
     old = bundles.project(home.bundle, home.behavior) if home else None
     if old is None:
-        raise UsageError("the journal does not hold the whole visit, or the files that ran then were not kept")
+        raise UsageError("the journal does not have the whole visit, or the files that ran then were not kept")
     title = options.title or f"A visit on {one.began:%Y-%m-%d} at {one.began:%H:%M}"
     stem = output.stem if output else "visit"
     made = visit_story(project, old, one.visit, name=stem, title=title, renamed=renaming(names))

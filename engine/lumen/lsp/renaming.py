@@ -16,18 +16,24 @@ from lumen.rules.fixes import Edit, edited
 
 _NAMES = {
     NameKind.STATE: (r"[^\s.#*,\[\]{}:'\"]+", "without spaces, dots, `#` or `*`"),
-    NameKind.CONTEXT: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
-    NameKind.PHRASE: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
-    NameKind.ANSWERS: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
-    NameKind.ROUTE: (r"[A-Za-z_][A-Za-z0-9_-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.EVENT: (r"[A-Za-z_][\w-]*(\.[\w-]+)*", "made of words with dots between them"),
-    NameKind.POSE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.MOTION: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.CONTROLLER: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.BEHAVIOR: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.WORDS: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.PLACE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.CONTEXT: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`, and begin with a letter or `_`"),
+    NameKind.PHRASE: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`, and begin with a letter or `_`"),
+    NameKind.ANSWERS: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`, and begin with a letter or `_`"),
+    NameKind.ROUTE: (
+        r"[A-Za-z_][A-Za-z0-9_-]*",
+        "made of letters, digits, `_` and `-`, and begin with a letter or `_`",
+    ),
+    NameKind.EVENT: (
+        r"[A-Za-z_][\w-]*(\.[\w-]+)*",
+        "made of words with dots in between, and begin with a letter or `_`",
+    ),
+    NameKind.POSE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.MOTION: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.CONTROLLER: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.BEHAVIOR: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.WORDS: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.PLACE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
 }
 """The kinds that can be renamed, and what their names look like."""
 _RESERVED = re.compile(r"(?i:null|true|false|yes|no|on|off|y|n|~|any)|[\d.+-].*")
@@ -56,8 +62,10 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
         said = next(d for each in analysis.broken.values() for d in each.diagnostics)
         raise UsageError(f"can't rename while a file can't be read, because the name may be in it; first fix: {said}")
     pattern, look = _NAMES[use.kind]
-    if not re.fullmatch(pattern, name) or _RESERVED.fullmatch(name):
+    if not re.fullmatch(pattern, name):
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: the name must be {look}")
+    if _RESERVED.fullmatch(name):
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: it looks like a number or a keyword of YAML")
     if use.kind in WORD_KINDS and name in (*WAYS, ELSE):
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has a meaning in the keys of `hears`")
     if use.kind in WORD_KINDS and name in (*WORD_LISTS, *TABLES):
@@ -67,7 +75,7 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
     if use.kind is NameKind.ROUTE and use.name in MEANINGS:
         raise UsageError(f"the route `{use.name}` has a fixed meaning in Lumen: {MEANINGS[use.name]}")
     if _taken(analysis, use, name):
-        raise UsageError(f"there is a {use.kind} `{name}` already")
+        raise UsageError(f"there is already a {use.kind} `{name}`")
     uses = [other for other in analysis.index.of(use) if other.text == use.text]
     edits = tuple(Edit(other.place, name) for other in uses)
     return Renaming(edits, _moved(analysis, use, name))

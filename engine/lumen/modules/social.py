@@ -40,7 +40,7 @@ class Social(Module):
             case {"text": str(text)} if text.strip():
                 pass
             case _:
-                raise ModuleError(f"a body with a `text` is required on {message.key}: nothing is posted")
+                raise ModuleError(f"a message on {message.key} needs a `text`: nothing was posted")
         date = datetime.now(UTC).isoformat(timespec="seconds")
         self._write(json.dumps({"date": date, **message.body}, ensure_ascii=False))
         self.publish("social_perception", {"kind": "posted", "text": text, "date": date})

@@ -60,7 +60,7 @@ class CommandQueries:
         id = own_id(message.body.get("parameter"))
         if not id:
             _log.warning("a command was refused: `%s` needs the `id` of a command", method)
-            self._reply(message, "command failed: name the command with `id`")
+            self._reply(message, "command failed: pass the `id` of the command")
             return
         record = self._reports.asked(id, message.sender)
         cancelled = method == "cancel"

@@ -175,7 +175,7 @@ class CommandReceiver:
             try:
                 self._undo[route] = self._listen(route)
             except BusError as error:
-                _log.warning("commands are still accepted on `%s`: %s", key, error)
+                _log.warning("commands are still accepted on the old key `%s`: %s", key, error)
                 continue
             undo()
 

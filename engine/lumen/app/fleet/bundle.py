@@ -108,7 +108,7 @@ def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
                 raise BadBundleError(f"bundle {wanted[:12]} is larger than a project may be")
             names = archive.namelist()
             if bad := next((name for name in names if name == FLEET_FILE or not _inside(name)), None):
-                raise BadBundleError(f"bundle {wanted[:12]} holds `{bad[:80]}`, which is not a file of a project")
+                raise BadBundleError(f"bundle {wanted[:12]} contains `{bad[:80]}`, which is not a file of a project")
             files = {name: archive.read(name) for name in names}
     except DAMAGED_BUNDLE:
         raise BadBundleError(f"bundle {wanted[:12]} is damaged or incomplete") from None

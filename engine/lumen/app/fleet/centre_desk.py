@@ -87,7 +87,7 @@ class CentreDesk:
                     f"the centre has no request `{verb[:40]}`: {did_you_mean(verb[:40], ASKED, 'there are')}"
                 )
             case _:
-                raise UsageError('a body such as {"ask": "status"} is expected')
+                raise UsageError('the request has no `ask`: send a body such as {"ask": "status"}')
         return {}
 
     def _named(self, name: str) -> str:

@@ -39,7 +39,7 @@ class Signer:
         except OSError as error:
             raise UsageError(f"{file} can't be read: {error.strerror}; `lumen fleet keygen` makes a key") from None
         except (ValueError, binascii.Error):
-            raise UsageError(f"{file} holds no private key: `lumen fleet keygen` makes one") from None
+            raise UsageError(f"{file} contains no private key: `lumen fleet keygen` makes one") from None
         self.public = base64.b64encode(self._key.public_key().public_bytes_raw()).decode()
 
     def sign(self, kind: bytes, data: bytes) -> str:

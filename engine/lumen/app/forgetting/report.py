@@ -32,7 +32,7 @@ class Forgetting:
     others: tuple[str, ...] = ()
 
 
-FILES_ELSEWHERE = "each machine that runs a part has files of its own: run the command there, too"
+FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"
 COPIES = "films, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
 

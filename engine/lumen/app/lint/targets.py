@@ -102,7 +102,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
     name = composed(here.absolute().relative_to(root).as_posix())
     files = {file for file in own_files(read_files(root)) if file == name or file.startswith(f"{name}/")}
     if not files:
-        raise UsageError(f"{path} holds no file that lint reads: docs/yaml.md lists the files of a project")
+        raise UsageError(f"{path} has no file that lint reads: docs/yaml.md lists the files of a project")
     return root, files
 
 
@@ -123,6 +123,6 @@ def _typed(paths: Sequence[str], name: str | None) -> LintTarget:
     content = sys.stdin.buffer.read(MAX_FILE_BYTES + 1)
     if len(content) > MAX_FILE_BYTES:
         raise UsageError(
-            f"standard input holds more than {MAX_FILE_BYTES // 1_000_000} MB, more than a file of a project may have"
+            f"standard input is larger than {MAX_FILE_BYTES // 1_000_000} MB, the limit for a file of a project"
         )
     return LintTarget(root, frozenset((file,)), ((file, content),))

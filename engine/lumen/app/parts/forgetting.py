@@ -63,7 +63,7 @@ class ForgettingPart(Part):
                     if key in self._waiting or len(self._waiting) < MAX_PENDING_NAMES:
                         self._waiting[key] = name
                     else:
-                        self._drops.add(message.key, f"{MAX_PENDING_NAMES} names already wait to be forgotten")
+                        self._drops.add(message.key, f"{MAX_PENDING_NAMES} names are already waiting to be forgotten")
 
     def _forget_next(self) -> None:
         name = PersonName(self._waiting.pop(next(iter(self._waiting))))

@@ -210,7 +210,7 @@ class OperatorPart(Part, Observer):
             case {"ask": "goto", "state": str(state)}:
                 return self._goto(state[:200], person_in(body), now, only=body.get("only") == "check")
             case _:
-                return refusal(f"{REQUESTS} is expected")
+                return refusal(f"the request is not valid: send {REQUESTS}")
 
     def _note(self, body: Mapping[str, Any], what: str) -> None:
         """Keep somebody's words in the journal."""

@@ -42,7 +42,7 @@ def request_from(message: Message, bus: Bus) -> ReloadRequest:
     """The order that a message is; raises UsageError that says what would be right."""
     body = message.body
     if not isinstance(body, dict) or not isinstance(verb := body.get("command"), str):
-        raise UsageError(f'a body such as {{"command": "reload"}} is expected, with one of {", ".join(REQUESTS)}')
+        raise UsageError(f'send a body such as {{"command": "reload"}}, with one of the commands {", ".join(REQUESTS)}')
     if verb not in REQUESTS:
         raise UsageError(f"there is no command `{verb[:40]}`: {did_you_mean(verb[:40], REQUESTS, 'there are')}")
     if not isinstance(body.get("now", False), bool):

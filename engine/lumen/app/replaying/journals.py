@@ -50,9 +50,9 @@ def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") 
         last = max(found, key=lambda row: row[1].began, default=None)
         wanted = [row for row in found if last and row[1].run == last[1].run]
     if not wanted:
-        what = f"of {word} " if word else ""
+        what = f" of {word}" if word else ""
         raise UsageError(
-            f"nothing {what}is in {folder}: `lumen run` writes the journal there; see `lumen replay --list`"
+            f"there is no journal{what} in {folder}: `lumen run` writes one; `lumen replay --list` lists all"
         )
     return ChosenJournal(root, tuple(file for file, _ in wanted))
 

@@ -68,7 +68,7 @@ class Answers(Module):
             case {"id": str(id), "question": str(), "language": str(), "within": int() | float() as within}:
                 asked: Mapping[str, Any] = message.body
             case _:
-                raise ModuleError(f"a body with `id`, `question`, `language` and `within` is required on {message.key}")
+                raise ModuleError(f"a message on {message.key} needs `id`, `question`, `language` and `within`")
         try:
             visit = asked.get("visit", 0)
             if reason := self._allowance.refusal(visit if isinstance(visit, int) else 0, began):

@@ -24,7 +24,7 @@ class ServerSettings(NamedTuple):
         if not self.key:
             return ""
         if not (found := os.environ.get(self.key, "").strip()) or not found.isascii() or not found.isprintable():
-            raise ModuleError(f"the environment variable {self.key} holds no key for the language model")
+            raise ModuleError(f"the environment variable {self.key} has no key for the language model")
         return found
 
 

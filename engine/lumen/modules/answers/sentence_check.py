@@ -76,13 +76,13 @@ def refusal(sentence: str, language: str, passages: Sequence[str], known: Sequen
     for found in ADDRESS.finditer(sentence):
         around = next(w for w in re.finditer(r"\S+", sentence) if w.start() <= found.start() < w.end())
         if around.group().strip(".,!?").casefold() not in given.split():
-            return "it holds an address that no passage has"
+            return "it contains an address that is in no passage"
     for word in _words(sentence.casefold()):
         if (any(sign.isnumeric() for sign in word) or word in NUMBERS) and word not in there:
-            return f"it holds the number `{word[:20]}`, which no passage has"
+            return f"it contains the number `{word[:20]}`, which is in no passage"
     for word in _names(sentence, WORDS.get(language, frozenset())):
         if {word.casefold(), _bare(word)}.isdisjoint(there):
-            return f"it holds the name `{word[:20]}`, which no passage has"
+            return f"it contains the name `{word[:20]}`, which is in no passage"
     return ""
 
 

@@ -186,7 +186,7 @@ class Eyes(Module):
         """Whose face the next ones are; a bare name, as in 2015."""
         name = message.body.strip() if isinstance(message.body, str) else ""
         if not name or len(name) > MAX_NAME_CHARACTERS or not name.isprintable():
-            raise ModuleError(f"a name of up to {MAX_NAME_CHARACTERS} characters is required on {message.key}")
+            raise ModuleError(f"a message on {message.key} needs a `name` of at most {MAX_NAME_CHARACTERS} characters")
         self._learning, self._left = name, MAX_PICTURES_PER_NAME
 
     def _forget(self, message: Message) -> None:

@@ -128,5 +128,5 @@ def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
         if faces.shape != (len(names), FACE_SIZE, FACE_SIZE) or faces.dtype != np.uint8 or len(times) != len(names):
             raise ValueError
     except Exception:  # a damaged file raises whatever zip, numpy and the disk do
-        raise ModuleError(f"{file} holds no faces or is damaged: move it away, then teach the names again") from None
+        raise ModuleError(f"{file} contains no faces or is damaged: move it away, then teach the names again") from None
     return zip(map(str, names), map(float, times), faces, strict=True)

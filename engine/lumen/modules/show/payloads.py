@@ -18,7 +18,7 @@ def payload_of(body: Any, field: SchemaField | None) -> bytes:
     try:
         return value.encode() if isinstance(value, str) else _json(value)
     except UnicodeEncodeError:
-        raise ModuleError(f"`{field.name}` holds half a surrogate pair") from None
+        raise ModuleError(f"`{field.name}` contains half of a surrogate pair") from None
 
 
 def body_of_payload(payload: bytes, field: SchemaField | None) -> Any:

@@ -28,7 +28,7 @@ class Voice(Module):
             case {"text": str(text), **rest}:
                 pass
             case _:
-                raise ModuleError(f"a body with a `text` is required on {message.key}")
+                raise ModuleError(f"a message on {message.key} needs a `text`")
         sound = self._espeak.speak(text, str(rest.get("language") or self.project.languages[0]))
         date = datetime.now(UTC).isoformat(timespec="seconds")
         body = {"name": str(rest.get("name", "")), "sound": sound.text(), "date": date}

@@ -180,4 +180,4 @@ class NaoqiSkills:
             if all(abs(a - b) < LOOK_TOLERANCE for a, b in zip(here, goal, strict=True)):
                 return
             yield None
-        raise RobotFailedError("the head did not get there: something holds it, or its motors are off")
+        raise RobotFailedError("the head did not reach its target: something holds it, or its motors are off")

@@ -88,7 +88,7 @@ class WalkingArea:
         x, y, theta = here
         ahead = x + way[0] * cos(theta) - way[1] * sin(theta), y + way[0] * sin(theta) + way[1] * cos(theta)
         if reason := self.outside((*ahead, theta), here):
-            raise RobotRefusedError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not start walking")
 
     def outside(self, there: GroundPose, before: GroundPose, drift: float = 0.0) -> str:
         """Why it must not be `there`; empty where the stage has room, or it is no farther out than it was `before`."""

@@ -73,7 +73,7 @@ class NaoqiWalks:
         if isinstance(command, Walk) and hypot(command.x, command.y) > MAX_WALK_DISTANCE:
             raise BadCommandError(f"({command.x:g}, {command.y:g}) is too far: walk at most {MAX_WALK_DISTANCE:g} m")
         if reason := self._area.danger():
-            raise RobotRefusedError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not start walking")
         doing = self._walk(numbers) if isinstance(command, Walk) else self._move(numbers)
         return CallSequence(doing, lambda: [self._post("ALMotion", "stopMove")])
 

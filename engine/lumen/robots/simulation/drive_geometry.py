@@ -58,7 +58,7 @@ def read_drive(world: World) -> DriveGeometry:
             raise _refused(f"the wheel of `{name}` has no round geom that touches the ground")
     track = float(places[0][1] - places[1][1])
     if abs(radii[0] - radii[1]) > 1e-3 or abs(places[0][0] - places[1][0]) > 1e-3 or track <= 0.0:
-        raise _refused("the wheels must be of one size and side by side, the left one on the left")
+        raise _refused("the wheels must have the same size and be side by side, the left one on the left")
     radius = radii[0]
     fastest = min(float(model.actuator_ctrlrange[motor, 1]) or np.inf for motor in motors) * radius
     force = sum(float(model.actuator_forcerange[motor, 1]) or np.inf for motor in motors) / radius

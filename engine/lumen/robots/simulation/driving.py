@@ -159,7 +159,9 @@ class DriveTo(DriveActivity):
             return False
         far, turned = hypot(seen.x, seen.y), abs(seen.theta)
         if stuck or far > ARRIVAL_TOLERANCE or turned > HEADING_TOLERANCE:
-            raise RobotFailedError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
+            raise RobotFailedError(
+                f"the robot did not reach its target: it is {100 * far:.0f} cm and {turned:.2f} rad away"
+            )
         return True
 
     def _face(self, seen: Pose) -> bool:

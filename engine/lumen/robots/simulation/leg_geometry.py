@@ -230,7 +230,7 @@ def _mm(length: float) -> str:
 
 
 def _apart(one: str, other: str, length: float) -> RobotModelError:
-    return _refused(f"the axes of `{one}` and `{other}` pass each other by {_mm(length)}: they must meet")
+    return _refused(f"the axes of `{one}` and `{other}` are {_mm(length)} apart: they must intersect")
 
 
 def _refused(reason: str) -> RobotModelError:

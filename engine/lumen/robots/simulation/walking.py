@@ -108,7 +108,7 @@ class WalkController:
 
     def _set_out(self, way: Pose | Velocity, now: float) -> "WalkActivity":
         if reason := self.hazards.danger():
-            raise RobotRefusedError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not start walking")
         measured = self.measured()
         feet = self.odometry.feel(measured)
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
@@ -247,5 +247,7 @@ class WalkActivity:
             raise RobotFailedError(f"{self._reason}: the walk was stopped")
         far, turned = self._gait.left
         if not self._cancelled and (far > ARRIVAL_TOLERANCE or turned > HEADING_TOLERANCE):
-            raise RobotFailedError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
+            raise RobotFailedError(
+                f"the robot did not reach its target: it is {100 * far:.0f} cm and {turned:.2f} rad away"
+            )
         return True

@@ -76,7 +76,7 @@ class Wheels:
 
     def _ready(self) -> None:
         if reason := self._hazards.danger():
-            raise RobotRefusedError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not start driving")
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
         """Let the wheels turn as wanted, or brake; arms and head are left alone."""

@@ -49,7 +49,7 @@ export default {
   "kind.goto": "person",
   "cues": "Cues", "cue.motion": "Motion", "cue.motion.send": "Play", "cue.posture": "Posture", "cue.posture.send": "Take", "cue.goto": "State", "cue.goto.send": "Go there",
   "cue.event": "Event", "cue.event.send": "Raise", "cue.data": "Its data, as JSON", "cue.data.wrong": "This is not JSON: write it like {\"result\": \"hello\"}",
-  "day": "The day", "day.date": "Date", "day.visits": "Visits", "day.none": "No records are kept of that day.", "day.visit": "Visit {n}", "day.between": "between visits", "day.scrub": "Time of day", "day.at": "At {time}", "day.entries": "What happened around that time",
+  "day": "The day", "day.date": "Date", "day.visits": "Visits", "day.none": "There are no records of that day.", "day.visit": "Visit {n}", "day.between": "between visits", "day.scrub": "Time of day", "day.at": "At {time}", "day.entries": "What happened around that time",
   "day.numbers": "Numbers", "day.csv": "As CSV", "day.longest": "longest", "day.mean": "mean length", "day.count": "{n|visit|visits}", "day.falls": "{n|fall|falls}", "day.table": "As a table", "day.languages": "Languages", "day.asked": "Asked",
   "day.unanswered": "Unanswered questions", "day.passage": "Add an answer", "day.passage.answer": "Answer", "day.passage.save": "Save", "day.passage.saved": "saved as {file}",
   "day.said": "What visitors said", "day.said.should": "It should have been …", "day.said.row": "The row that should have matched", "day.said.text": "What was said (replace a visitor’s name with another name)", "day.said.none": "no row",
