@@ -210,7 +210,7 @@ def test_a_urdf_that_mujoco_can_t_build_has_a_body_all_the_same(tmp_path: Path) 
     content = urdf(joint("head_pan"), joint("x", child="c"), '<link name="a"/>')
     text, told, beside = robot_body(tmp_path / "r.urdf", content, tmp_path / "rob.yaml", "rob")
     assert not beside
-    assert any("there is no rob.xml: MuJoCo cannot build it" in d.message for d in told)
+    assert any("rob.xml was not written: MuJoCo cannot build it" in d.message for d in told)
     assert "head_pan" in text
 
 

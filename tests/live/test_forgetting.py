@@ -194,7 +194,7 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
     assert found(copy, "İpek") == []
     assert found(copy, "and I am still here") == []
     assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 1
-    assert "nothing about ipek is in" in capsys.readouterr().out
+    assert "has nothing about ipek" in capsys.readouterr().out
 
 
 @pytest.mark.network

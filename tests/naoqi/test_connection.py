@@ -84,7 +84,7 @@ def test_services_that_are_missing_are_told_and_gone_without(
     robot.close()
     assert [(e.name, e.data) for e in events] == [("error.command.a", {"reason": "this robot has no ALTextToSpeech"})]
     assert any("no ALSonar: only its bumpers" in line for line in lines)
-    assert any("sense `image` is gone" in line for line in lines)
+    assert any("sense `image` is not available" in line for line in lines)
 
 
 @pytest.mark.slow

@@ -78,4 +78,4 @@ def test_a_connection_lost_in_a_recording_fails_it(robot: Lockstep, live: Live) 
     robot.start("a", Record("r1", 5.0))
     live(1.0)
     robot._session._broken(robot._session._session, "the robot has not answered for 2 s")
-    assert reasons(live(0.1)) == ["the robot is lost: the robot has not answered for 2 s"]
+    assert reasons(live(0.1)) == ["the connection to the robot is lost: the robot has not answered for 2 s"]

@@ -40,12 +40,12 @@ def test_a_camera_that_somebody_unsubscribed_is_subscribed_again(
     image(robot)
     with caplog.at_level(logging.WARNING):
         robot.nao.camera.handles = []
-        until(lambda: "sense `image` is gone" in caplog.text)
+        until(lambda: "sense `image` is not available" in caplog.text)
         assert isinstance(robot.read(Sense.JOINT), Joints)
         image(robot)
     lines = [record.getMessage() for record in caplog.records]
     assert len(lines) == 2
-    assert "sense `image` is gone" in lines[0]
+    assert "sense `image` is not available" in lines[0]
     assert lines[1] == "the sense `image` is back"
 
 

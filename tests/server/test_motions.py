@@ -40,7 +40,7 @@ def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
     ("change", "words"),
     [
         ({"tracks": {"Tail": [[1.0, 0.0]]}}, "no joint `Tail`"),
-        ({"tracks": {"HeadPitch": [[1.0, 9.0]]}}, "`HeadPitch` moves from"),
+        ({"tracks": {"HeadPitch": [[1.0, 9.0]]}}, "`HeadPitch` can move from"),
         ({"tracks": {"HeadPitch": [[1.0, "up"]]}}, "must be a number"),
         ({"tracks": {"HeadPitch": [[1.0, float("nan")]]}}, "must be a number"),
         ({"tracks": {"HeadPitch": [[0.0, 0.1]]}}, "must be above 0 and increase"),

@@ -111,7 +111,7 @@ def test_legs_that_differ_are_refused(body: Body, models: Path) -> None:
 def test_five_joints_are_no_leg(body: Body, models: Path) -> None:
     right = {name: role for name, role in body.roles.legs["right"].items() if name != "ankle-roll"}
     other = replace(body, roles=replace(body.roles, legs={**body.roles.legs, "right": right}))
-    with pytest.raises(RobotModelError, match="the right one has no `ankle-roll`"):
+    with pytest.raises(RobotModelError, match="the right leg has no `ankle-roll`"):
         read_legs(MassModel(other, models).model, other)
 
 

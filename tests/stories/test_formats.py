@@ -77,7 +77,7 @@ def test_coverage_names_what_no_story_did(story: Write, capsys: pytest.CaptureFi
     assert "state `spinning` is never entered" in shown
     assert "`open` after 20 s, to `closed` is never taken" in shown
     assert "Covered: 3 of 6 states and 1 of 7 transitions: 14 %" in shown
-    assert "less than the 50 % wanted" in told([str(folder), "knocking", "--fail-under", "50"], 1, capsys)
+    assert "less than the required 50 %" in told([str(folder), "knocking", "--fail-under", "50"], 1, capsys)
 
 
 @for_each(
