@@ -347,7 +347,7 @@ def test_dead_letters_declared_with_other_settings_are_reported(
         told = [record.getMessage() for record in caplog.records if "other arguments" in record.getMessage()]
         assert len(told) == 1
         assert said in told[0]
-        assert "its messages are lost: type `rabbitmq" in told[0]
+        assert "its messages are lost: run `rabbitmq" in told[0]
         assert main(["doctor", "--bus", broker.url]) == 1
         assert f"!! dead letters: {said}" in capsys.readouterr().out
         _without_side_queues(channel)
@@ -420,7 +420,7 @@ def test_each_command_names_what_the_broker_is_short_of(
     short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(MINIMAL)
-    reason = "is short of memory and accepts no messages until it has enough: type `rabbitmqctl status`"
+    reason = "is short of memory and accepts no messages until it has enough: run `rabbitmqctl status`"
     assert main(["topic", "pub", "lumen.a", "1", "--bus", short.url]) == 2
     said = capsys.readouterr().err
     assert said.startswith("lumen topic: the broker at")
