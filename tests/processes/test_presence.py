@@ -182,7 +182,7 @@ def test_a_robot_that_stood_still_rests_first_and_then_follows_its_brain_on(hall
     assert (guard.follows, noticed) == (brain.session, [])
     other = hall.presence("robot")
     other.settle()
-    with pytest.raises(BusError, match=r"was paused, and process \d+ on .* has taken its place: this process ends"):
+    with pytest.raises(BusError, match=r"was paused, and process \d+ on .* has replaced it: this process ends"):
         live(1.0, other)
 
 

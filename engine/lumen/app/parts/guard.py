@@ -44,7 +44,7 @@ class BrainGuard:
         self._ticked = at
         if self._woke and (other := self._presence.find(ROBOT_PART)):
             raise BusRefusedError(
-                f"this robot's process was paused, and {where_it_runs(other)} has taken its place: this process ends"
+                f"this robot's process was paused, and {where_it_runs(other)} has replaced it: this process ends"
             )
         followed = self._presence.get(self.follows) if self.follows else None
         if followed and not self._resting:
