@@ -26,7 +26,7 @@ def a_project(folder: Path) -> Path:
 @pytest.mark.parametrize("words", JUDGING, ids=" ".join)
 def test_without_a_project_nothing_is_judged(words: list[str], here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2
-    said = f"there is no lumen.yaml in {here} or above: name the folder of a project, or make one with `lumen new DIR`"
+    said = f"there is no lumen.yaml in {here} or above: pass the folder of a project, or make one with `lumen new DIR`"
     assert capsys.readouterr() == ("", f"lumen {words[0]}: {said}\n")
 
 
@@ -36,7 +36,7 @@ def test_those_below_are_named(words: list[str], here: Path, capsys: pytest.Capt
         a_project(here / folder)
     assert main(words) == 2
     said = capsys.readouterr().err
-    assert said.endswith("name one of the projects below: `exhib`, `halls/first`, `halls/second`\n")
+    assert said.endswith("pass the folder of one of these projects: `exhib`, `halls/first`, `halls/second`\n")
 
 
 def test_the_project_above_is_ones_own(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:

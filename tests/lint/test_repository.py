@@ -202,7 +202,7 @@ def test_the_action_does_not_pass_where_there_is_no_project(repository: Path, in
     done, outputs = perform("lint", repository, **inputs)
     assert done.returncode != 0
     assert outputs == {}
-    assert "name one of the projects below: `stand`" in done.stderr
+    assert "pass the folder of one of these projects: `stand`" in done.stderr
 
 
 def test_the_action_keeps_what_it_installed_until_a_package_changes(repository: Path) -> None:

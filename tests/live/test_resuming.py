@@ -148,7 +148,7 @@ def test_what_another_lumen_has_left_is_told_and_begun_anew(copy: Path) -> None:
     files = {**read_files(copy), "lumen.yaml": b"lumen: 9\n" + (copy / "lumen.yaml").read_bytes()}
     bundle = SnapshotStore(home).store(files)
     home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": bundle}).encode())
-    assert "this is written for vocabulary 9" in str(resumed(copy))
+    assert "this project is written for vocabulary 9" in str(resumed(copy))
     home.write(SNAPSHOT_FILE, json.dumps({**data, "snapshot": {"version": 1}}).encode())
     assert "can't be continued" in str(resumed(copy))
     for damaged in (b"", b"{", b"[]", b'{"version": 1}', b"\xff"):

@@ -113,7 +113,7 @@ WRONG = {
         ["  hands:", "  sensors: {sonar: {left: Ear}}\n  hands:"],
         "13:20 incomplete-role add `sonar` with its range and cone",
     ),
-    "no posture to stand in": (["  Stand:", "  Stood:"], "8:1 missing-key every robot has `Stand`"),
+    "no posture to stand in": (["  Stand:", "  Stood:"], "8:1 missing-key every robot needs `Stand`"),
 }  # fmt: skip
 
 

@@ -118,5 +118,5 @@ def test_more_keys_than_are_allowed_are_counted() -> None:
     many = "\n".join(f"  way{i}: {{joint: HeadYaw, amplitude: 1, period: 2s}}" for i in range(51))
     _, report = check(f"sways:\n{many}\n", "life")
     assert [d.message for d in report.diagnostics if "51" in d.message] == [
-        "`sways` has 51 keys, it should have at most 50"
+        "`sways` has 51 keys, but should have at most 50"
     ]

@@ -75,7 +75,7 @@ def test_another_body_does_what_it_can_and_says_once_what_it_leaves_out() -> Non
 def test_a_joint_that_can_not_go_so_far_stops_at_its_limit() -> None:
     found, said = motion(SHARED.replace("head.yaw: 20", "head.yaw: 80").replace("head.pitch: 10, ", ""), GREETER)
     assert found.tracks["Turn"][0].angle == -1.0
-    assert said[0] == "3:32 out-of-reach greeter can't bring `head.yaw` to 80 deg, it stops at its limit"
+    assert said[0] == "3:32 out-of-reach greeter can't bring `head.yaw` to 80 deg: it stops at its limit"
 
 
 def test_joints_go_before_roles() -> None:

@@ -409,7 +409,7 @@ def test_names_that_only_clash_after_cleaning_stay_two() -> None:
 def test_a_key_that_is_there_twice_is_listed() -> None:
     content = b'{"initial": "a", "states": {"a": {"on": {"E": "a", "E": "b"}}, "b": {}}}'
     _, found = read_xstate("chart.json", content, "chart")
-    assert messages(found) == ["1:52 `E` is in the same place twice (only the last one is used: delete the others)"]
+    assert messages(found) == ["1:52 `E` is written twice in the same place (only the last one is used: delete the others)"]
 
 
 def changed_json(data: Any, where: tuple[Any, ...] = ()) -> Iterator[tuple[str, Any]]:
@@ -468,7 +468,7 @@ def of(name: str) -> str:
 
 def test_a_star_above_the_end_is_found() -> None:
     assert lint(of("star-before-done.yaml")) == [
-        "7:13 shadowed-transition: this is never taken: the transition in line 5 always comes first"
+        "7:13 shadowed-transition: this transition is never taken: the one on line 5 is always taken first"
         " (write `onDone` above `on`, or name the events instead of `*`)"
     ]
 
@@ -711,7 +711,7 @@ def test_the_end_of_an_invocation_that_inner_states_handle(within: str, found: b
 def test_no_unlike_event_is_proposed() -> None:
     found = lint(of("event-hint.yaml"))
     assert len(found) == 6
-    hint = "(declare it under `events:`, or give a route in lumen.yaml this `event`)"
+    hint = "(declare it under `events:`, or write it as the `event` of a route in lumen.yaml)"
     assert all(line.endswith(hint) for line in found)
 
 

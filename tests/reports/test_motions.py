@@ -501,7 +501,7 @@ def strays(behavior: str, settings: str = "", size: str = "") -> list[str]:
 
 def test_a_walk_over_the_edge_is_found_without_a_stage() -> None:
     text = (INPUTS / "walk-over-the-edge.yaml").read_text("utf-8")
-    where = "behaviors/tour.yaml:5:29: this walk leads to x 0.56, y 0.00 m from the start, where there is no ground"
+    where = "behaviors/tour.yaml:5:29: this walk leads off the ground, to x 0.56 m, y 0.00 m from the start"
     assert strays(text) == [where]
     assert strays(text.replace("x: 0.8", "x: 0.5")) == []
     assert strays(text, "hall: hall.xml\nstage: {x: [-0.4, 0.4], y: [-0.6, 0.6]}") == [], "a stage keeps the feet on it"
@@ -554,7 +554,7 @@ def test_a_place_without_ground_is_found_without_a_stage() -> None:
     places = "hall: hall.xml\nplaces: {near: {x: 0.5, y: 0, heading: 180}, far: {x: 0.8, y: 0}}"
     behavior = doing("{walk: {to: near}}", "{walk: {x: -0.1}}", "{walk: {to: far}}")
     assert strays(behavior, places) == [
-        "behaviors/tour.yaml:5:13: this walk leads to x 0.56, y 0.00 m from the start, where there is no ground",
+        "behaviors/tour.yaml:5:13: this walk leads off the ground, to x 0.56 m, y 0.00 m from the start",
         "lumen.yaml:6:46: there is no ground at `far` in hall.xml: the robot would fall",
     ]
 

@@ -18,7 +18,7 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
         "states: {a: {on: {go: b}, states: {b: }}}",
         "unknown-state",
         "b}",
-        "write a child state as `.b`",
+        "`b` is a child state: write `.b`",
     ),
     "state elsewhere": ("states: {a: {on: {go: c}}, b: {states: {c: }}}", "unknown-state", "c}}", "`#b.c`"),
     "unknown id": ("states: {a: {id: one, on: {go: '#on'}}}", "unknown-state", "'#on'", "`#one`"),

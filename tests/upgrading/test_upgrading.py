@@ -79,19 +79,19 @@ def test_steps_begin_at_the_number_that_the_files_say_and_once_is_enough() -> No
 @for_each(
     ("files", "said"),
     [
-        ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, but this Lumen reads 3: install a newer Lumen"),
+        ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, but this Lumen supports 3: install a newer Lumen"),
         ({"lumen.yaml": b"lumen: soon\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"lumen: true\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"lumen: 0\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"- a\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"{}\n"}, "is empty"),
         ({"lumen.yaml": b"a: [\n"}, "lumen.yaml can't be read, so nothing is rewritten"),
-        ({"lumen.yaml": b"? a\n: 1\n"}, "write `lumen: 3` as the first key by hand"),
+        ({"lumen.yaml": b"? a\n: 1\n"}, "lumen.yaml can't be rewritten automatically: write `lumen: 3` as its first key"),
         ({}, "lumen.yaml can't be read, so nothing is rewritten"),
         ({**FILES, "behaviors/b.yaml": b'a: "\n'}, "behaviors/b.yaml can't be read, so nothing is rewritten"),
         (
             {**FILES, "lumen.yaml": b"hall: a\nroom: b\n"},
-            "lumen.yaml:1: `hall` is `room` now, but both are here: delete one of them",
+            "lumen.yaml:1: `hall` is now called `room`, but the file has both: delete one of them",
         ),
     ],
 )
@@ -126,7 +126,7 @@ def test_a_file_without_the_number_is_of_the_first(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(settings, "VOCABULARY", 2)
     (found,) = check_files(BASE, files)[1]
     assert (str(found.code), found.place.file) == ("other-vocabulary", "lumen.yaml")
-    assert "written for vocabulary 1; this Lumen supports 2" in found.message
+    assert "written for vocabulary 1, but this Lumen supports 2" in found.message
     assert found.hint == "run `lumen upgrade`: it rewrites the files and prints the changes"
     stated = files | {"lumen.yaml": b"lumen: 2\n" + files["lumen.yaml"]}
     assert check_files(BASE, stated)[1] == ()
@@ -194,8 +194,8 @@ def test_keys_of_2015_get_the_robot_and_stay_as_aliases(line_break: bytes) -> No
     after, done = with_robot_keys(files)
     assert after == files | {"lumen.yaml": NEW.replace(b"\n", line_break)}
     assert [f"{each.place.line} {each.why}" for each in done] == [
-        "4 the key of `heard` now contains the robot, and `lumen.audio.speech.recognition` is its alias",
-        "6 the key of `face` now contains the robot, and `lumen.visual.face.detection` is its alias",
+        "4 the key of `heard` now contains the name of the robot, and the old key `lumen.audio.speech.recognition` is its alias",
+        "6 the key of `face` now contains the name of the robot, and the old key `lumen.visual.face.detection` is its alias",
     ]
     assert with_robot_keys(after) == (after, [])
 

@@ -24,7 +24,7 @@ from lumen.loading.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
 
-NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the child named in `initial` is not inside its state")
+NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initial` is not one of the inner states")
 
 
 CONTEXT_PREFIX = "context"
@@ -188,7 +188,9 @@ class _Builder:
             where = (*entry.where, "target")
             found = self.within(parent, entry, entry.data["target"], where)
             if any(state.kind is StateKind.HISTORY for state in found):
-                self.report(NOT_WITHIN, where, "a history can't lead to a history", hint="name a state")
+                self.report(
+                    NOT_WITHIN, where, "a history can't lead to a history", hint="name a state that is not a history"
+                )
                 return ()
             return tuple(state.path for state in found)
         begin = _children(parent) if parent.kind is StateKind.PARALLEL else self.initial(parent)

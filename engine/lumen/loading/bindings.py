@@ -42,9 +42,14 @@ class Bindings:
                 continue
             path: NodePath = ("bind", "inputs", name)
             if joint:
-                message = f"`{name}` comes from the context, and `{joint}` moves a joint: only messages can move joints"
+                message = (
+                    f"`{name}` comes from the context, but `{joint}` moves a joint: joints can follow only messages"
+                )
                 self.report(
-                    UNBOUND_INPUT, path, message, hint="move the outputs that do not turn a joint to another controller"
+                    UNBOUND_INPUT,
+                    path,
+                    message,
+                    hint="bind this input in another controller, whose outputs move no joints",
                 )
             yield ContextInput(name, source["context"], path)
 

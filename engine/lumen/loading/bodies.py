@@ -81,8 +81,13 @@ def build_likes(
         if data["like"] in bodies:
             found[name] = _Builder({"joints": {}, **data}, report).like(bodies[data["like"]], name)
         elif data["like"] not in names or "like" in (sources.get(data["like"], ((), None))[0] or ()):
-            hint = did_you_mean(data["like"], bodies, "there are") if bodies else "there is no complete model to choose"
-            report(UNKNOWN_MODEL, ("like",), f"no model is called `{data['like']}` to be like", hint=hint)
+            hint = did_you_mean(data["like"], bodies, "available:") if bodies else "no other model is complete"
+            report(
+                UNKNOWN_MODEL,
+                ("like",),
+                f"`like` can't use the model `{data['like']}`: it does not exist, or has a `like` itself",
+                hint=hint,
+            )
     return found
 
 
@@ -149,7 +154,9 @@ class _Builder:
         low, high = spec["range"]
         if not low < high:
             hint = f"write [{high}, {low}]" if high < low else "write a second number that is greater than the first"
-            self.report(EMPTY_RANGE, ("joints", name, "range"), f"`{name}` can't move in [{low}, {high}]", hint=hint)
+            self.report(
+                EMPTY_RANGE, ("joints", name, "range"), f"the range [{low}, {high}] of `{name}` is empty", hint=hint
+            )
             self.report.lost.add(name)
             return None
         unit = self.unit(name)
@@ -177,13 +184,18 @@ class _Builder:
         for part, names in (self.data.get("parts") or {}).items():
             for i, name in enumerate(names):
                 if self.known(name, ("parts", part, i)) and owner.setdefault(name, part) != part:
-                    message = f"`{name}` is in `{owner[name]}` and in `{part}`"
+                    message = f"the joint `{name}` is in two parts: `{owner[name]}` and `{part}`"
                     related = [(("parts", owner[name]), "the other part is here")]
                     hint = "name each joint in one part only"
                     self.report(JOINT_IN_TWO_PARTS, ("parts", part, i), message, hint=hint, related=related)
             parts[part] = tuple(n for n in names if owner.get(n) == part)
         for name in [n for n in self.joints if n not in owner and whole]:
-            self.report(JOINT_WITHOUT_PART, ("joints", name), f"no part moves `{name}`", hint="name it in `parts`")
+            self.report(
+                JOINT_WITHOUT_PART,
+                ("joints", name),
+                f"the joint `{name}` is in no part",
+                hint="add it to one of the `parts`",
+            )
         return parts
 
     def shared(self) -> dict[str, str]:
@@ -211,7 +223,7 @@ class _Builder:
         biped = roles.base.kind is BaseKind.BIPED
         for name in (COMMON_POSTURE, BIPED_POSTURE) if biped else (COMMON_POSTURE,):
             if "postures" in self.data and name not in found and name not in self.report.lost:
-                who = "every robot on two legs needs it" if name == BIPED_POSTURE else "every robot has"
+                who = "every robot on two legs needs" if name == BIPED_POSTURE else "every robot needs"
                 message, hint = f"the robot has no posture `{name}`", f"{who} `{name}`: give the angle of each joint"
                 self.report(MISSING_KEY, ("postures",), message, hint=hint, key=True)
         return found
@@ -223,7 +235,7 @@ class _Builder:
         missing = [n for n in self.joints if n not in spec]
         if missing and not self.report.broken(path) and spec.keys() <= self.data["joints"].keys():
             names = ", ".join(f"`{n}`" for n in missing)
-            hint = "a posture needs an angle for every joint"
+            hint = "add the missing angles: a posture needs one for every joint"
             self.report(INCOMPLETE_POSTURE, path, f"`{posture}` has no angle for {names}", hint=hint, key=True)
         return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
 
@@ -232,8 +244,8 @@ class _Builder:
         joint, unit = self.joints[name], self.unit(name)
         angle = value * unit
         if not (isfinite(angle) and joint.minimum - POSTURE_TOLERANCE <= angle <= joint.maximum + POSTURE_TOLERANCE):
-            message = f"`{name}` can't be at {value}"
-            hint = f"it moves between {joint.minimum / unit:.6g} and {joint.maximum / unit:.6g}"
+            message = f"`{name}` can't reach {value}"
+            hint = f"write a value from {joint.minimum / unit:.6g} to {joint.maximum / unit:.6g}"
             self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, root=f"the range of `{name}` in models/")
         return min(max(angle, joint.minimum), joint.maximum)
 

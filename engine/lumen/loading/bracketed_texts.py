@@ -29,7 +29,7 @@ def bracketed(text: str, index: int) -> Iterator[Slip]:
         sign = next(sign for sign in text[low:high] if sign in "[{")
         message = f"here `{sign}` begins a {'list' if sign == '[' else 'map'}, even inside a text"
         hint = f"put quotes around the text: {short(_quoted(slot_signs(text[low:high])))}"
-        hint += ", and around the others in this line" if len(spans) > 1 else ""
+        hint += ", and around the others on this line" if len(spans) > 1 else ""
         yield Slip(index + 1, low + 1, high - low, message, hint, {index: right})
 
 

@@ -86,7 +86,7 @@ def _dependents(error: Error, path: NodePath) -> Iterator[Complaint]:
     for key, needs in error.validator_value.items():
         for missing in needs:
             if key in error.instance and missing not in error.instance:
-                message = f"`{key}` needs `{missing}` in the same place"
+                message = f"`{key}` also needs the key `{missing}`"
                 hint = f"add `{missing}:` beside it"
                 yield Complaint(MISSING_KEY, (*path, key), message, hint, path, (*path, key), True, missing)
 
@@ -187,9 +187,9 @@ def _verbs(error: Error, path: NodePath) -> Complaint:
         within, hint = "one item", f"begin a new item: `- {keys[1]}: …`"
         if "minProperties" not in error.schema:  # a key that wants none beside it
             within, hint = node(path), "keep one of the two"
-        message = f"`{keys[0]}` and `{keys[1]}` are both in {within}, only one of them is allowed"
+        message = f"`{keys[0]}` and `{keys[1]}` are both in {within}, but only one of them is allowed"
         return Complaint(ONE_VERB, (*path, keys[1]), message, hint, path, _spared(path), True)
-    message = f"{node(path)} is empty: it needs one key, the verb"
+    message = f"{node(path)} is empty: it needs a verb"
     return Complaint(ONE_VERB, path, message, "write the verb, as in `say: Hello`", path, _spared(path))
 
 

@@ -24,7 +24,7 @@ def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tup
     for key, value in machine.context.items():
         odd = [path for path, number in _numbers(value, ("context", key)) if not finite(number, report, path)]
         if not odd and key in machine.types and ("types", key) not in unsound and not fits(value, checks[key]):
-            hint = "begin with a value that fits, or widen its schema under `types:`"
+            hint = "write an initial value that fits, or widen its schema under `types:`"
             report(WRONG_VALUE, ("context", key), f"`{key}` {refusal(value, checks[key])}", hint=hint)
     return unsound
 

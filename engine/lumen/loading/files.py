@@ -163,7 +163,7 @@ class _Reader:
                 return Unreadable(LEADS_OUT)
             content = self._kept.read(path, entry, MAX_FILE_BYTES)
         except FileNotFoundError:
-            return Unreadable(b"the file it links to is not there") if path.is_symlink() else None
+            return Unreadable(b"the file that it links to does not exist") if path.is_symlink() else None
         except OSError as error:
             return Unreadable(_reason(error))
         if len(content) > self._left:

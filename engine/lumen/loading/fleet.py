@@ -22,7 +22,7 @@ from lumen.loading.project_folders import FLEET_FILE
 from lumen.loading.regular_files import read_regular
 from lumen.loading.routes import duration
 
-BAD_SHARE = Code("bad-share", "fleet", ERROR, "a step of a rollout is not a valid share of the robots")
+BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid share of the robots")
 
 
 def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
@@ -72,6 +72,6 @@ def _rollout(data: Mapping[str, Any], report: DocumentReport) -> RolloutPlan:
 def _step(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> StepTarget | None:
     target = step_target(row["to"])
     if target is None:
-        hint = "write a share such as `10%`, more than 0 and at most 100, the name of a group, or `all`"
+        hint = "write a share of more than 0 % and at most 100 %, such as `10%`, the name of a group, or `all`"
         report(BAD_SHARE, (*where, "to"), f"`{row['to']}` is not a share of the robots", hint)
     return target

@@ -48,14 +48,14 @@ def _sound(node: ExpressionNode, text: str, names: Sequence[str], report: Docume
 
     match node:
         case Identifier(name) if name not in (*names, "x", "pi"):
-            hint = did_you_mean(name, ("x", "pi", *names), "here can stand")
-            return refuse(UNKNOWN_NAME, node.offset, len(name), f"there is no `{name}` in this formula", hint)
+            hint = did_you_mean(name, ("x", "pi", *names), "available:")
+            return refuse(UNKNOWN_NAME, node.offset, len(name), f"a formula has no variable `{name}`", hint)
         case FunctionCall(name) if name not in FORMULA_FUNCTIONS:
             hint = did_you_mean(name, FORMULA_FUNCTIONS, "the functions are")
             return refuse(UNKNOWN_FUNCTION, node.named, len(name), f"a formula has no function `{name}`", hint)
         case FunctionCall(name, arguments) if len(arguments) != FORMULA_FUNCTIONS[name]:
             wanted = FORMULA_FUNCTIONS[name]
-            message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it needs {wanted}"
+            message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, but needs {wanted}"
             hint = f"write {name}({', '.join('ab'[:wanted])})"
             return refuse(WRONG_ARGUMENT_COUNT, node.named, len(name), message, hint)
         case Literal(value) if isinstance(value, bool) or not isinstance(value, int | float):

@@ -75,7 +75,7 @@ class _GestureReader:
         self._poses.roles.some(phase, path)
         for joint, (angle, place) in self._poses.read(phase, path).items():
             if joint in self._body.parts.get("legs", ()):
-                hint = "use only head, arms and hands here, or write a motion"
+                hint = "use only the head, arms and hands here, or write a motion instead"
                 self._report(GESTURE_LEGS, place, f"`{joint}` is a joint of the legs", hint=hint, key=True)
             else:
                 found[joint] = angle - stands.get(joint, 0.0)

@@ -43,7 +43,7 @@ class HearsKeys:
             names = [name for name in _BETWEEN.split(" ".join(named)) if name and name not in _JOINING]
             several = "|".join(names)
             hint = f"write `{way} {several}` for any of them" if way else f"write `{several}` for any of them"
-            hint += "" if way else f", or `not {names[-1]}` if it was refused" if names else ""
+            hint += "" if way else f", or `not {names[-1]}` for its negation" if names else ""
             self.report(BAD_ROW, where, f"`{key}` is not a valid row of `hears`", hint, key=True)
             return "", ()
         found = [self.name(name, where) for name in rest.split("|")]
@@ -58,10 +58,10 @@ class HearsKeys:
         if field and entry in variables:
             return f"{variables[entry]}.{field}"
         if not name:
-            hint = "name phrases, such as `yes|no`"
+            hint = "write a name on each side, such as `yes|no`"
             self.report(BAD_ROW, where, "a name is missing next to `|`", hint, key=True)
         elif name == "else":
-            hint = "give `else` a row of its own"
+            hint = "write `else` as a separate row"
             self.report(
                 BAD_ROW, where, "`else` can't be combined with names: it matches every other sentence", hint, key=True
             )

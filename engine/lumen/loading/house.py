@@ -14,16 +14,16 @@ from lumen.loading.units import ANGLES, LENGTHS
 DEFAULT_ROBOT = "NAO"
 ROBOTS_TWICE = Code("robots-twice", "robot", ERROR, "lumen.yaml has both `robot` and `robots`")
 
-HOW = "write `robot: {name: NAO, model: nao}` for one robot, or, for several, `robots:` with a line for each"
+HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a line for each of several robots"
 
 
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
     """The robots by name, in the order written; the one of `robot:` where there is no `robots:`."""
     several = data.get("robots")
     if "robot" in data and several:
-        report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` are both set", f"delete one: {HOW}", key=True)
+        report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` are both set", f"delete one of them: {HOW}", key=True)
     if "robot" not in data and not several and not any(path[:1] in (("robot",), ("robots",)) for path in report.pruned):
-        report(MISSING_KEY, (), "`robot` is missing", f"Which robot performs: {HOW}")
+        report(MISSING_KEY, (), "`robot` is missing", HOW)
     if not several:
         row = data.get("robot", {})
         one = _spec(row.get("name", DEFAULT_ROBOT), row, data, StartPose())

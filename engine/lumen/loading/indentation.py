@@ -82,8 +82,8 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
             yield from _moved(lines, index, [column + 2])
         hint = "add `- ` before it, or delete the `- ` above"
         meant = {index: f"{here[: indent(among[0])]}- {here[column:]}"}
-        what = "a key" if _KEYED.match(here) else "something"
-        message = f"{what} is among the items of a list without a hyphen"
+        what = "this key" if _KEYED.match(here) else "this line"
+        message = f"{what} is among the items of a list, but has no hyphen"
         yield Slip(index + 1, column + 1, len(here) - column, message, hint, meant)
         at = next(i for i in range(index - 1, -1, -1) if lines[i] == above) if above in among else index
         if at < index and _KEYED.match(here):  # rather all are keys, and the first has a hyphen
@@ -136,8 +136,8 @@ def _moved(lines: Sequence[str], index: int, known: Sequence[int]) -> Iterator[S
     for depth in sorted(
         {*known} - {here}, key=lambda at: (at >= inner, at not in (above, below), abs(at - here), at if bare else -at)
     ):
-        way = "out" if depth > here else "in"
-        message = f"this line is too far {way}: it begins in column {here + 1}, the lines beside it in {depth + 1}"
+        way = "not indented far enough" if depth > here else "indented too far"
+        message = f"this line is {way}: it begins in column {here + 1}, but the lines next to it in column {depth + 1}"
         for part in ([index], block) if depth < inner else (block,):
             hint = move_hint(lines, part, depth - here)
             meant = {j: shifted(lines[j], depth - here) for j in part}

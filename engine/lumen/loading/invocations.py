@@ -42,7 +42,7 @@ def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
             if where not in said and _together(one, other):
                 said.add(where)
                 message = f"{one.title} also invokes a behaviour as `{id}`, and both can run at once"
-                report(DUPLICATE_ID, where, message, hint="give each an `id` of its own")
+                report(DUPLICATE_ID, where, message, hint="give each `invoke` a different `id`")
 
 
 def _together(one: OutlinedState, other: OutlinedState) -> bool:

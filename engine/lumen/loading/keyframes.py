@@ -82,12 +82,16 @@ class KeyframeReader:
         for joint in handles.keys() - tracks.keys():
             hint = f"give `{joint}` an angle under `joints`, or delete its handles"
             self.report(
-                HANDLES_WITHOUT_KEY, (*here, "handles", joint), f"`{joint}` has no key here", hint=hint, key=True
+                HANDLES_WITHOUT_KEY,
+                (*here, "handles", joint),
+                f"`{joint}` has handles here, but no angle",
+                hint=hint,
+                key=True,
             )
         for word in ("repeat", "speed"):
             if word in item:
-                hint = "put its keyframes into a block, as `keyframes:` beside it"
-                self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
+                hint = f"put the joints into a block: write them as a list under `keyframes:`, beside `{word}`"
+                self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` is allowed only in a block", hint=hint, key=True)
         cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
         part = MotionDefinition("", 0.0, tracks, cues)
         return mirrored(part, self.poses.mirror) if item.get("mirror") is True else part
@@ -105,7 +109,7 @@ class KeyframeReader:
             *(("play",) if "keyframes" in item else ()),
         ):
             if word in item:
-                hint = "put it into a keyframe of its own, with its own time"
+                hint = "put it into a separate keyframe with its own time"
                 what = "`keyframes`" if "keyframes" in item else "`play`"
                 self.report(
                     MIXED_KEYFRAME, (*here, word), f"`{word}` is not allowed beside {what}", hint=hint, key=True
@@ -134,8 +138,8 @@ class KeyframeReader:
         if times > 1 and part.duration <= 0.0:
             if has_errors(self.report.diagnostics):
                 return part  # what would take its time is broken
-            hint = "give its last keyframe a time above 0: that is the length of one round"
-            self.report(ZERO_DURATION, here, "a block that is repeated needs a length", hint=hint)
+            hint = "give its last keyframe a time above 0: that is the length of one repetition"
+            self.report(ZERO_DURATION, here, "a repeated block needs a length", hint=hint)
             return part
         if _size(part) * times > MAX_MOTION_KEYS:
             self._too_many(here)
@@ -172,16 +176,16 @@ class KeyframeReader:
     def _too_early(self, item: Mapping[str, Any], here: NodePath, begin: float, now: float) -> None:
         path = (*here, "at") if "at" in item else (*here, "beat") if "beat" in item else here
         if begin <= 0.0:
-            message, hint = "no joint can get there in no time", "begin at 0.5s or later"
+            message, hint = "this keyframe leaves the joints no time to get there", "begin at 0.5s or later"
         else:
             beats = f" (beat {now / self.beat:g})" if self.beat and "beat" in item else ""
-            message = f"at {begin:g} s is not after the keyframe before it"
-            hint = f"that lasts until {now:g} s{beats}; write increasing times, counted from the beginning of the list"
+            message = f"this keyframe is at {begin:g} s, but the one before it lasts until {now:g} s{beats}"
+            hint = "write increasing times, counted from the beginning of the list"
         cause = f"{self.report.document.file} {here[:-1]} until {now}"
         self.report(TIME_NOT_INCREASING, path, message, hint=hint, cause=cause)
 
     def _too_many(self, here: NodePath) -> None:
-        hint = "use fewer keyframes, joints or rounds"
+        hint = "use fewer keyframes, joints or repetitions"
         self.report(TOO_MANY_KEYS, here, f"the motion would have more than {MAX_MOTION_KEYS:,} keys", hint=hint)
 
 

@@ -17,7 +17,7 @@ def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | 
         return None
     as_of, until = (_day(data, key, report) for key in ("as-of", "until"))
     if as_of and until and until < as_of:
-        message = f"it is valid until {until}, before its check on {as_of}"
+        message = f"`until: {until}` is before `as-of: {as_of}`"
         report(BAD_DATE, ("until",), message, "write a later date, or delete the passage")
     return Passage(
         name,

@@ -70,7 +70,7 @@ class _Linker:
         if wanted in self.way:
             way = " → ".join(f"`{n}`" for n in (*self.way[self.way.index(wanted) :], wanted))
             message = f"`{wanted}` would invoke itself without end: {way}"
-            report(INVOKE_CYCLE, where, message, hint="in one of them, use a state in place of `invoke`")
+            report(INVOKE_CYCLE, where, message, hint="in one of these behaviours, use a state instead of `invoke`")
         elif wanted not in self.names:
             hint = did_you_mean(wanted, self.names, "behaviors/ has")
             report(UNKNOWN_BEHAVIOR, where, f"there is no behaviour `{wanted}`", hint=hint)

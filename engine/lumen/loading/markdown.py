@@ -11,7 +11,7 @@ from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document, NodeSpan
 from lumen.loading.yaml_reader import parse
 
-NO_FRONT_MATTER = Code("no-front-matter", "knowledge", ERROR, "a Markdown passage does not begin with its data")
+NO_FRONT_MATTER = Code("no-front-matter", "knowledge", ERROR, "a Markdown passage does not begin with its YAML data")
 STRAY_TEXT = Code(
     "stray-text", "knowledge", ERROR, "text of a Markdown passage is not under a heading with its language"
 )
@@ -29,14 +29,15 @@ def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Dia
     end = next((i for i, line in enumerate(lines) if i and line.rstrip() == FENCE), 0)
     if lines[0].rstrip() != FENCE or not end:
         hint = f"begin with a line `{FENCE}`, then `questions:` as in YAML, then a line `{FENCE}`"
-        return None, [NO_FRONT_MATTER.at(Place(file, 1, 1), "the passage does not begin with its data", hint)]
+        return None, [NO_FRONT_MATTER.at(Place(file, 1, 1), "the passage does not begin with its YAML data", hint)]
     front = "\n".join(["", *lines[1:end], ""])
     document, found = parse(file, content if "\ufffd" in text else front.encode())
     if document is None or not isinstance(document.data, dict):
         return document, found
     answer, spans, strays = _answers(file, lines, end + 1)
     if "answer" in document.data:
-        found.append(_stray(document.place(("answer",), key=True), "write the answer below the data"))
+        message = "the answer of a Markdown passage belongs below its YAML data"
+        found.append(_stray(document.place(("answer",), key=True), message))
     found += strays
     data = {**document.data, **({"answer": answer} if answer else {})}
     return replace(document, data=data, spans={**document.spans, **spans}, text=text), found
@@ -55,7 +56,8 @@ def _answers(
         if heading := _HEADING.fullmatch(line):
             language = heading[1]
             if language in answer:
-                found.append(_stray(place, f"there is a heading `{language}` already"))
+                message = f"there is already a heading `{language}`"
+                found.append(_stray(place, message, "write both texts under one heading, or correct the language"))
             answer.setdefault(language, "")
             spans.setdefault(("answer",), NodeSpan(place, place))
             spans["answer", language] = NodeSpan(place, place)
@@ -68,5 +70,8 @@ def _answers(
     return answer, spans, found
 
 
-def _stray(place: Place, message: str) -> Diagnostic:
-    return STRAY_TEXT.at(place, message, "write a heading with the language, such as `# en`, above the answer")
+_HEAD = "write a heading with the language, such as `# en`, above the answer"
+
+
+def _stray(place: Place, message: str, hint: str = _HEAD) -> Diagnostic:
+    return STRAY_TEXT.at(place, message, hint)

@@ -96,7 +96,9 @@ def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
             hint = "copy the definition into this file, under `$defs`"
             report(FOREIGN_REFERENCE, path, f"`{text}` is outside this file", hint=hint)
         elif key == "$ref" and _target(data, text) is None:
-            report(FOREIGN_REFERENCE, path, f"`{text}` is not in this schema", hint="name a definition under `$defs`")
+            report(
+                FOREIGN_REFERENCE, path, f"`{text}` is not in this schema", hint="refer to a definition under `$defs`"
+            )
         elif key == "$ref" and _circles(data, text):
             hint = "move the reference into `properties` or `items`"
             report(ENDLESS_REFERENCE, path, f"`{text}` refers to itself for the same value", hint=hint)

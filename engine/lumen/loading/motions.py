@@ -87,7 +87,7 @@ def countable(data: Any, report: DocumentReport) -> bool:
         return True
     if len(data["keyframes"]) <= MAX_KEYFRAMES:
         return True
-    hint = f"a list may have {MAX_KEYFRAMES:,}; use blocks with `repeat`, or several motions"
+    hint = f"write at most {MAX_KEYFRAMES:,}; use blocks with `repeat`, or several motions"
     report(
         TOO_MANY_KEYS,
         ("keyframes",),

@@ -25,8 +25,9 @@ def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
     except OverflowError:
         sound = False
     if not sound:
-        shown = f".{value}".replace(".-", "-.") if isinstance(value, float) else "a number with endless digits"
-        report(NOT_A_NUMBER, path, f"`{shown}` can't be used here", hint="write a finite number")
+        shown = f".{value}".replace(".-", "-.") if isinstance(value, float) else ""
+        what = f"`{shown}`" if shown else "a number with so many digits"
+        report(NOT_A_NUMBER, path, f"{what} can't be used here", hint="write a finite number")
     return sound
 
 

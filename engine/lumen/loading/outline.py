@@ -111,14 +111,14 @@ class BehaviorOutline:
     def _hint(self, source: OutlinedState, target: str, known: Iterable[str]) -> str:
         key = target.lstrip("#.")
         if key in source.children:
-            return f"write a child state as `.{key}`"
+            return f"`{key}` is a child state: write `.{key}`"
         if loop := self._loop(source, key):
             name = loop.path.rpartition(".")[2]
-            return f"it is inside the `for` of `{name}`: go to `#{loop.name}`, which begins with an entry"
+            return f"it is inside the `for` of `{name}`: go to `#{loop.name}`, which begins with the first entry"
         if self._by_id(key):
-            return f"write a state elsewhere in the tree as `#{key}`"
+            return f"`{key}` is elsewhere in the tree: write `#{key}`"
         if deeper := [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]:
-            return f"write a state elsewhere in the tree as `#{deeper[0].name}`"
+            return f"`{key}` is elsewhere in the tree: write `#{deeper[0].name}`"
         return did_you_mean(target, known)
 
     def _loop(self, source: OutlinedState, key: str) -> OutlinedState | None:

@@ -57,9 +57,9 @@ def _instead(folder: Path) -> str:
         return f"rename {there} to {MAIN_FILE}"
     below = [_named(one) for one in islice(projects_below(folder), NAMED + 1)]
     if not below:
-        return "name the folder of a project, or make one with `lumen new DIR`"
+        return "pass the folder of a project, or make one with `lumen new DIR`"
     more = ", …" if len(below) > NAMED else ""
-    return f"name one of the projects below: {', '.join(f'`{name}`' for name in below[:NAMED])}{more}"
+    return f"pass the folder of one of these projects: {', '.join(f'`{name}`' for name in below[:NAMED])}{more}"
 
 
 def _named(folder: Path) -> str:

@@ -68,7 +68,7 @@ class PoseReader:
         """The angles of a posture [rad], None (and a diagnostic) where the robot does not know it."""
         if name in self.body.postures:
             return self.body.postures[name]
-        hint = did_you_mean(name, self.body.postures, f"{self.body.name} knows")
+        hint = did_you_mean(name, self.body.postures, f"{self.body.name} has")
         self.report(UNKNOWN_POSTURE, path, f"there is no posture `{name}`", hint=hint, cause=f"posture {name}")
         return None
 
@@ -108,7 +108,7 @@ class PoseReader:
             joint, angle = self.body.joints[role.joint], role.sign * value * self.factor
             if not self._fits(role.joint, angle):
                 low, high = sorted(role.sign * end / self.factor for end in (joint.minimum, joint.maximum))
-                message = f"{self.body.name} can't bring `{name}` to {value:g} {self.unit}, it stops at its limit"
+                message = f"{self.body.name} can't bring `{name}` to {value:g} {self.unit}: it stops at its limit"
                 hint = f"its range is {round(low, 4):g} to {round(high, 4):g} {self.unit}"
                 self.report(OUT_OF_REACH, here, message, hint=hint)
                 angle = min(max(angle, joint.minimum), joint.maximum)
@@ -195,7 +195,7 @@ class PoseReader:
     def _hand(self, joint: str, value: float, path: NodePath) -> PlacedAngles:
         if 0.0 <= value <= 1.0:
             return {joint: (value, path)}
-        hint = "0 is closed, 1 is open"
+        hint = "write a number from 0 (closed) to 1 (open)"
         self.report(HAND_OUT_OF_RANGE, path, f"a hand can't be opened to {value:g}", hint=hint)
         return {}
 
@@ -203,7 +203,7 @@ class PoseReader:
         """Joints on one drive move together: what is said of one holds for both."""
         for follower, leader in self.body.shared.items():
             if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > DRIVE_TOLERANCE:
-                message = f"`{leader}` and `{follower}` share one motor and can't be at different angles"
+                message = f"`{leader}` and `{follower}` share one motor, so they can't have different angles"
                 self.report(SHARED_DRIVE, own[follower][1], message, hint=f"give only `{leader}`")
             chosen = next((source[j] for source in (own, angles) for j in (leader, follower) if j in source), None)
             if chosen:

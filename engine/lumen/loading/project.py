@@ -280,7 +280,7 @@ def _folders(found: ProjectDraft) -> None:
     """Report folders of which nothing may be read; what is missing for that is not told."""
     for name, content in found.files.items():
         if isinstance(content, Unreadable) and (name in ALL_FOLDERS or name in MISTAKEN_FOLDERS or endings_in(name)):
-            hint = "replace it with a folder inside the project: Lumen reads nothing outside"
+            hint = "replace it with a folder inside the project: Lumen reads nothing outside the project"
             if content != LEADS_OUT:
                 hint = "make it a readable folder, or delete it"
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
@@ -337,7 +337,7 @@ def _strangers(found: ProjectDraft) -> None:
     folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
     for folder, name in folders.items():
         if is_robots_own(folder) and name not in known:
-            hint = f"{did_you_mean(name, known, 'there are')} as a folder for the motions of one robot"
+            hint = f"name the folder after a robot model: {did_you_mean(name, known, 'available:')}"
             first = min(file for file in found.files if file.startswith(f"{folder}/"))
             found.say(NOT_READ, first, f"files in {folder}/ are not read: no model is called `{name}`", hint)
 

@@ -10,7 +10,7 @@ from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.document_report import DocumentReport
 
 UNKNOWN_ROLE = Code("unknown-role", "references", ERROR, "no robot's body has a role of that name")
-LEFT_OUT = Code("left-out", "robot", INFO, "this robot's body can't do something, so it is left out")
+LEFT_OUT = Code("left-out", "robot", INFO, "the robot can't do an action or a movement, so it is left out")
 OUT_OF_REACH = Code("out-of-reach", "motions", WARNING, "the angle of a role is outside the joint's limits")
 
 
@@ -24,7 +24,7 @@ class RoleNames:
     def joint(self, name: str, path: NodePath) -> JointRole | None:
         """The joint of a role, None where the body has none; a role that no body has is reported."""
         if name not in JOINT_PATHS:
-            hint = did_you_mean(name, JOINT_PATHS, "roles are")
+            hint = did_you_mean(name, JOINT_PATHS, "the roles are")
             self._report(UNKNOWN_ROLE, path, f"there is no role `{name}`", hint=hint, key=True, cause=f"role {name}")
             return None
         if (role := self._body.roles.joint(name)) is None:
@@ -44,5 +44,5 @@ class RoleNames:
         if lacking := {name: path for name, path in self._lacking.items() if name not in self._report.lost}:
             names = ", ".join(f"`{name}`" for name in lacking)
             hint = "if the body has these joints, name them under `roles` of the body"
-            message = f"{self._body.name} has no {names}, so {what} can't move it"
+            message = f"{self._body.name} has no {names}, so {what} can't move {'them' if len(lacking) > 1 else 'it'}"
             self._report(LEFT_OUT, next(iter(lacking.values())), message, hint=hint, key=True)

@@ -79,7 +79,7 @@ class RoleReader:
             return None
         first = self._owner.setdefault(name, path)
         if first != path:
-            message = f"`{name}` is `{_written(first)}` and `{_written(path)}`"
+            message = f"the joint `{name}` has two roles: `{_written(first)}` and `{_written(path)}`"
             related = [(first, "the other role is here")]
             self.report(JOINT_IN_TWO_ROLES, where, message, hint="give each joint one role only", related=related)
         return JointRole(name, not isinstance(role, str) and role.get("reversed", False))
@@ -102,8 +102,10 @@ class RoleReader:
             )
         for side, hand in roles.hands.items():
             if hand.joint not in self.hands:
-                message = f"`{hand.joint}` turns, and a hand counts 0 closed to 1 open"
-                hint = f"write `opening: true` at the joint `{hand.joint}`"
+                message = (
+                    f"`{hand.joint}` is a hand, but has an angle instead of an opening from 0 (closed) to 1 (open)"
+                )
+                hint = f"add `opening: true` to the joint `{hand.joint}`"
                 self.report(INCOMPLETE_ROLE, (*_HERE, "hands", side), message, hint=hint)
 
     def _say(self, path: NodePath, who: str, lacking: list[str]) -> None:

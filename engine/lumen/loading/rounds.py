@@ -81,13 +81,19 @@ class Rounds:
         name, where = entry.data["for"]["as"], (*entry.where, "for")
         if entry.kind is not StateKind.COMPOUND:
             if entry.kind in (StateKind.ATOMIC, StateKind.PARALLEL):
-                hint = "give it `states`, one of them final: when it is reached, the next entry begins"
+                hint = "give it `states`, one of them final: when the final state is reached, the next entry begins"
                 message = f"{entry.title} has no states to run for each entry"
                 self.report(BAD_FOR, where, message, hint, key=True)
             return False
         if entry.parent and entry.parent.kind is StateKind.PARALLEL:
             hint = "put the `for` into a state inside the region"
-            self.report(BAD_FOR, where, f"{entry.title} is a region of a parallel state", hint, key=True)
+            self.report(
+                BAD_FOR,
+                where,
+                f"{entry.title} is a region of a parallel state, which can't have a `for`",
+                hint,
+                key=True,
+            )
             return False
         broken = any(self.report.broken((*child.where, "type")) for child in entry.children.values())
         if not broken and not any(child.kind is StateKind.FINAL for child in entry.children.values()):
@@ -97,8 +103,8 @@ class Rounds:
             )
         outer = [p for p, (other, _) in self.by_place.items() if other == name and entry.where[: len(p)] == p]
         if name in _TAKEN or name in self.known or outer:
-            what = "what a `for` around it calls its entry" if outer else "a name that every expression already has"
-            self.report(BAD_FOR, (*where, "as"), f"`{name}` is {what}", "choose another name")
+            what = "the entry of an outer `for`" if outer else "a name with a fixed meaning in expressions"
+            self.report(BAD_FOR, (*where, "as"), f"`{name}` is already {what}", "choose another name")
             return False
         return True
 

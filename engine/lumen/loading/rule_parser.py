@@ -164,7 +164,7 @@ class _Parser:
         try:
             weight = float(word.text)
         except ValueError:
-            raise self.error("the rule's weight", "a weight is a number from 0 to 1") from None
+            raise self.error("the rule's weight", "write a number from 0 to 1") from None
         if not 0.0 <= weight <= 1.0:
             raise RuleSyntaxError(
                 f"the weight {word.text} is not between 0 and 1", word, "write, for example, with 0.5"

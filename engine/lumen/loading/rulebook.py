@@ -88,7 +88,7 @@ class Rulebook:
         word = mention.variable
         if mention.concluded and word.text in self.data["inputs"]:
             hint = did_you_mean(word.text, self.data["outputs"], "the outputs are")
-            message = f"`{word.text}` is an input: after `then` use an output"
+            message = f"`{word.text}` is an input, but `then` needs an output"
             self.at_word(NOT_AN_OUTPUT, path, text, word, message, hint)
             return
         names = [*([] if mention.concluded else self.data["inputs"]), *self.data["outputs"]]

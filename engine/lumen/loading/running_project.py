@@ -75,8 +75,8 @@ def _copied() -> Path:
             return copy
         reason = (error.strerror or str(error)).lower()
         raise UsageError(
-            f"the shipped exhibition can't be copied to {copy}: {reason}; set XDG_STATE_HOME to a folder that can be"
-            " written, or make a project of your own with `lumen new DIR`"
+            f"the shipped exhibition can't be copied to {copy}: {reason}; set XDG_STATE_HOME to a writable folder,"
+            " or make your own project with `lumen new DIR`"
         ) from None
     finally:
         if draft is not None:

@@ -11,10 +11,10 @@ from lumen.loading.document_report import DocumentReport
 
 BAD_TIME = Code("bad-time", "statecharts", ERROR, "a time of day can't be read")
 UNQUOTED_TIME = Code(
-    "unquoted-time", "statecharts", WARNING, "a time of day without quotes, which some YAML readers take for a number"
+    "unquoted-time", "statecharts", WARNING, "a time of day has no quotes, so some YAML readers read it as a number"
 )
 
-TIME_HINT = "write one such as `18:00`, `mon-fri 18:00`, `sat,sun 11:00, 15:00` or `2026-12-24 14:00`"
+TIME_HINT = "write a time such as `18:00`, `mon-fri 18:00`, `sat,sun 11:00, 15:00` or `2026-12-24 14:00`"
 
 _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})")
 _DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
@@ -46,7 +46,9 @@ def read_schedule(text: str) -> Schedule:
     for word in _words(text):
         named, dated = word[0].isalpha(), _OTHER_DATE.fullmatch(word)
         if (named or dated) and times:
-            raise MisreadTimeError(f"`{word}` is after a time", "write days before times, each in its own row")
+            raise MisreadTimeError(
+                f"`{word}` is after a time", "write the days before the times; use a separate row for other days"
+            )
         if named:
             weekdays.update(_weekdays(word))
         elif dated:
@@ -68,7 +70,7 @@ def schedule(text: object, report: DocumentReport, where: NodePath, *, key: bool
         report(BAD_TIME, where, str(error), hint=error.hint, key=key)
         return None
     if _SEXAGESIMAL.fullmatch(str(text)) and not _quoted(report, where, key):
-        message = f"without quotes some YAML readers take `{text}` for the number {found.times[0]}"
+        message = f"without quotes, some YAML readers read `{text}` as the number {found.times[0]}"
         report(UNQUOTED_TIME, where, message, hint=f'write `"{text}"`', key=key)
     return found
 
@@ -89,7 +91,7 @@ def _time(word: str) -> int:
     hour, minute = int(match[1]), int(match[2])
     if hour > 23 or minute > 59:
         midnight = "; midnight is `00:00`" if (hour, minute) == (24, 0) else ""
-        raise MisreadTimeError(f"there is no `{word}`", f"write a time from `00:00` to `23:59`{midnight}")
+        raise MisreadTimeError(f"`{word}` is not a time of day", f"write a time from `00:00` to `23:59`{midnight}")
     return hour * 60 + minute
 
 
@@ -102,7 +104,7 @@ def _other_time(word: str) -> str:
         if hour < 24 and minute < 60:
             return f"write `{hour:02}:{minute:02}`"
     if "-" in word:
-        return "an `at` is one moment, not a span: write its beginning here, and its end in another state"
+        return "`at` is one moment, not a period: write the beginning here, and the end in another state"
     return TIME_HINT
 
 
@@ -129,7 +131,7 @@ def _cron(text: str) -> str:
     if len(fields) != 5 or not all(map(_CRON.fullmatch, fields)) or all(f.isalpha() for f in fields):
         return ""
     minute, hour, day, month, weekday = fields
-    hint = "this is a line of cron: write days before times, as in `mon-fri 18:00`"
+    hint = "this is cron syntax: write days before times, as in `mon-fri 18:00`"
     if not (minute.isdigit() and re.fullmatch(r"[0-9]+(,[0-9]+)*", hour) and (day, month) in (("*", "*"), ("?", "*"))):
         return hint
     weekday = "*" if weekday in ("0-6", "0-7", "1-7") else weekday
@@ -140,7 +142,7 @@ def _cron(text: str) -> str:
         read_schedule(written)
     except MisreadTimeError:
         return hint
-    return f"this is a line of cron: write `{written}`"
+    return f"this is cron syntax: write `{written}`"
 
 
 def _date(word: str) -> date:
@@ -168,7 +170,7 @@ def _weekday(word: str) -> int:
     short = word[:3].lower()
     if short in WEEKDAYS and word.lower().isalpha():
         raise MisreadTimeError(f"`{word}` is not a day", f"write `{short}`")
-    raise MisreadTimeError(f"`{word}` is not a day", did_you_mean(word, WEEKDAYS, "days are"))
+    raise MisreadTimeError(f"`{word}` is not a day", did_you_mean(word, WEEKDAYS, "the days are"))
 
 
 def _quoted(report: DocumentReport, where: NodePath, key: bool) -> bool:

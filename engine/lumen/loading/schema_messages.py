@@ -64,14 +64,14 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
             right = _transition(value, wanted, path) or _instead(value, wanted, error.schema)
             hint = right or like(path, error.schema, wanted) or hint
             if value is None:
-                return f"{name} is empty, it should be {_either(wanted)}", hint
+                return f"{name} is empty, but should be {_either(wanted)}", hint
             return f"{name} should be {_either(wanted)}, not {kind(value)}", hint
         case "enum" | "const":
             choices = bound if error.validator == "enum" else [bound]
             allowed = [_short(v) for v in choices if v is not None]
             if True in choices and (truth := _truth(value)) in allowed:
                 return f"{name} can't be `{value}`", f"write `{truth}`: in YAML 1.2 `{value}` is a text"
-            hint = _colour(value, allowed) or did_you_mean(_short(value), allowed, "allowed are")
+            hint = _colour(value, allowed) or did_you_mean(_short(value), allowed, "allowed:")
             return f"{name} can't be `{_short(value)}`", hint
         case "pattern":
             small = f"write it in lower case: `{value.lower()}`" if occurs(bound, value.lower()) else hint
@@ -81,23 +81,23 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
         case "minimum" | "maximum" if {"minimum", "maximum"} <= error.schema.keys():
             low, high = error.schema["minimum"], error.schema["maximum"]
             way = "least" if error.validator == "minimum" else "most"
-            return f"{name} is {value:g}, it should be at {way} {bound:g}", f"write a number from {low:g} to {high:g}"
+            return f"{name} is {value:g}, but should be at {way} {bound:g}", f"write a number from {low:g} to {high:g}"
         case "minimum":
-            return f"{name} is {value:g}, it should be at least {bound:g}", hint
+            return f"{name} is {value:g}, but should be at least {bound:g}", hint
         case "maximum":
-            return f"{name} is {value:g}, it should be at most {bound:g}", hint
+            return f"{name} is {value:g}, but should be at most {bound:g}", hint
         case "exclusiveMinimum":
-            return f"{name} is {value:g}, it should be more than {bound:g}", hint
+            return f"{name} is {value:g}, but should be more than {bound:g}", hint
         case "exclusiveMaximum":
-            return f"{name} is {value:g}, it should be less than {bound:g}", hint
+            return f"{name} is {value:g}, but should be less than {bound:g}", hint
         case "multipleOf":
-            return f"{name} is {value:g}, it should be a multiple of {bound:g}", hint
+            return f"{name} is {value:g}, but should be a multiple of {bound:g}", hint
         case "minLength" | "minProperties" if not value:
             return f"{name} is empty", hint or "write a value, or delete the key"
         case "minItems":
-            return f"{name} has {_count(len(value))}, it should have at least {bound}", hint
+            return f"{name} has {_count(len(value))}, but should have at least {bound}", hint
         case "maxProperties":
-            return f"{name} has {len(value)} keys, it should have at most {bound}", hint
+            return f"{name} has {len(value)} keys, but should have at most {bound}", hint
         case "items" | "maxItems":
             return f"{name} has too many items", hint
         case "uniqueItems":
@@ -237,7 +237,7 @@ def _colour(value: Any, allowed: Collection[str]) -> str:
     if "turquoise" not in allowed or not isinstance(value, str):
         return ""
     if re.fullmatch(r"[0-9a-fA-F]{6}", value):
-        return f'write `"#{value}"`: a colour in numbers begins with `#` and needs quotes'
+        return f'write `"#{value}"`: a colour code begins with `#` and needs quotes'
     return f"did you mean `{meant}`?" if (meant := _COLOURS.get(value.lower())) else ""
 
 

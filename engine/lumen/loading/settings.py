@@ -34,7 +34,10 @@ from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the robot does not start on the stage")
 IDLE_CHECK = Code(
-    "idle-check", "reload", WARNING, "a check of saved files on recorded visits has no visits or no setting"
+    "idle-check",
+    "reload",
+    WARNING,
+    "saved files can't be checked against recorded visits: the visits or a setting are missing",
 )
 UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not the name of a time zone")
 
@@ -143,11 +146,12 @@ def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic |
     if said > VOCABULARY:
         hint = f"install a newer Lumen; if the files use nothing newer, write `{VOCABULARY_KEY}: {VOCABULARY}`"
         return OTHER_VOCABULARY.at(
-            place, f"this is written for vocabulary {said}; this Lumen supports {VOCABULARY}", hint
+            place, f"this project is written for vocabulary {said}, but this Lumen supports {VOCABULARY}", hint
         )
     if said < VOCABULARY:
         message = (
-            f"this is written for vocabulary {said}; this Lumen supports {VOCABULARY}, in which words have changed"
+            f"this project is written for vocabulary {said}, but this Lumen supports {VOCABULARY},"
+            " in which some words have changed"
         )
         return OTHER_VOCABULARY.at(place, message, "run `lumen upgrade`: it rewrites the files and prints the changes")
     return None
@@ -203,7 +207,10 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
         if not (isfinite(low) and isfinite(high) and low <= 0.0 <= high and low < high):
             message = f"the robot starts at 0, which is not inside [{low:g}, {high:g}]"
             report(
-                BAD_STAGE, ("stage", axis), message, hint="write a first number of at most 0 and a second of at least 0"
+                BAD_STAGE,
+                ("stage", axis),
+                message,
+                hint="write a first number that is at most 0, and a second that is at least 0",
             )
             return None
         spans.append((low * unit, high * unit))
@@ -220,7 +227,7 @@ def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSetting
     numbers = {key: said[key] for key in ("keep", "size") if key in said and finite(said[key], report, ("record", key))}
     ring = duration(said, "ring", report, ("record",))
     if ring is not None and not SHORTEST_RING <= ring <= LONGEST_RING:
-        message = f"the ring can't be {said['ring']} long: from {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
+        message = f"`ring` can't be {said['ring']}: it can be {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
         report(
             BAD_DURATION,
             ("record", "ring"),

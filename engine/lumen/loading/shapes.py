@@ -5,7 +5,7 @@ from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 
-MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "a kind of state does not have this key")
+MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "this type of state can't have this key")
 NO_STATES = Code("no-states", "statecharts", ERROR, "a compound or parallel state has no states")
 NEVER_DONE = Code("never-done", "statecharts", ERROR, "a state has `onDone` but no `do`")
 
@@ -45,15 +45,15 @@ def _check_keys(entry: OutlinedState, report: DocumentReport) -> None:
     for key in entry.data:
         if key in allowed:
             continue
-        hint = did_you_mean(key, allowed - _MACHINE, "it may have")
+        hint = did_you_mean(key, allowed - _MACHINE, "allowed here:")
         if key in ("history", "target"):
             hint = (
                 "add `type: history`"
                 if key == "history"
-                else "write them under `on`, `hears`, `always`, `after` or `at`"
+                else "write transitions under `on`, `hears`, `always`, `after` or `at`"
             )
         report.missed.update(filter(lambda value: isinstance(value, str), [entry.data[key]]))
-        message = f"{_ARTICLES.get(entry.kind, f'a {entry.kind}')} state has no `{key}`"
+        message = f"{_ARTICLES.get(entry.kind, f'a {entry.kind}')} state can't have `{key}`"
         report(MISPLACED_KEY, (*entry.where, key), message, hint=hint, key=True)
 
 
@@ -69,7 +69,7 @@ def _check_done(entry: OutlinedState, report: DocumentReport) -> None:
     if report.broken((*entry.where, "do")):
         return
     if entry.kind is StateKind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
-        hint = "add a `do`, or use `always` in place of it"
+        hint = "add a `do`, or use `always` instead of `onDone`"
         report(
             NEVER_DONE, (*entry.where, "onDone"), f"{entry.title} has no `do` that could finish", hint=hint, key=True
         )

@@ -9,6 +9,7 @@ from lumen.language.shared import SharedKey
 from lumen.loading.complaints import WRONG_VALUE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
+from lumen.loading.schema_messages import TYPE_NAMES
 
 UNKNOWN_OWNER = Code("unknown-owner", "robot", ERROR, "a key of `shared` names a robot that is not in the house")
 
@@ -27,8 +28,8 @@ def build_shared(data: Mapping[str, Any], robots: Collection[str], report: Docum
             report(UNKNOWN_OWNER, ("shared", name, "owner"), f"there is no robot `{owner}`", hint)
         elif not JsonSchema({"type": kind}).fits(initial):
             message, hint = (
-                f"`{name}` can't have the first value {initial!r}: it is a {kind}",
-                f"write one, such as {FIRST[kind]!r}",
+                f"the initial value of `{name}` is {initial!r}, but should be {TYPE_NAMES[kind]}",
+                f"write {TYPE_NAMES[kind]}",
             )
             report(WRONG_VALUE, ("shared", name, "initial"), message, hint)
         elif isinstance(initial, bool | str) or finite(initial, report, ("shared", name, "initial")):

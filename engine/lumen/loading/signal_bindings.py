@@ -16,7 +16,7 @@ from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.loading.complaints import WRONG_VALUE
 
 UNBOUND_OUTPUT = Code(
-    "unbound-output", "controllers", WARNING, "an output of a bound controller is bound to nothing, or to two things"
+    "unbound-output", "controllers", WARNING, "an output of a controller is bound to nothing, or to two targets"
 )
 
 STEP_SHARE = 0.02
@@ -50,7 +50,9 @@ def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
         )
     if len(deeds) > 1:
         said = " and ".join(f"`{deed}`" for deed in deeds)
-        return BindingFault(WRONG_VALUE, f"is bound to {said}, only one is allowed", "use a separate output for each")
+        return BindingFault(
+            WRONG_VALUE, f"is bound to {said}, but only one is allowed", "use a separate output for each"
+        )
     if deeds == ["event"] and len(ends) != 1:
         hint = "write `above: 0.7`, or `below: 0.2`"
         return BindingFault(WRONG_VALUE, "needs one threshold for its event", hint)

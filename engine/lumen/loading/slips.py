@@ -27,7 +27,7 @@ class Slip(NamedTuple):
 
 NOT_CLOSED = (
     "a quoted text begins here and is not closed",
-    "close it with the same quote; if the text contains that quote, use the other kind around the text",
+    "close it with the same quote; if the text contains that quote, use the other kind of quote around the text",
 )
 NO_COMMA = "a comma is missing between two entries in brackets", "write `,` here"
 COLON_IN_TEXT = "a text that contains a colon and a space needs quotes"
@@ -39,7 +39,7 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
         re.compile("^ *(?P<slip>[\u00ad\u200b-\u200f\u2060\ufeff]+)"),
         "",
         "there is an invisible character here",
-        "delete it: it may come from text that was copied",
+        "delete it: it may come from copied text",
     ),
     (
         re.compile("^[ ]*(?P<slip>[\u00a0\u2007\u202f\u3000]+)"),
@@ -50,7 +50,7 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip>： ?)"),
         ": ",
-        "this is a wide colon from Chinese or Japanese text",
+        "this is a full-width colon, as in Chinese or Japanese text",
         "write `:` and a space",
     ),
     (
@@ -62,7 +62,7 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
     (
         re.compile("^ *(?P<slip>[–—•*]) +\\w"),
         "-",
-        "a list item begins with a hyphen",
+        "this list item does not begin with a hyphen",
         "write `- `",
     ),
     (
@@ -86,7 +86,7 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
     (
         re.compile(f"^ *(?:- )?{KEY}(?P<slip> *;)(?: |$)"),
         ":",
-        "this is a semicolon, a key needs a colon",
+        "this is a semicolon, but a key needs a colon",
         "write `: `",
     ),
     (
@@ -128,7 +128,7 @@ def signs(text: str, index: int) -> Iterator[Slip]:
             yield line.slip(start, end - start, (message, hint), start, end, right)
     if found := re.search("[“”„«»‘’]", text):
         straight = re.sub("[“”„«»]", '"', re.sub("[‘’]", "'", text))
-        words = f"{found[0]} is not a quote in YAML, only straight quotes are allowed", "write straight quotes: \" or '"
+        words = f"{found[0]} is not a quote in YAML: only straight quotes are allowed", "write straight quotes: \" or '"
         yield line.slip(found.start(), 1, words, 0, len(text), straight)
 
 
@@ -250,14 +250,14 @@ def colons(text: str, index: int) -> Iterator[Slip]:
         yield line.slip(found.start("slip") + 1, 1, words, *found.span("slip"), " ")
     if found := re.search(rf"{item}(?P<all>{KEY}: [^,]+(?:, *{KEY}: [^,]+)+) *$", text):
         (start, end), meant = found.span("all"), f"{{{found['all']}}}"
-        words = "several keys in one line need braces", f"write `{short(meant)}`"
+        words = "several keys on one line need braces", f"write `{short(meant)}`"
         yield line.slip(start, end - start, words, start, end, meant)
     found = re.search(rf"{item}(?P<key>{KEY}): +(?P<value>(?P<inner>#?[a-z][\w.]*): .*?) *$", text)
     if found and (
         len(found["key"]) > 2 or found["key"] in ("on", "do", "at", "if")
     ):  # a language has two letters, and a text behind it
-        message = f"two keys are in one line: `{found['key']}` and `{found['inner']}`"
-        hint = f"write `{found['inner']}:` in the next line, indented further, or put quotes around it if it is a text"
+        message = f"two keys are on one line: `{found['key']}` and `{found['inner']}`"
+        hint = f"write `{found['inner']}:` on the next line, indented further, or put quotes around it if it is a text"
         yield line.quoted(*found.span("value"), message, hint)
     if found := re.search(rf"{item}{KEY}: +(?P<value>(?!- )[^\"'\[{{|>#].*?: ?.*?) *$", text):
         yield line.quoted(*found.span("value"), COLON_IN_TEXT)

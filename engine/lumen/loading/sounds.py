@@ -24,10 +24,11 @@ def sound_duration(root: Path, file: str) -> float:
             channels, bits, rate = sound.getnchannels(), 8 * sound.getsampwidth(), sound.getframerate()
             frames = min(sound.getnframes(), path.stat().st_size // (channels * bits // 8))
     except (wave.Error, EOFError):
-        raise ValueError("it is not a WAV file with whole-number samples (PCM)") from None
+        raise ValueError("it is not a WAV file with PCM samples") from None
     if bits != 16 or channels not in (1, 2) or not RATES[0] <= rate <= RATES[1]:
         raise ValueError(
-            f"it has {channels} channels, {bits} bits, {rate} Hz; save it with one or two channels of 16 bits"
+            f"it has {channels} channels, {bits} bits and {rate} Hz;"
+            f" 1 or 2 channels, 16 bits and {RATES[0]} to {RATES[1]} Hz are allowed"
         )
     if not frames:
         raise ValueError("it is empty")

@@ -110,8 +110,10 @@ def _moment(text: str, report: DocumentReport, where: NodePath) -> Schedule | No
     """A time of day, which may name the day; a story begins once."""
     found = schedule(text, report, where)
     if found and len(found.times) > 1:
-        hint = "write one of them here, and a separate story for each other one"
-        report(BAD_TIME, where, f"`{text}` names {len(found.times)} times of day", hint=hint)
+        hint = "write one of them here, and a separate story for each of the others"
+        report(
+            BAD_TIME, where, f"`{text}` contains {len(found.times)} times of day, but a story begins once", hint=hint
+        )
         return None
     return found
 

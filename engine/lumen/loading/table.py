@@ -52,7 +52,7 @@ class _Table:
             self.report.lost.add(term)  # its own variable has none of that name now
             return
         if term in self.sides[side][name]["terms"]:
-            message = f"`{name}` has a term `{term}` already: a term may have only one shape"
+            message = f"`{name}` already has a term `{term}`: a term can have only one shape"
             self.report(TWO_SHAPES, path, message, hint="delete one of them", key=True)
             return
         self.sides[side][name]["terms"][term] = {kind: parameters}

@@ -14,7 +14,7 @@ from lumen.loading.rule_parser import KEYWORDS
 EMPTY_TERM = Code("empty-term", "controllers", ERROR, "a term covers nothing")
 NO_SHAPE = Code("no-shape", "controllers", ERROR, "a term has no shape")
 NOT_ASCENDING = Code("not-ascending", "controllers", ERROR, "the corners of a term are not in rising order")
-NOT_POSITIVE = Code("not-positive", "controllers", ERROR, "a width is not above 0")
+NOT_POSITIVE = Code("not-positive", "controllers", ERROR, "the width of a term is not above 0")
 RESERVED_NAME = Code(
     "reserved-name", "controllers", ERROR, "a variable or term has a name that rules use for something else"
 )
@@ -84,7 +84,7 @@ class _Term:
 
     def shapeless(self) -> None:
         if len(self.kinds) > 1:
-            message = f"`{self.name}` is a `{self.kinds[0]}` and a `{self.kinds[1]}`: a term may have only one shape"
+            message = f"`{self.name}` is a `{self.kinds[0]}` and a `{self.kinds[1]}`: a term can have only one shape"
             self.report(TWO_SHAPES, (*self.path, self.kinds[1]), message, hint="split it into two terms", key=True)
         elif not any(pruned[: len(self.path)] == self.path for pruned in self.report.pruned):
             hint = "write, for example, `gaussian: [0, 80]`"
@@ -96,11 +96,11 @@ class _Term:
             right, wanted = count >= 2, "at least one point [x, membership]"
         elif kind == "linear":
             right = count in (self.inputs, self.inputs + 1)
-            wanted = f"{self.inputs} coefficients, one for each input, and then a constant if you like"
+            wanted = f"{self.inputs} coefficients, one for each input, and optionally a constant"
         else:
             right, wanted = count == len(names), f"{len(names)} ({', '.join(names)})"
         if not right and not self.report.broken((*self.path, kind)):
-            message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, it needs {wanted}"
+            message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, but needs {wanted}"
             hint = f"write `{kind}: [{', '.join(names)}]`" if kind not in ("discrete", "linear") else ""
             self.report(WRONG_PARAMETERS, (*self.path, kind), message, hint=hint)
         return right
@@ -133,12 +133,13 @@ class _Term:
         if kind in _ASCENDING:
             for i in range(1, len(values)):
                 if values[i] < values[i - 1]:
-                    message = f"{self.what(kind, i)} of `{self.name}`, {values[i]:g}, comes before {values[i - 1]:g}"
+                    what, before = self.what(kind, i), values[i - 1]
+                    message = f"{what} of `{self.name}` is {values[i]:g}, but the number before it is {before:g}"
                     hint = f"write them in ascending order: {', '.join(f'{v:g}' for v in sorted(values))}"
                     self.report(NOT_ASCENDING, self.at(kind, i), message, hint=hint)
                     return False
         if kind in _DIFFERENT and values[0] == values[1]:
-            message = f"`{kind}` of `{self.name}` begins and ends at {values[0]:g}"
+            message = f"`{kind}` of `{self.name}` begins and ends at {values[0]:g}, so it covers nothing"
             self.report(EMPTY_TERM, (*self.path, kind), message, hint="write two different numbers")
             return False
         return True

@@ -21,7 +21,7 @@ CONFLICTING_TARGETS = Code(
     "conflicting-targets", "statecharts", ERROR, "the states of a target can't be active together"
 )
 MISPLACED_APPROVAL = Code(
-    "misplaced-approval", "statecharts", ERROR, "a transition with `approval` is not started by an event from outside"
+    "misplaced-approval", "statecharts", ERROR, "a transition with `approve` is not started by an event from outside"
 )
 ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would repeat for ever")
 
@@ -168,7 +168,7 @@ class TransitionReader:
         """What has to be approved, None (and reported) where nothing can wait."""
         if event == "*" or event.split(".")[0] in _OWN or len(set(where) & _OUTSIDE) == 0:
             message = "only a transition that an event from outside starts can wait for approval"
-            hint = "go to a state that waits for a button, and add `approval` to the transition in its `on`"
+            hint = "go to a state that waits for a button, and add `approve` to the transition in its `on`"
             self.report(MISPLACED_APPROVAL, where, message, hint=hint, key=True)
             return None
         if isinstance(data, str):

@@ -64,7 +64,7 @@ class _Variables:
     def named(self, name: str) -> None:
         plain_name(name, self.report, (self.side, name))
         if self.side == "outputs" and name in self.data["inputs"]:
-            message = f"`{name}` is an input already"
+            message = f"`{name}` is already the name of an input"
             self.report(DUPLICATE_VARIABLE, ("outputs", name), message, hint="rename one of them", key=True)
 
     def named_in(self, name: str) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ class _Variables:
             )
             self.report(EMPTY_RANGE, path, f"the range [{low:g}, {high:g}] of `{name}` is empty", hint=hint)
         elif self.side == "outputs" and not (isfinite(low) and isfinite(high)):
-            message = f"the range of the output `{name}` has no end"
+            message = f"the range of the output `{name}` is infinite"
             self.report(NOT_FINITE, path, message, hint="write a range of two numbers")
         else:
             return True
@@ -120,6 +120,6 @@ class _Variables:
                 self.report(TERM_WITHOUT_VALUE, path, message, hint=hint, key=True)
             elif not weighted and term.kind in VALUE_TERMS:
                 what = f"`{variable.defuzzifier}` needs sets" if output else "an input needs sets"
-                hint = "use `defuzzifier: weighted-average`" if output else "use a shape, as `triangle`"
-                message = f"{what}, and `{term.kind}` is a single value"
+                hint = "use `defuzzifier: weighted-average`" if output else "use a shape such as `triangle`"
+                message = f"{what}, but `{term.kind}` is a single value"
                 self.report(TERM_WITHOUT_SET, path, message, hint=hint, key=True)

@@ -55,7 +55,7 @@ def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
     before = lines_of(content[:at].decode("utf-8-sig", "replace"))
     line, column = len(before), len(before[-1]) + 1
     sign = content[at : at + 1].decode("cp1252", "replace")
-    message = f"the file is not UTF-8 text: `{sign}` may be from Windows or Latin-1"
+    message = f"the file is not UTF-8 text: `{sign}` may be encoded as Windows-1252 or Latin-1"
     return NOT_UTF8.at(Place(file, line, column, line, column + 1), message, "save it as UTF-8")
 
 
@@ -98,7 +98,9 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if "\t" in (before := source[: mark.column + 1]) and not before.strip():
         column = before.index("\t") + 1
         place = Place(file, failed + 1, column, failed + 1, column + 1)
-        return TAB.at(place, "this line is indented with a tab, YAML allows only spaces", _spaces(file, lines, failed))
+        return TAB.at(
+            place, "this line is indented with a tab, but YAML allows only spaces", _spaces(file, lines, failed)
+        )
     if "quoted scalar" in context or _begins_late(error, lines):
         mark = error.context_mark  # type: ignore[attr-defined]
     from lumen.loading.mending import mistake  # only where something slipped

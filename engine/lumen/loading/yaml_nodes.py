@@ -91,7 +91,7 @@ class NodeReader:
 
     def commas(self, node: yaml.SequenceNode, numbers: list[str]) -> list[Any]:
         """Report a list of numbers that are written with commas."""
-        message = "a comma ends a number, so these would be twice as many numbers"
+        message = "a comma separates numbers, so this list would have twice as many"
         self.say(DECIMAL_COMMA, node, message, f"write points: [{', '.join(numbers)}]")
         return [resolve(number) for number in numbers]
 
@@ -131,14 +131,14 @@ class NodeReader:
     def duplicate(self, key: yaml.Node, path: NodePath) -> None:
         """Report a key that stands a second time; those of one map are one finding."""
         first = self.spans[(*path, key.value)].key
-        hint = f"the first one is in line {first.line}" if first else ""
+        hint = f"delete one of them: the first one is on line {first.line}" if first else ""
         related = (Related(first, "the first one is here"),) if first else ()
-        message, cause = f"`{key.value}` is in the same place twice", f"{self.file} twice in {path}"
+        message, cause = f"`{key.value}` is written twice in the same place", f"{self.file} twice in {path}"
         self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
 
     def too_deep(self, key: yaml.Node, first: yaml.Node, depth: int) -> None:
         """Report a key that stands as far in as those that were meant to be below it."""
-        message = f"`{key.value}` is in the same column as `{first.value}` below it, so keys are in one place twice"
+        message = f"`{key.value}` is in the same column as `{first.value}` below it, so some keys are written twice"
         blanks = "2 spaces" if key.start_mark.column > 1 else "the spaces"
         self.say(DUPLICATE_KEY, key, message, f"delete {blanks} before `{key.value}`")
 

@@ -19,7 +19,7 @@ ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "alerts are sent unen
 ALERT_QUIET = Code("alert-quiet", "alerts", ERROR, "quiet hours begin and end at the same time")
 ALERT_TO_NOBODY = Code("alert-to-nobody", "alerts", WARNING, "alerts have no recipient")
 ALERT_WAY = Code(
-    "alert-way", "alerts", ERROR, "a recipient has none of `webhook`, `mail` and `command`, or more than one"
+    "alert-way", "alerts", ERROR, "a recipient does not have exactly one of `webhook`, `mail` and `command`"
 )
 
 WAYS = ("webhook", "mail", "command")

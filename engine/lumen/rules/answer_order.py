@@ -55,12 +55,12 @@ def _repeated(report: DocumentReport, table: str, rows: int) -> None:
         repeated = [(p, above) for p, above in zip(phrases, found, strict=True) if all(row < i for row, _ in above)]
         for phrase, above in repeated if len(repeated) < len(phrases) else ():
             row, path = above[0]
-            message = f"`{phrase.text}` is also in row {row + 1} of `{table}`, which is used instead"
+            message = f"`{phrase.text}` is also in row {row + 1} of `{table}`, which is tried first"
             report(
                 SHADOWED_PHRASE,
                 phrase.path,
                 message,
-                "delete it from one of the two",
+                "delete it from one of the two rows",
                 related=[(path, "the same phrase")],
             )
 

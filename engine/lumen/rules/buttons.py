@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
             rivals = (other for other in placed[:number] if _collide(machine, (state, button), other))
             if rival := next(rivals, None):
                 message = f"the key `{button.key}` also belongs to {_shown(rival[1])}, which is shown at the same time"
-                related = [((*rival[1].where, "key"), "the other button has it here")]
+                related = [((*rival[1].where, "key"), "the other button with this key")]
                 report(
                     SHARED_BUTTON_KEY, (*button.where, "key"), message, "give this button another key", related=related
                 )
@@ -42,7 +42,7 @@ def _dead(button: Button, machines: tuple[MachineDefinition, ...], report: Docum
     waited = {descriptor for machine in machines for descriptor in descriptors(machine)}
     known = {descriptor for descriptor in waited if "*" not in descriptor}
     if any(hears(descriptor, event) for descriptor in waited):
-        message = f"{_shown(button)} can't be pressed: no state that is active with it waits for `{event}`"
+        message = f"{_shown(button)} can't be pressed: while it is shown, no active state waits for `{event}`"
         hint = "move it to a state that waits for the event, or handle the event here under `on`"
     else:
         message = f"nothing waits for the event `{event}` of {_shown(button)}"

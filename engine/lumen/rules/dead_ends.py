@@ -251,7 +251,7 @@ class _Ways:
                 names.add(transition.event)
         if names:
             heard = " or ".join(f"`{name}`" for name in sorted(names))
-            message = f"`{state.name}` may wait for {heard} for ever"
+            message = f"`{state.name}` waits for {heard} without a time limit"
             hint = "add a time limit for visitors who walk away, such as `after: {30s: …}`"
             self.report(WAITS_FOR_EVER, state.where, message, hint, key=True)
 

@@ -63,7 +63,7 @@ def check(draft: ProjectDraft) -> None:
     strays = dict(_Ways(machine, parts, settings.places).strays()) if machine else {}
     for where, point in strays.items():
         x, y = round(point.x, 2) + 0.0, round(point.y, 2) + 0.0  # -0.0 becomes 0.0
-        message = f"this walk leads to x {x:.2f}, y {y:.2f} m from the start, where there is no ground"
+        message = f"this walk leads off the ground, to x {x:.2f} m, y {y:.2f} m from the start"
         draft.report("behaviors", settings.behavior)(WALK_BEYOND_GROUND, (*where, "walk"), message, hint, key=True)
 
 

@@ -561,7 +561,7 @@ def _report(machine: MachineDefinition, around: list[_Taken], asked: list[str], 
         f"{_way(event)} of `{machine.states[t.source].name or machine.id}`" for t, event in rows[:MAX_SHOWN_TRANSITIONS]
     )
     message, code = "this loop never ends", ENDLESS_CHAIN
-    hint = "add a step that takes time, such as `after: {1s: …}`, or give one of them a `guard`"
+    hint = "add a step that takes time, such as `after: {1s: …}`, or give one of these transitions a `guard`"
     if asked:
         message += f" while {' and '.join(f'`{shown}`' for shown in asked)} {'are' if len(asked) > 1 else 'is'} false"
         hint = "change a value that the guard checks, or add a step that takes time"

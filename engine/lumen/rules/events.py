@@ -152,7 +152,7 @@ def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> st
         return f"delete the row `{name}: null` in lumen.yaml, or declare the event under `events:`"
     families = (family.removesuffix(".") for family in BUILT_IN_FAMILIES)
     hint = did_you_mean(event, {*known, *built_in, *families} - {event} - lost)
-    return hint if "mean" in hint else "declare it under `events:`, or give a route in lumen.yaml this `event`"
+    return hint if "mean" in hint else "declare it under `events:`, or write it as the `event` of a route in lumen.yaml"
 
 
 def _prefixes(event: str) -> list[str]:
@@ -217,5 +217,5 @@ def _raised(draft: ProjectDraft, name: str, report: DocumentReport) -> None:
                 if nearest(event, report.missed):
                     continue  # it was meant there
                 hint = did_you_mean(event, {d for d in waited if "*" not in d})
-                hint = hint if "mean" in hint else "handle it under `on:`, or delete this"
+                hint = hint if "mean" in hint else "handle it under `on:`, or delete this action"
                 report(UNUSED_EVENT, path, f"nothing waits for the event `{event}`", hint)

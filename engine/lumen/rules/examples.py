@@ -17,7 +17,7 @@ from lumen.rules.statecharts import within
 from lumen.rules.word_tables import home_of
 
 NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never matches a sentence")
-SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase by itself matches another row than its own")
+SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase matches a different row instead of its own")
 
 MAX_TRIED = 300
 """Sentences that are tried to find one that takes a row with `not` or `asked`."""
@@ -114,12 +114,14 @@ class _Examples(HeardRows):
         other, words = self.by_number[taken.number], self.words(example.text, taken.find)
         whole = words == example.text
         inner = other.state.path != row.state.path
-        message = f"`{example.text}` of `{example.name}` {'first ' if inner else ''}matches the row {other.shown}"
+        message = f"`{example.text}` of `{example.name}` matches the row {other.shown}{' first' if inner else ''}"
         message += "" if whole else f" because of `{words}`"
         if inner:
             hint = f"add `{example.name}` to that row, or remove `{words}` from its phrases"
         elif whole:
-            hint = f"delete it from one of the two, or put `{row.hears.key}` first: the first of two equal rows wins"
+            hint = (
+                f"delete it from one of the rows, or put `{row.hears.key}` first: of equal matches, the first one wins"
+            )
         else:
             hint = f"give this phrase more words, or put `{row.hears.key}` before `{other.hears.key}`"
         report, path = example.written.report, example.written.path
@@ -141,7 +143,7 @@ class _Examples(HeardRows):
             why = f"the phrases of {names} match even if they are negated (`anyhow: true`)"
         else:
             why = f"the phrases of {names} already contain a negation"
-        self.never(row, why, f"delete it: `{'|'.join(row.hears.names)}` matches these sentences")
+        self.never(row, why, f"delete this row: `{'|'.join(row.hears.names)}` already matches these sentences")
 
     def otherwise(self, row: SaidRow) -> None:
         """Report an `else` for which a state around it, or each state within, leaves nothing."""

@@ -7,7 +7,10 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.statecharts import within
 
 JUMP_INTO_FOR = Code(
-    "jump-into-for", "statecharts", ERROR, "a transition jumps into a `for` without an entry of its list"
+    "jump-into-for",
+    "statecharts",
+    ERROR,
+    "a transition from outside leads into a `for`, which then has no current entry",
 )
 
 
@@ -29,7 +32,9 @@ def _jumps(machine: MachineDefinition, loops: list[str], report: DocumentReport)
                     outer, loop = machine.states[past[0]], machine.states[past[0]].for_each
                     assert loop
                     inner = machine.states[target].name.rpartition(".")[2]
-                    message = f"`{inner}` is inside the `for` of `{outer.name}`, which has no `{loop.variable}` yet"
+                    message = (
+                        f"`{inner}` is inside the `for` of `{outer.name}`, where no `{loop.variable}` is selected yet"
+                    )
                     hint = f"go to `{outer.name.rpartition('.')[2]}`, which starts with the first `{loop.variable}`"
                     report(JUMP_INTO_FOR, transition.where, message, hint, related=[(outer.where, "the `for` is here")])
                     report.lost |= {text for path in machine.states for text in path.split(".")}

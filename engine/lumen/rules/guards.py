@@ -60,10 +60,14 @@ def _told(report: DocumentReport, where: NodePath) -> bool:
 def _constant(guard: Expression, report: DocumentReport) -> None:
     if _never(guard.source):
         simple = _simple(tree(guard.source))
-        message = "this is never true" if simple else "this is never true: its parts contradict each other"
-        report(CONSTANT_GUARD, guard.where, message, "check its signs and numbers, or delete the part that it guards")
+        message = (
+            "this condition is never true"
+            if simple
+            else "this condition is never true: its parts contradict each other"
+        )
+        report(CONSTANT_GUARD, guard.where, message, "check its operators and numbers, or delete what it guards")
     elif _always(guard.source):
-        report(CONSTANT_GUARD, guard.where, "this is always true", "delete it, or check its signs")
+        report(CONSTANT_GUARD, guard.where, "this condition is always true", "check its operators, or delete it")
 
 
 @lru_cache(maxsize=MAX_REMEMBERED_TREES)
@@ -108,7 +112,7 @@ def _taken_within(machine: MachineDefinition, state: State, report: DocumentRepo
         ]
         first = takers[0] if takers else None
         if first is not None and None not in takers:
-            message = f"this is never taken: the states inside `{state.name}` always handle the event first"
+            message = f"this transition is never taken: the states inside `{state.name}` always handle the event first"
             hint = f"name the events there instead of `{first.event}`"
             related = [(first.where, "this is taken first")]
             report(SHADOWED_TRANSITION, end.where, message, hint, related=related)
@@ -157,7 +161,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         if report.broken(earlier.where):  # what was taken out of it may have been its guard
             return False
         line = report.document.place(earlier.where).line
-        message = f"this is never taken: the transition in line {line} always comes first"
+        message = f"this transition is never taken: the one on line {line} is always taken first"
         hint = "give that transition a `guard`, or swap the two"
         if later.hears and not earlier.hears:
             hint = "give that transition a `guard`, or turn it into the row `else`"
@@ -173,11 +177,11 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     first, second = heard_call(one), heard_call(other)
     taken = _taken(first, second, machine) if first and second else frozenset()
     if _implies(later.guard.source, earlier.guard.source) and not _never(later.guard.source):
-        message, hint = "this is never taken: an earlier transition has the same guard", "delete one of the two"
+        message, hint = "this transition is never taken: an earlier one has the same guard", "delete one of the two"
         if one != other:
             wide = _short(earlier.guard.shown)
             message, hint = (
-                f"this is never taken: `{wide}` is true whenever this guard is",
+                f"this transition is never taken: `{wide}` is true whenever this guard is",
                 "put this transition before that one",
             )
         report(SHADOWED_TRANSITION, later.where, message, hint, related=related)

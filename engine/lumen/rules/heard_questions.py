@@ -110,9 +110,11 @@ class _Questions(HeardRows):
             return f"add a row `asked {name}` to {shown(row.state)} with the same target as `else` of {shown(state)}"
         keys = ("phrases", "answers")
         if not any(home_of(self.draft, self.behavior, k, name) for k in keys if name in getattr(self.machine, k)):
-            remedy = f"write your own phrases for `{name}`, without `{words}`: the present ones come with Lumen"
+            remedy = f"write your own phrases for `{name}`, without `{words}`: the current ones come with Lumen"
         else:
-            remedy = f"give that phrase more words, or end it with a full stop to match only `{words}` alone"
+            remedy = (
+                f"give that phrase more words, or end it with a full stop, so that it matches only `{words}` on its own"
+            )
         return f"{remedy}; or delete the question if that row is right for it"
 
 

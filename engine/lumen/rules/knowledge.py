@@ -10,7 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import first
 
 CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages have the same question")
-OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "the `until` day of a passage has passed")
+OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "the `until` date of a passage has passed")
 LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is too long for the robot to say at once")
 UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a name refers to a robot that is not in lumen.yaml")
 
@@ -27,7 +27,7 @@ def check(draft: ProjectDraft) -> None:
         _days(passage, report, draft.today)
         for language, text in passage.answer.items():
             if len(text) > MAX_ANSWER:
-                message = f"this answer has {len(text)} characters: visitors do not listen for so long"
+                message = f"this answer has {len(text)} characters: too many for the robot to say at once"
                 hint = f"shorten it to {MAX_ANSWER} characters, or split it into two passages"
                 report(LONG_ANSWER, ("answer", language), message, hint, key=True)
         if draft.settings and draft.main:
@@ -54,8 +54,8 @@ def _claims(passage: Passage, report: DocumentReport, claims: dict[tuple[str, st
 
 def _days(passage: Passage, report: DocumentReport, today: date | None) -> None:
     if today and passage.is_past(today):
-        message = f"this was true until {passage.until}, so the robot no longer says it"
-        report(OUT_OF_DATE, ("until",), message, "write the current answer and a later day, or delete the passage")
+        message = f"this passage was valid until {passage.until}: the robot no longer uses it"
+        report(OUT_OF_DATE, ("until",), message, "write the current answer and a later date, or delete the passage")
 
 
 def words_of(question: str) -> str:

@@ -77,7 +77,7 @@ class _Judge:
                 LIFE_TOO_FAR,
                 path,
                 message,
-                f"write at most {self._shown(joint, MAX_LEG_SWAY)}, for all sways together",
+                f"reduce the sways of this joint to at most {self._shown(joint, MAX_LEG_SWAY)} in total",
             )
             return
         yield from self._reach(joint, whole, path)
@@ -87,16 +87,16 @@ class _Judge:
             path = (*settles.where, "joints", joint)
             speed, most = SETTLE_SLOPE * abs(angle) / settles.takes, SPEED_SHARE * self._body.joints[joint].speed
             if speed > most:
-                message = f"`{joint}` would settle at up to {self._shown(joint, speed)}/s: too fast"
+                message = f"`{joint}` would turn at up to {self._shown(joint, speed)}/s: too fast for `settles`"
                 yield (
                     LIFE_TOO_FAST,
                     path,
                     message,
-                    f"write at least {settles.takes * speed / most:.1f}s, or a smaller angle",
+                    f"write `takes: {settles.takes * speed / most:.1f}s` or more, or a smaller angle",
                 )
             elif joint in self._body.parts.get("legs", ()):
-                message = f"`{joint}` belongs to a leg: settling it can tip the robot over"
-                yield LIFE_TOO_FAR, path, message, "settle only joints of the arms and the head"
+                message = f"`{joint}` belongs to a leg: moving it under `settles` can tip the robot over"
+                yield LIFE_TOO_FAR, path, message, "move only joints of the arms and the head under `settles`"
             else:
                 yield from self._reach(joint, self._style.amplitudes[joint], path)
 

@@ -111,7 +111,7 @@ class _ModelReader:
         place = model, element.line, element.column, len(element.name) + 1
         if outside(self.draft, folder, name):
             message = "this refers to a file outside models/, which Lumen does not read"
-            _say(self.draft, FOREIGN_FILE, *place, message, "move the file into models/, and write its path from there")
+            _say(self.draft, FOREIGN_FILE, *place, message, "move the file into models/, and correct its path here")
             return False
         if hint := missing(self.draft, folder, name):
             path = PurePosixPath("models", folder, name)

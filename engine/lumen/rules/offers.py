@@ -25,5 +25,5 @@ def check(draft: ProjectDraft) -> None:
                 message = f"{what} is offered to a language model, but is not declared under `events`"
                 hint = "offer an event that nothing else raises, and describe its data under `events`"
                 if transition.hears:
-                    message = "a row of `hears` is offered to a language model, which could then act as a visitor"
+                    message = "a row of `hears` is offered to a language model, which could then speak for the visitor"
                 report(MISPLACED_OFFER, (*transition.where, "offer"), message, hint, key=True)

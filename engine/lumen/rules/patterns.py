@@ -36,7 +36,7 @@ _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (
         re.compile(r"\[[^\[\]]*\]\([^()]*\)"),
         "`{}` marks an entity in Rasa; here it means an optional word followed by a group",
-        "write a slot in its place: {{name}}, {{number}}, {{text}} or the name of a list",
+        "write a slot instead: {{name}}, {{number}}, {{text}} or the name of a list",
     ),
     (
         re.compile(r"<[^<>]*>"),
@@ -51,7 +51,7 @@ _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (
         re.compile(r"\(\?|\\[A-Za-z.?]|\.[*+]|^\^|(?<=\S)\$$"),
         "phrases are not regular expressions: `{}` has no meaning here",
-        "write the words; (one|other) are alternatives, and [this] is optional",
+        "write the words themselves; (one|other) are alternatives, and [this] is optional",
     ),
     (
         re.compile(r"\*"),
@@ -140,7 +140,7 @@ def _foreign(phrase: WrittenPhrase) -> None:
             _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), said, hint.format())
             return
     if found := _SLASH.search(text):
-        message = f"`{found[0]}` matches only these words one after the other"
+        message = f"`{found[0]}` matches only the two words together: `/` does not separate alternatives"
         hint = f"write `({found['one']}|{found['other']})`, or a phrase for each"
         _say(FOREIGN_PATTERN, phrase, found.start(), len(found[0]), message, hint)
     elif sign := _separator(phrase):

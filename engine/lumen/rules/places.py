@@ -115,7 +115,7 @@ def _on_stage(main: DocumentReport, name: str, place: HallPlace, stage: Stage) -
     for axis, at, (low, high) in (("x", place.x, stage.x), ("y", place.y, stage.y)):
         if not low + SOLE_REACH - 1e-9 <= at <= high - SOLE_REACH + 1e-9:
             beyond = (
-                "is so close to the edge of the stage that a foot would leave it"
+                "is too close to the edge of the stage: a foot would step off it"
                 if low <= at <= high
                 else "is off the stage"
             )
@@ -131,7 +131,7 @@ def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> Non
         apart = hypot(a.x - b.x, a.y - b.y)
         if apart < a.within + b.within - 1e-9:
             message = f"`{other}` is {apart:.2f} m from `{one}`: the robot could be at both at once"
-            hint = f"put them {a.within + b.within:.2f} m apart, or write a smaller `within` for each"
+            hint = f"put them at least {a.within + b.within:.2f} m apart, or write a smaller `within` for each"
             related = [(("places", one), "the other one is here")]
             main(PLACES_TOO_CLOSE, ("places", other), message, hint, key=True, related=related)
 
@@ -144,7 +144,7 @@ def _heading(main: DocumentReport, name: str) -> None:
     path = ("places", name, "heading")
     if unit == "deg" and round(abs(heading), 4) in HALF_TURN_PARTS:
         hint = f"write {round(heading * 180 / pi):g}"
-        main(WRONG_UNIT, path, f"{heading:g} deg is very small: it looks like radians", hint)
+        main(WRONG_UNIT, path, f"{heading:g} deg is very small: it looks like a value in radians", hint)
     elif abs(heading) > (360.0 if unit == "deg" else 2 * pi + 0.01):
         hint = (
             "write at most one full turn"

@@ -52,9 +52,7 @@ def _known(machine: MachineDefinition, report: DocumentReport, site: ActionSite,
     ids = _invoked(machine).keys()
     if send.to not in ids and send.to not in machine.robots:
         hint = did_you_mean(send.to, {*ids, *machine.robots, PARENT}, "`send` can go to")
-        report(
-            UNKNOWN_RECIPIENT, (*site.step.where, "send", "to"), f"this behaviour invokes nothing as `{send.to}`", hint
-        )
+        report(UNKNOWN_RECIPIENT, (*site.step.where, "send", "to"), f"there is no recipient `{send.to}`", hint)
 
 
 def _sends(machine: MachineDefinition) -> Iterator[tuple[ActionSite, Send]]:

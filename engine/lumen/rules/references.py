@@ -43,7 +43,7 @@ def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, rou
         if route in draft.settings.removed_routes:
             hint = f"delete the row `{route}: null` in lumen.yaml, which removes the route"
         elif route in BUILT_IN_ROUTES:
-            hint = f"write a row `{route}:`; without it, the route exists only if a behaviour uses it"
+            hint = f"add a row `{route}:` to `routes`; without it, the route exists only if a behaviour uses it"
         elif "mean" not in hint and (near := nearest(route, SHARED_ROUTES)):
             hint = f"did you mean `{near}`, which comes with Lumen?"
         elif not own:
@@ -120,7 +120,7 @@ def _names(
 def _posture(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
     if draft.body is None or name in draft.body.postures:
         return
-    hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")
+    hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} has")
     lost = draft.report("models", draft.settings.model).lost if draft.settings else set()
     if name not in lost:
         report(UNKNOWN_POSTURE, path, f"there is no posture `{name}`", hint, cause=f"posture {name}")

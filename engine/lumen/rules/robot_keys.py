@@ -60,7 +60,7 @@ def _rewriting(document: Document, name: str, key: str) -> Rewriting:
     column = document.place(("routes", name, "key"), key=True).column
     line_break = breaks[value.line - 1] or "\n"
     between = ", " if within_braces else line_break + " " * (column - 1)
-    why = f"the key of `{name}` now contains the robot, and `{key}` is its alias"
+    why = f"the key of `{name}` now contains the name of the robot, and the old key `{key}` is its alias"
     return Rewriting(value, why, f'"{NEW_KEYS[key]}"{between}alias: {key}')
 
 
@@ -75,4 +75,7 @@ def _check(content: bytes, before: Document, old: Mapping[str, str]) -> None:
         }
     if now is None or now.data != wanted:
         name, key = next(iter(old.items()))
-        raise UsageError(f'{MAIN_FILE}: write `key: "{NEW_KEYS[key]}", alias: {key}` in the route `{name}` by hand')
+        raise UsageError(
+            f"{MAIN_FILE}: the route `{name}` can't be rewritten automatically:"
+            f' write `key: "{NEW_KEYS[key]}", alias: {key}` in it'
+        )

@@ -74,7 +74,7 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
     """Report rows that are null and whose name is none of a route that comes with Lumen."""
     for name in names:
         if name not in BUILT_IN_ROUTES:
-            message = f"`null` removes a route that comes with Lumen, but `{name}` is not one of them"
+            message = f"`null` can remove only a route that comes with Lumen, and `{name}` is not one"
             hint = (
                 f"{did_you_mean(name, BUILT_IN_ROUTES, 'available:')}; for your own route, write `key` and `direction`"
             )

@@ -29,7 +29,7 @@ HEDGED_CONCLUSION = Code(
 )
 IDLE_RULE = Code("idle-rule", "controllers", WARNING, "a rule has the weight 0")
 MISSING_RULE = Code("missing-rule", "controllers", WARNING, "a table of rules leaves out a case")
-SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another rule")
+SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule is redundant: another rule already covers it")
 UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule uses a term")
 
 
@@ -66,7 +66,8 @@ def _hedged(block: RuleBlock, report: DocumentReport) -> None:
                 report(HEDGED_CONCLUSION, rule.where, message, "delete `any`")
             elif "not" in one.hedges:
                 message = (
-                    f"{said} concludes `{one.term}` to 1 minus the degree of the rule, instead of the values outside it"
+                    f"{said} concludes `{one.term}` with 1 minus the degree of the rule:"
+                    " `not` does not mean the other values here"
                 )
                 hint = f"give `{one.variable}` a term for what you mean, and use it in the conclusion"
                 report(HEDGED_CONCLUSION, rule.where, message, hint)

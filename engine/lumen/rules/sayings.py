@@ -11,7 +11,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import References
 
-UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying names a row that `hears` does not have there")
+UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying names a row of `hears` that its state does not have")
 UNKNOWN_SLOT = Code("unknown-slot", "references", ERROR, "a saying names a slot that no phrase of its row has")
 
 
@@ -56,7 +56,7 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
     slots = {slot for row in found for slot in _slots(machine, row)}
     for slot in saying.slots if all(name in _named(machine) for row in found for name in row.names) else ():
         if slot not in slots:
-            hint = did_you_mean(slot, slots, "they have") if slots else "write only the text"
+            hint = did_you_mean(slot, slots, "they have") if slots else "write only the text, without slots"
             report(UNKNOWN_SLOT, (*saying.where, slot), f"no phrase of `{key}` has a slot `{slot}`", hint, key=True)
     return set()
 

@@ -41,7 +41,7 @@ def _ears(draft: ProjectDraft, body: Body) -> None:
         return
     where: NodePath = ("modules", EARS, "listens", "touch")
     if not body.tactile:
-        hint = "delete it, or write `face`"
+        hint = "delete `touch`, or replace it with `face`"
         draft.main(UNKNOWN_SENSOR, where, f"{body.name} can't feel a touch: it has no tactile sensors", hint)
         return
     for i, sensor in enumerate(touch.get("sensors", ())):

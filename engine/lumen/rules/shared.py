@@ -12,7 +12,10 @@ from lumen.rules.walk import action_sites
 
 NOT_OWNER = Code("not-owner", "robot", ERROR, "a robot assigns a key of `shared` that belongs to another robot")
 SHARED_TAKEN = Code(
-    "shared-taken", "robot", ERROR, "a behaviour has its own key `shared` in addition to that of the house"
+    "shared-taken",
+    "robot",
+    ERROR,
+    "the context of a behaviour has a key `shared`, which hides the `shared` of the house",
 )
 MAKES_SHARED_EVENT = Code(
     "makes-shared-event", "robot", ERROR, "a route or a `send` uses the event that updates `shared`"
@@ -29,7 +32,7 @@ def check(draft: ProjectDraft) -> None:
     report = draft.report("behaviors", settings.behavior)
     if SHARED in (report.document.data.get("context") or {}):
         hint = "rename it: `shared` holds the values of lumen.yaml for all robots"
-        report(SHARED_TAKEN, ("context", SHARED), "this `shared` hides the `shared` of the house", hint, key=True)
+        report(SHARED_TAKEN, ("context", SHARED), "this key hides the `shared` of the house", hint, key=True)
         return
     for way, where in _assigned(machine):
         key = way.partition(".")[2]
@@ -38,14 +41,14 @@ def check(draft: ProjectDraft) -> None:
             hint = did_you_mean(f"{SHARED}.{key}", [f"{SHARED}.{name}" for name in settings.shared], "lumen.yaml has")
             report(UNKNOWN_CONTEXT_KEY, where, message, hint, key=True)
         elif (owner := settings.shared[key].owner) != settings.robot:
-            hint = f"let `{owner}` assign it, and request that with `send: {{to: {owner}, event: …}}`"
+            hint = f"assign it in the behaviour of `{owner}`, and request that with `send: {{to: {owner}, event: …}}`"
             report(NOT_OWNER, where, f"`{key}` belongs to `{owner}`, but `{settings.robot}` assigns it", hint, key=True)
 
 
 def _made(draft: ProjectDraft) -> None:
     """Who makes that event gives any key any value, whoever owns it."""
-    message = f"the event `{SHARED_EVENT}` bypasses the owners of the keys of `shared`"
-    hint = "use another event, and let the owner of the key assign it"
+    message = f"the event `{SHARED_EVENT}` would change keys of `shared` without their owners"
+    hint = "use another event: only the owner of a key can assign it"
     if draft.settings and draft.main:
         for route in draft.settings.routes.values():
             if route.event == SHARED_EVENT:

@@ -53,7 +53,7 @@ class _Ways:
             if field := link.routes[name].field:
                 where = (*path, name, "field")
                 kinds = (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
-                self.field(route, field, where, kinds, "plain text holds a text, a number or a boolean")
+                self.field(route, field, where, kinds, "a plain-text message can be only a text, a number or a boolean")
 
     def osc(self, link: OscLink) -> None:
         path, taken = (*SHOW_PATH, "osc", "routes"), dict[str, str]()
@@ -88,9 +88,11 @@ class _Ways:
                 continue
             for field in link.routes[name]:
                 where, kinds = (*path, name, field), (FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
-                found = self.field(route, field, where, kinds, "a channel holds a number or a boolean", key=True)
+                found = self.field(
+                    route, field, where, kinds, "a channel can hold only a number or a boolean", key=True
+                )
                 if found and found.kind is not FieldKind.BOOLEAN and not _ranged(found):
-                    message = f"`{field}` has no range, so it can't be mapped to 0 to 255"
+                    message = f"`{field}` has no range, so it can't be mapped to the values 0 to 255 of a channel"
                     hint = f"write `minimum` and `maximum` in schemas/messages/{route.schema}.schema.json"
                     self.report(SHOW_FIELD, where, message, hint, key=True)
 
@@ -117,7 +119,7 @@ class _Ways:
     def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:
         """Each field that becomes an argument, those of the schema where none are named."""
         known, kinds = self.fields(route), (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
-        can = "an argument is a text, a number or a boolean"
+        can = "an argument can be only a text, a number or a boolean"
         if fields is None and not known:
             if self.has_schema(route):
                 message = f"`{route.name}` has no schema with fields for the arguments"
@@ -174,7 +176,7 @@ def _topic_fault(topic: str) -> tuple[str, str] | None:
     if "+" in topic or "#" in topic:
         return f"`{topic}` contains a wildcard, but a message has one exact topic", "write the whole topic"
     if "\0" in topic or len(topic.encode("utf-8", "replace")) > MAX_TOPIC_BYTES:
-        return "a topic can't be that long or contain a null character", "write words with `/` between them"
+        return "this topic is too long or contains a null character", "write a few words with `/` between them"
     if topic.startswith("$"):
         return f"`{topic}` begins with $, like the broker's own topics", "choose another first word"
     return None

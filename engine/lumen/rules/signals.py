@@ -159,13 +159,13 @@ def _threshold(draft: ProjectDraft, report: DocumentReport, variable: Variable, 
             THRESHOLD_OUT_OF_RANGE,
             (*signal.where, key),
             f"{message} {signal.threshold:g}",
-            "write a threshold in between",
+            f"write a threshold between {variable.minimum:g} and {variable.maximum:g}",
         )
     machines = draft.behaviors.values()
     whole = all(draft.report("behaviors", name).whole for name in draft.behaviors)
     if machines and whole and not any(hears(d, signal.event) for m in machines for d in descriptors(m)):
         hint = did_you_mean(signal.event, {d for m in machines for d in descriptors(m) if "*" not in d})
-        hint = hint if "mean" in hint else "handle it under `on:`, or delete this"
+        hint = hint if "mean" in hint else "handle it under `on:`, or delete this binding"
         message = f"nothing waits for the event `{signal.event}`"
         report(UNUSED_EVENT, (*signal.where, "event"), message, hint)
 

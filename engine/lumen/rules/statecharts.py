@@ -93,7 +93,7 @@ def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
             way.append(following[1])
         if following and following[1] == path and path not in said:
             said.update(way)
-            hint = "give one of them a `guard`, or wait for an event"
+            hint = "give one of these transitions a `guard`, or wait for an event"
             names = " → ".join(f"`{machine.states[p].name}`" for p in (*way, path))
             report(ENDLESS_ALWAYS, onward[path][0].where, f"this loop never ends: {names}", hint)
 

@@ -124,7 +124,7 @@ def check(controller: ControllerDefinition, report: DocumentReport, seen: Surfac
         where = controller.outputs[found.output].where
         low, high = round(step.low, 9) + 0.0, round(step.high, 9) + 0.0  # -0.0 becomes 0.0
         message = f"`{found.output}` jumps from {low:.3g} to {high:.3g} when `{found.input}` passes {step.x:.4g}"
-        report(SURFACE_STEP, where, message, "let neighbouring terms overlap, without vertical edges", key=True)
+        report(SURFACE_STEP, where, message, "make neighbouring terms overlap, and avoid vertical edges", key=True)
     for found in seen.slices:
         if controller.inputs[found.input].neutral is not None:
             _turns(controller, found, report)
@@ -214,6 +214,6 @@ def _rests(controller: ControllerDefinition, found: Slice, report: DocumentRepor
         message = (
             f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} instead of 0"
         )
-        hint = "let the rule for the middle term of the input conclude the output term around 0"
+        hint = "change the rule for the middle term of the input: conclude the output term around 0"
         others = [(variable.where, "its neutral point")]
         report(NOT_AT_REST, output.where, message, hint, key=True, related=others)

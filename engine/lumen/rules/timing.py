@@ -38,7 +38,7 @@ def _cut(
         texts = [step for step in state.do if isinstance(step.action, SayText) and duration((step,), motions) > delay]
         what = "saying this" if texts else "its `do`"
         message = f"`{state.name}` is left after {delay:g} s, but {what} takes about {length:.1f} s"
-        hint = f"give it at least {length + 1:.0f} s" + (", or shorten the text" if texts else "")
+        hint = f"write at least {length + 1:.0f}s" + (", or shorten the text" if texts else "")
         key = transition.where if isinstance(transition.where[-1], str) else transition.where[:-1]
         first = texts[0].where if texts else (*state.where, "do")
         report(CUT_SHORT, key, message, hint, key=True, related=[(first, "this takes longer")])

@@ -47,11 +47,11 @@ def _radians(report: DocumentReport, body: Body | None) -> None:
         return
     if all(abs(angle) <= pi + 0.01 for _, angle in angles) and len(angles) > 1:
         hint = "write `units: {angle: rad}`"
-        report(WRONG_UNIT, ("units", "angle"), "the angles of this file look like radians", hint)
+        report(WRONG_UNIT, ("units", "angle"), "the angles of this file look like values in radians", hint)
         return
     for path, angle in small:
         hint = f"write {round(angle * 180 / pi):g}"
-        report(WRONG_UNIT, path, f"{angle:g} deg is very small: it looks like radians", hint)
+        report(WRONG_UNIT, path, f"{angle:g} deg is very small: it looks like a value in radians", hint)
 
 
 def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[NodePath, float]]:
@@ -110,7 +110,7 @@ def _look(report: DocumentReport, path: NodePath, wanted: str, value: float, uni
 
 
 def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> None:
-    message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} full turns"
+    message = f"a turn of {theta / ANGLES[unit]:g} {unit} is more than one full turn"
     hint = (
         "write `units: {angle: deg}` at the top: the angles of this file are in radians"
         if unit == "rad"

@@ -46,7 +46,7 @@ def upgraded(
     said = _said(_document(now, MAIN_FILE))
     if said > vocabulary:
         raise UsageError(
-            f"{MAIN_FILE} is written for vocabulary {said}, but this Lumen reads {vocabulary}: install a newer Lumen"
+            f"{MAIN_FILE} is written for vocabulary {said}, but this Lumen supports {vocabulary}: install a newer Lumen"
         )
     for number in range(said, vocabulary):
         for migration in migrations.get(number, ()):
@@ -71,8 +71,10 @@ def renamed_key(files: str, path: Sequence[str], name: str) -> Migration:
             if span.key and _fits(node, path):
                 if (*node[:-1], name) in document.spans:
                     where = f"{document.file}:{span.key.line}"
-                    raise UsageError(f"{where}: `{node[-1]}` is `{name}` now, but both are here: delete one of them")
-                yield Rewriting(span.key, f"`{node[-1]}` is `{name}` now", name)
+                    raise UsageError(
+                        f"{where}: `{node[-1]}` is now called `{name}`, but the file has both: delete one of them"
+                    )
+                yield Rewriting(span.key, f"`{node[-1]}` is now called `{name}`", name)
 
     return migrate
 
@@ -108,7 +110,9 @@ def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | N
     key = main.place((first,), key=True)
     ahead = lines_of(main.text)[key.line - 1][: key.column - 1].strip("\ufeff ")
     if ahead.strip("{ "):
-        raise UsageError(f"{MAIN_FILE}: write `{VOCABULARY_KEY}: {vocabulary}` as the first key by hand")
+        raise UsageError(
+            f"{MAIN_FILE} can't be rewritten automatically: write `{VOCABULARY_KEY}: {vocabulary}` as its first key"
+        )
     after = ", " if ahead else line_break + " " * (key.column - 1)
     place = key._replace(end_line=key.line, end_column=key.column)
     return Rewriting(place, f"the vocabulary is now {vocabulary}", f"{VOCABULARY_KEY}: {vocabulary}{after}")

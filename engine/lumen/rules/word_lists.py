@@ -7,7 +7,10 @@ from lumen.loading.settings import said_at
 from lumen.rules.naming import heard_rows
 
 MISSING_WORDS = Code(
-    "missing-words", "hearing", WARNING, "a language of the project lacks the word lists for reading sentences"
+    "missing-words",
+    "hearing",
+    WARNING,
+    "a language of the project lacks word lists that Lumen needs to understand sentences",
 )
 
 _NEEDED = {
@@ -33,7 +36,9 @@ def check(draft: ProjectDraft) -> None:
                 missing.setdefault(language, []).append(name)
     if missing:
         language, names = next(iter(missing.items()))
-        what = "; ".join(f"`{one}` has no {', '.join(f'`{name}`' for name in lists)}" for one, lists in missing.items())
+        what = "; ".join(
+            f"`{one}` has no word list {' or '.join(f'`{name}`' for name in lists)}" for one, lists in missing.items()
+        )
         languages = "these languages" if len(missing) > 1 else "this language"
         message = f"{what}: the robot reads {languages} word by word"
         hint = f"write `{names[0]}: {{{language}: […]}}` under `phrases` of a words file that the behaviour names"

@@ -35,7 +35,7 @@ FOUND = Findings(
         Diagnostic("unused-ignore", "there is no `unused-event` here to ignore",
                    Place("behaviors/tour.yaml", 3, 43, 3, 55), "delete this comment", Severity.WARNING),
         Diagnostic("unknown-context-key", "the context has no `nmae`", Place("behaviors/tour.yaml", 5, 30, 5, 34)),
-        Diagnostic("duplicate-key", "`greet` is in the same place twice", BEHIND,
+        Diagnostic("duplicate-key", "`greet` is written twice in the same place", BEHIND,
                    related=(Related(Place("behaviors/tour.yaml", 4, 3, 4, 8), "first here"),)),
         Diagnostic("wrong-value", "50% off, a:b\r\nis \x1b[31m bad", Place("lumen.yaml", 1, 7, 2, 1), "",
                    Severity.INFO),
