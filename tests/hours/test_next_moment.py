@@ -109,8 +109,8 @@ def test_what_can_be_written(text: str, times: list[int], weekdays: list[int], d
 @for_each(
     ("text", "message", "hint"),
     [
-        ("25:00", "there is no `25:00`", "from `00:00` to `23:59`"),
-        ("24:00", "there is no `24:00`", "midnight is `00:00`"),
+        ("25:00", "`25:00` is not a time of day", "from `00:00` to `23:59`"),
+        ("24:00", "`24:00` is not a time of day", "midnight is `00:00`"),
         ("18.00", "`18.00` is not a time of day", "write `18:00`"),
         ("6pm", "`6pm` is not", "write `18:00`"),
         ("mon 6 pm", "`6pm` is not", "write `18:00`"),
@@ -120,8 +120,8 @@ def test_what_can_be_written(text: str, times: list[int], weekdays: list[int], d
         ("fri", "`fri` has no time of day", "write `fri 18:00`"),
         ("2026-02-30 10:00", "no `2026-02-30` in the calendar", "`2026-12-24`"),
         ("24.12.2026 10:00", "`24.12.2026` is not a date", "`2026-12-24`"),
-        ("mon 10:00, sat 12:00", "`sat` is after a time", "each in its own row"),
-        ("10:00-18:00", "is not a time of day", "write its beginning here"),
+        ("mon 10:00, sat 12:00", "`sat` is after a time", "use a separate row for other days"),
+        ("10:00-18:00", "is not a time of day", "write the beginning here"),
         ("18:00,", "has nothing before or after it", "`mon-fri 18:00`"),
         ("", "has no time of day", "`mon-fri 18:00`"),
     ],

@@ -104,7 +104,7 @@ WRONG = {
     "wheels that are nowhere": (["left: LeftWheel, ", ""], "14:16 incomplete-role name them under `roles`"),
     "wheels of no speed": (["speed: 50, ", ""], "14:3 missing-key"),
     "a speed of no wheels": (["wheels, left: LeftWheel, right: RightWheel, speed: 50,", "fixed,"], "14:23 unknown-key"),
-    "a hand that turns": ([", opening: true", ""], "13:17 incomplete-role write `opening: true` at the joint `Grip`"),
+    "a hand that turns": ([", opening: true", ""], "13:17 incomplete-role add `opening: true` to the joint `Grip`"),
     "eyes without a camera": (
         ["  hands:", "  eyes: {camera: Eye}\n  hands:"],
         "13:18 incomplete-role add `camera` with",

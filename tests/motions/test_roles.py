@@ -69,7 +69,7 @@ def test_another_body_does_what_it_can_and_says_once_what_it_leaves_out() -> Non
     found, said = motion(SHARED, GREETER)
     assert found.tracks.keys() == {"Turn", "Lift"}
     assert found.tracks["Turn"][0].angle == pytest.approx(-0.349066)  # its angle grows to the right
-    assert said == ["3:36 left-out greeter has no `head.pitch`, `hands.left`, so this motion can't move it"]
+    assert said == ["3:36 left-out greeter has no `head.pitch`, `hands.left`, so this motion can't move them"]
 
 
 def test_a_joint_that_can_not_go_so_far_stops_at_its_limit() -> None:

@@ -409,7 +409,9 @@ def test_names_that_only_clash_after_cleaning_stay_two() -> None:
 def test_a_key_that_is_there_twice_is_listed() -> None:
     content = b'{"initial": "a", "states": {"a": {"on": {"E": "a", "E": "b"}}, "b": {}}}'
     _, found = read_xstate("chart.json", content, "chart")
-    assert messages(found) == ["1:52 `E` is written twice in the same place (only the last one is used: delete the others)"]
+    assert messages(found) == [
+        "1:52 `E` is written twice in the same place (only the last one is used: delete the others)"
+    ]
 
 
 def changed_json(data: Any, where: tuple[Any, ...] = ()) -> Iterator[tuple[str, Any]]:

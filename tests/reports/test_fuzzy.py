@@ -400,8 +400,8 @@ def test_two_sets_of_one_point_share_by_their_degrees() -> None:
 @for_each(
     ("conclusion", "said"),
     [
-        ("Tip is not Low", "to 1 minus the degree of the rule"),
-        ("Tip is very not Low", "to 1 minus the degree of the rule"),
+        ("Tip is not Low", "with 1 minus the degree of the rule"),
+        ("Tip is very not Low", "with 1 minus the degree of the rule"),
         ("Tip is any Low", "in full, even if the rule is hardly true"),
         ("Tip is very Low and Tip is High", "applies to `Tip is High` after it"),
         ("Tip is very Low", ""),

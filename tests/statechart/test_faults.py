@@ -84,7 +84,7 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
         "states: {a: {invoke: {behavior: tour}}}",
         "invoke-cycle",
         "tour",
-        "use a state in place of `invoke`",
+        "use a state instead of `invoke`",
     ),
     "two verbs": ("states: {a: {entry: {say: x, play: y}}}", "one-verb", "", ""),
     "unknown verb": ("states: {a: {entry: {sai: x}}}", "unknown-key", "sai", "`say`"),

@@ -59,9 +59,9 @@ def test_words_are_rewritten_where_they_stand_and_comments_stay() -> None:
         "motions/wave.yaml": b"when: please  # at once\n",
     }
     assert [f"{each.place.file}:{each.place.line} {each.why}" for each in done] == [
-        "behaviors/tour.yaml:3 `do` is `perform` now",
-        "behaviors/tour.yaml:5 `do` is `perform` now",
-        "lumen.yaml:3 `hall` is `room` now",
+        "behaviors/tour.yaml:3 `do` is now called `perform`",
+        "behaviors/tour.yaml:5 `do` is now called `perform`",
+        "lumen.yaml:3 `hall` is now called `room`",
         "motions/wave.yaml:1 `when: now` is `when: please` now",
         "lumen.yaml:2 the vocabulary is now 3",
     ]
@@ -79,14 +79,20 @@ def test_steps_begin_at_the_number_that_the_files_say_and_once_is_enough() -> No
 @for_each(
     ("files", "said"),
     [
-        ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, but this Lumen supports 3: install a newer Lumen"),
+        (
+            {"lumen.yaml": b"lumen: 4\n"},
+            "is written for vocabulary 4, but this Lumen supports 3: install a newer Lumen",
+        ),
         ({"lumen.yaml": b"lumen: soon\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"lumen: true\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"lumen: 0\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"- a\n"}, "the vocabulary in lumen.yaml is invalid"),
         ({"lumen.yaml": b"{}\n"}, "is empty"),
         ({"lumen.yaml": b"a: [\n"}, "lumen.yaml can't be read, so nothing is rewritten"),
-        ({"lumen.yaml": b"? a\n: 1\n"}, "lumen.yaml can't be rewritten automatically: write `lumen: 3` as its first key"),
+        (
+            {"lumen.yaml": b"? a\n: 1\n"},
+            "lumen.yaml can't be rewritten automatically: write `lumen: 3` as its first key",
+        ),
         ({}, "lumen.yaml can't be read, so nothing is rewritten"),
         ({**FILES, "behaviors/b.yaml": b'a: "\n'}, "behaviors/b.yaml can't be read, so nothing is rewritten"),
         (
@@ -194,8 +200,8 @@ def test_keys_of_2015_get_the_robot_and_stay_as_aliases(line_break: bytes) -> No
     after, done = with_robot_keys(files)
     assert after == files | {"lumen.yaml": NEW.replace(b"\n", line_break)}
     assert [f"{each.place.line} {each.why}" for each in done] == [
-        "4 the key of `heard` now contains the name of the robot, and the old key `lumen.audio.speech.recognition` is its alias",
-        "6 the key of `face` now contains the name of the robot, and the old key `lumen.visual.face.detection` is its alias",
+        "4 the key of `heard` now contains the robot's name; its alias is the old key `lumen.audio.speech.recognition`",
+        "6 the key of `face` now contains the robot's name; its alias is the old key `lumen.visual.face.detection`",
     ]
     assert with_robot_keys(after) == (after, [])
 

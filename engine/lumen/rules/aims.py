@@ -100,8 +100,8 @@ def _gain(
         return
     routes = draft.settings.routes if draft.settings else {}
     late = max((routes[b.route].latency for b in controller.input_bindings if b.route in routes), default=0.0)
-    age = f" (the input is {1000 * late:.0f} ms old)" if late else ""
-    message = f"a gain of {binding.gain:g} is too high: the joint turns beyond its target{age}"
+    age = f" for an input that is {1000 * late:.0f} ms old" if late else ""
+    message = f"a gain of {binding.gain:g} is too high{age}: the joint turns beyond its target"
     report(HIGH_GAIN, path, message, f"write at most {MAX_GAIN:g}; 1.5 is fast and does not overshoot")
 
 

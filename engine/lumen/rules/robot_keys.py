@@ -60,7 +60,7 @@ def _rewriting(document: Document, name: str, key: str) -> Rewriting:
     column = document.place(("routes", name, "key"), key=True).column
     line_break = breaks[value.line - 1] or "\n"
     between = ", " if within_braces else line_break + " " * (column - 1)
-    why = f"the key of `{name}` now contains the name of the robot, and the old key `{key}` is its alias"
+    why = f"the key of `{name}` now contains the robot's name; its alias is the old key `{key}`"
     return Rewriting(value, why, f'"{NEW_KEYS[key]}"{between}alias: {key}')
 
 

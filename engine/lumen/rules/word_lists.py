@@ -37,7 +37,8 @@ def check(draft: ProjectDraft) -> None:
     if missing:
         language, names = next(iter(missing.items()))
         what = "; ".join(
-            f"`{one}` has no word list {' or '.join(f'`{name}`' for name in lists)}" for one, lists in missing.items()
+            f"`{one}` has no word list{'s' * (len(lists) > 1)} {', '.join(f'`{name}`' for name in lists)}"
+            for one, lists in missing.items()
         )
         languages = "these languages" if len(missing) > 1 else "this language"
         message = f"{what}: the robot reads {languages} word by word"
