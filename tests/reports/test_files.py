@@ -526,7 +526,7 @@ def test_a_folder_elsewhere_shows_no_names(tmp_path: Path) -> None:
     (tmp_path / "secrets").mkdir()
     (tmp_path / "secrets" / "tops3cret.yaml.txt").write_text("a")
     (root / "fuzzy").symlink_to(tmp_path / "secrets")
-    hint = "replace it with a folder inside the project: Lumen reads nothing outside"
+    hint = "replace it with a folder inside the project: Lumen reads nothing outside the project"
     assert findings(root) == [f"fuzzy:1 unreadable-file | {hint}"]
 
 

@@ -547,7 +547,7 @@ ACTIONS = "initial: a\nstates:\n  a: {on: {touched: {target: b, actions: {walk: 
 )
 def test_walks_add_up_on_each_way(behavior: str, lines: list[str]) -> None:
     found = [message.replace(",", "").split() for message in strays(behavior)]
-    assert [f"{words[0].split(':')[1]} {words[6]} {words[8]}" for words in found] == lines
+    assert [f"{words[0].split(':')[1]} {words[9]} {words[12]}" for words in found] == lines
 
 
 def test_a_place_without_ground_is_found_without_a_stage() -> None:
