@@ -18,7 +18,7 @@ MOTION_CYCLE = Code("motion-cycle", "motions", ERROR, "a motion plays itself, di
 NO_TEMPO = Code("no-tempo", "motions", ERROR, "a motion has beats but no tempo")
 NO_TIME = Code("no-time", "motions", ERROR, "a keyframe has no time")
 TIME_NOT_INCREASING = Code("time-not-increasing", "motions", ERROR, "a keyframe comes before the one above it")
-TOO_MANY_KEYS = Code("too-many-keys", "motions", ERROR, "a motion is longer than can be played")
+TOO_MANY_KEYS = Code("too-many-keys", "motions", ERROR, "a motion has too many keys to be played")
 TWO_TIMES = Code("two-times", "motions", ERROR, "a keyframe has both a time and a beat")
 ZERO_DURATION = Code("zero-duration", "motions", ERROR, "a motion has no length")
 

@@ -227,7 +227,9 @@ def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSetting
     numbers = {key: said[key] for key in ("keep", "size") if key in said and finite(said[key], report, ("record", key))}
     ring = duration(said, "ring", report, ("record",))
     if ring is not None and not SHORTEST_RING <= ring <= LONGEST_RING:
-        message = f"`ring` can't be {said['ring']}: it can be {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
+        message = (
+            f"`ring` can't be {said['ring']}: it must be from {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
+        )
         report(
             BAD_DURATION,
             ("record", "ring"),

@@ -45,7 +45,7 @@ def build_terms(
 def plain_name(name: str, report: DocumentReport, path: NodePath) -> None:
     """Report a name that a rule could not tell from its own words."""
     if name.lower() in KEYWORDS:
-        report(RESERVED_NAME, path, f"`{name}` has a meaning in rules", hint="choose another name", key=True)
+        report(RESERVED_NAME, path, f"`{name}` is a keyword in rules", hint="choose another name", key=True)
 
 
 class _Term:

@@ -167,7 +167,7 @@ class TransitionReader:
     def _approval(self, data: Any, where: NodePath, event: str) -> Approval | None:
         """What has to be approved, None (and reported) where nothing can wait."""
         if event == "*" or event.split(".")[0] in _OWN or len(set(where) & _OUTSIDE) == 0:
-            message = "only a transition that an event from outside starts can wait for approval"
+            message = "only a transition that is started by an event from outside can wait for approval"
             hint = "go to a state that waits for a button, and add `approve` to the transition in its `on`"
             self.report(MISPLACED_APPROVAL, where, message, hint=hint, key=True)
             return None

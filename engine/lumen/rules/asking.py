@@ -18,7 +18,7 @@ def check(draft: ProjectDraft) -> None:
         for step in story.steps:
             if isinstance(step.action, AnswerQuestion):
                 message = "no module can give this answer: lumen.yaml has no module `answers`"
-                hint = "add `answers` under `modules`, or expect the answer of a passage"
+                hint = "add `answers` under `modules`, or put the answer into a passage in knowledge/"
                 draft.report("behaviors/stories", name)(ASKS_NOBODY, (*step.where, "answers"), message, hint, key=True)
     if draft.knowledge:
         return

@@ -22,5 +22,5 @@ def _check(machine: MachineDefinition, report: DocumentReport) -> None:
         there = known.get(was)
         if there is not None and (there == now or there not in taken):
             message = f"`{was}` is renamed to `{now}` here, but still exists"
-            hint = f"delete this line: the next reload would replace `{was}` by `{now}`"
+            hint = f"delete this line: the next reload would replace `{was}` with `{now}`"
             report(STILL_THERE, ("renamed", was), message, hint, key=True)

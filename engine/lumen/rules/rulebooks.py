@@ -73,7 +73,7 @@ def _hedged(block: RuleBlock, report: DocumentReport) -> None:
                 report(HEDGED_CONCLUSION, rule.where, message, hint)
             elif one.hedges and behind:
                 message = f"the hedge in {said} also applies to `{behind[0].variable} is {behind[0].term}` after it"
-                report(HEDGED_CONCLUSION, rule.where, message, "write it last, or in a separate rule")
+                report(HEDGED_CONCLUSION, rule.where, message, "write this conclusion last, or in a separate rule")
 
 
 def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -204,7 +204,7 @@ def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Ru
     shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:MAX_SHOWN_CASES]]
     more = f", and in {len(gaps) - MAX_SHOWN_CASES} more cases" if len(gaps) > MAX_SHOWN_CASES else ""
     message = f"no rule sets `{output}` if {'; or if '.join(shown)}{more}"
-    report(MISSING_RULE, last.where, message, f"add below it: if {shown[0]} then {output} is …")
+    report(MISSING_RULE, last.where, message, f"add this rule below it: if {shown[0]} then {output} is …")
 
 
 def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
