@@ -156,9 +156,12 @@ def _child(data: Path) -> Iterator[tuple[str, str, list[Arc]]]:
 
 
 def unpacked(arc: int) -> Arc:
-    """The two lines of an arc as coverage.py's tracer packs it; a negative line is an entry or an exit."""
-    start, end = arc & 0xFFFFF, arc >> 20 & 0xFFFFF
-    return -start if arc & 1 << 40 else start, -end if arc & 1 << 41 else end
+    """Return the two lines of an arc as coverage.py's tracer packs it; a negative line is an entry or an exit.
+
+    A packed arc has 28 bits for each line, then a sign bit for each (`CTracer_record_pair` in coverage.py's tracer.c).
+    """
+    start, end = arc & 0xFFFFFFF, arc >> 28 & 0xFFFFFFF
+    return -start if arc & 1 << 56 else start, -end if arc & 1 << 57 else end
 
 
 def _lines(arcs: Iterable[Arc]) -> set[int]:

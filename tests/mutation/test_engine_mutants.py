@@ -8,14 +8,15 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from textwrap import dedent
+from typing import Any
 
 import mutants
 import pytest
 import yaml
-from coverage import CoverageData
+from coverage import Coverage, CoverageData
 from mutants import Engine, batches, outcome, table
 from mutation.changes import Source
-from mutation.executed import Located, compare, read
+from mutation.executed import Located, compare, read, unpacked
 from mutation.trial import Ended
 
 from tests.guarded import run_guarded
@@ -108,7 +109,7 @@ def recording(folder: Path, tests: dict[str, dict[str, Sequence[int]]]) -> Path:
     arcs: dict[str, set[int]] = {}
     for by_name in files.values():
         for name, lines in by_name.items():
-            arcs.setdefault(name, set()).update(a | b << 20 for a, b in pairwise(lines))
+            arcs.setdefault(name, set()).update(a | b << 28 for a, b in pairwise(lines))
     found = {test: {name: set(lines) for name, lines in by_name.items()} for test, by_name in files.items()}
     (folder / "traced-1.pickle").write_bytes(pickle.dumps((arcs, found, dict.fromkeys(tests, 0.5))))
     return folder
@@ -150,6 +151,19 @@ def test_what_is_not_executed_any_more_is_found_though_lines_moved(tmp_path: Pat
     assert lost.branches == []
     again = read(recording(tmp_path / "after", {}))
     assert compare(again, again) == {}
+
+
+def test_arcs_are_read_as_the_tracer_packs_them(tmp_path: Path) -> None:
+    file = tmp_path / "traced.py"
+    file.write_text("def f(x):\n    if x:\n        return 1\n    return 2\n\n\nf(1)\n")
+    traced = Coverage(data_file=None, branch=True, config_file=False, include=[str(file)])
+    with traced.collect():
+        exec(compile(file.read_text(), file, "exec"), {})
+        collector: Any = traced._collector
+        packed = set(collector.data[str(file)])
+    arcs = {unpacked(arc) for arc in packed}
+    assert arcs == set(traced.get_data().arcs(str(file)) or ())
+    assert {(-1, 2), (2, 3), (3, -1), (7, -1)} <= arcs
 
 
 def test_tests_run_cheapest_first_and_no_more_than_the_budget() -> None:
