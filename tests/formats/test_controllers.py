@@ -169,6 +169,15 @@ def test_what_rounding_left_is_zero() -> None:
     Controller.from_dict(data)
 
 
+def test_a_rule_of_matlab_without_an_output_has_no_conclusion() -> None:
+    data, found = said(read_fis, f"{FIS}1 1, 0 (1) : 1\n1 1, 9 (1) : 1\n")
+    assert found[1:] == [
+        "31:1 this rule has no conclusion",
+        "32:1 this rule refers to a term that does not exist",
+    ]
+    assert data["rules"] == said(read_fis, FIS)[0]["rules"]
+
+
 @for_each("norm", ["algebraic", "bounded", "drastic", "einstein", "hamacher"])
 def test_the_norms_of_octave(norm: str) -> None:
     """All that its fuzzy-logic-toolkit has, for `and` and `or`, implication and aggregation."""

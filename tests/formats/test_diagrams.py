@@ -110,6 +110,7 @@ def test_of_a_for_only_what_somebody_wrote_is_shown(museum: MachineDefinition) -
     [
         ("heard(event.data.result, 'dance')", "“dance”"),
         ("heard(event.data.result, 'dance') || heard(event.data.result, 'sing')", "“dance” or “sing”"),
+        ("heard(event.data.result, context.names)", "“…” in context.names"),
         ("lookup(event.data.result, 'faq') != null", "“…” in faq"),
         ("after(event.data.result, 'i am') != ''", "“i am …”"),
         ("context.tries <  2", "context.tries < 2"),

@@ -126,6 +126,30 @@ def test_nothing_is_dropped_in_silence(body: str, said: list[str]) -> None:
     assert read(body)[1] == said
 
 
+LISTS = '<datamodel><data id="l" expr="[3]"/><data id="t" expr="\'a\'"/><data id="n"/></datamodel>'
+
+
+@for_each(
+    ("expression", "value"),
+    [
+        ("l.concat()", "context.l"),
+        ("l.concat([1])", "context.l + [1]"),
+        ("l.concat([1], l)", "context.l + [1] + context.l"),
+        ("l.concat([])", "context.l"),
+        ("[].concat(l)", "context.l"),
+        ("[].concat([])", "[]"),
+        ("l.concat(n)", "context.l + context.n"),
+        ("l.concat(2)", None),
+        ("l.concat(t)", None),
+        ("t.concat([1])", None),
+    ],
+)
+def test_lists_are_concatenated_and_nothing_else_is(expression: str, value: str | None) -> None:
+    data, said = read(f'{LISTS}<state id="a"><onentry>\n<assign location="n" expr="{expression}"/></onentry></state>')
+    assert data["states"]["a"] == ({} if value is None else {"entry": [{"assign": {"n": value}}]})
+    assert said == ([] if value else ["3: `<assign>`: `.concat()` of a value that is not a list"])
+
+
 def test_assignments_to_a_part() -> None:
     data, said = read('<datamodel><data id="v" expr="{}"/></datamodel><state id="a"><onentry>'
                       '<assign location="v.at.room" expr="2"/>\n<assign location="w.at" expr="2"/>\n'

@@ -300,7 +300,9 @@ class _FisReader:
         if inputs is None or outputs is None:
             return ""
         if not outputs:
-            self.findings.lost(line.place, "this rule refers to a term that does not exist")
+            self.findings.lost(
+                line.place, "this rule has no conclusion", "write the number of a term, not 0, for an output"
+            )
             return ""
         join = " and " if match["join"] == "1" else " or "
         everything = f"{self.order['input'][0].name} is any"
