@@ -84,6 +84,9 @@ WORTHLESS: dict[str, tuple[int, str, str]] = {
     "contains('a', context.n)": (14, "`context.n` is a number, and `contains` needs a text", ""),
     "lower(context.none)": (6, "`context.none` is null, and `lower` needs a text", ""),
     "heard('a', 'danse')": (0, "there are no phrases named `danse`", "did you mean `dance`?"),
+    "heard('a', context.list)": (0, "these are not phrases", "a list of texts, or one for each language"),
+    "heard('b', context.map)": (0, "these are not phrases", "a list of texts, or one for each language"),
+    "heard('a', {'en': context.n})": (0, "these are not phrases", "a list of texts, or one for each language"),
     "lookup('a', 'fqa')": (0, "there are no answers named `fqa`", "did you mean `faq`?"),
 }
 

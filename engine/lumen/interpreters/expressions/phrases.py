@@ -89,14 +89,19 @@ def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) 
 
 
 def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
-    """Phrases as they stand in an entry of a list: a list of texts, or one for each language."""
+    """Phrases as they stand in an entry of a list: a list of texts, or one for each language.
+
+    Raises FaultError if the value is anything else.
+    """
     found = _entries.get(value)
     if found is None:
         table = value if isinstance(value, Mapping) else {"": value}
-        found = {key: (rows,) if isinstance(rows, str) else tuple(rows or ()) for key, rows in table.items()}
-        if not all(isinstance(text, str) for rows in found.values() for text in rows):
+        found = {key: (rows,) if isinstance(rows, str) else rows or () for key, rows in table.items()}
+        if not all(
+            isinstance(rows, Sequence) and all(isinstance(text, str) for text in rows) for rows in found.values()
+        ):
             raise FaultError("these are not phrases", "write a list of texts, or one for each language")
-        _entries.put(value, found)
+        found = _entries.put(value, {key: tuple(rows) for key, rows in found.items()})
     return cast(Mapping[str, tuple[str, ...]], found)
 
 
