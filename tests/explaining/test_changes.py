@@ -16,6 +16,7 @@ from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.statechart import Machine
+from tests.tables import for_each
 
 CONTEXT = {"n": 3, "m": 10, "name": "Budi", "tired": False, "seen": ["a"]}
 DATA = {"k": 2, "word": "hello", "sure": 0.4}
@@ -91,6 +92,35 @@ def check(guard: str, tally: Counter[str]) -> None:
     taken = step(machine, changed.snapshot, changed.event)
     tally["a change that works" if taken.entered else "a change that does not"] += 1
     tally[f"{len(reason.change)} edits"] += 1
+
+
+SPOKEN = {
+    "heard(event.data.word, 'yes')": "yes",
+    "heard(event.data.word, context.titles)": "Golden Boy",
+    "lookup(event.data.word, 'faq') != null": "how tall are you",
+    "after(event.data.word, 'i am') != ''": "i am Ani",
+    "contains(event.data.word, 'zoo')": "zoo",
+    "matches(event.data.word, '^zoo$')": "zoo",
+}
+
+
+@for_each(("guard", "word"), list(SPOKEN.items()))
+def test_a_guard_about_a_text_needs_a_text_that_it_names(guard: str, word: str) -> None:
+    machine = Machine.from_dict(
+        {
+            "initial": "a",
+            "context": {"titles": ["Golden Boy"]},
+            "phrases": PHRASES,
+            "answers": {"faq": [{"phrases": ["how tall are you"], "value": "58 cm"}]},
+            "states": {"a": {"on": {"e": {"guard": guard, "target": "b"}}}, "b": {}},
+        }
+    )
+    first = initial(machine)
+    second = step(machine, first.snapshot, Event("e", DATA, 1.0))
+    (reason,) = why_not(
+        [RecordedStep(machine, None, first), RecordedStep(machine, first.snapshot, second)], "b"
+    ).reasons
+    assert reason.change == {"event.data.word": word}
 
 
 def counted(most: int) -> Counter[str]:

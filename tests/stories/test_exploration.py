@@ -8,6 +8,8 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.interpreters.exploration import Exploration, explore
+from lumen.interpreters.exploration.samples import phrases_at, samples
+from lumen.interpreters.expressions import parse_expression
 from lumen.statechart import Machine
 from tests.tables import for_each
 
@@ -226,6 +228,49 @@ def test_what_grows_is_told_apart_by_its_length(guard: str) -> None:
     exploration = walked(states, context={"s": "", "l": []})
     assert found(exploration) == []
     assert exploration.never_taken == ()
+
+
+@for_each(
+    ("guard", "text"),
+    [
+        ("heard(event.data.text, 'titles')", "Golden Boy"),
+        ("heard(event.data.text, context.titles)", "Golden Boy"),
+        ("heard(event.data.text, context.round.entry.right)", "nineteen"),
+        ("heard(event.data.text, context.round.entry.right)", "sembilan belas"),
+        ("lookup(event.data.text, 'songs') != null", "the golden song"),
+        ("after(event.data.text, 'play') == 'Ani'", "play Ani"),
+        ("contains(event.data.text, 'golden')", "golden"),
+    ],
+)
+def test_a_text_is_tried_that_the_guard_names(guard: str, text: str) -> None:
+    machine = Machine.from_dict(
+        {
+            "initial": "a",
+            "states": {"a": {}},
+            "phrases": {"titles": {"en": ["Golden Boy"]}},
+            "answers": {"songs": [{"phrases": ["the golden song"], "value": 1}]},
+        }
+    )
+    right = {"en": ["nineteen", "one more"], "id": ["sembilan belas"]}
+    context = {"titles": ["Golden Boy"], "round": {"entry": {"right": right}}}
+    assert {"text": text} in list(samples(machine, SAID, [parse_expression(guard)], context))
+
+
+def test_no_text_is_tried_of_a_table_without_phrases() -> None:
+    for context in ({}, {"titles": None}, {"titles": 3}, {"titles": {"en": 3}}):
+        assert phrases_at(("context", "titles"), context) == []
+    assert phrases_at(None, {"titles": ["Golden Boy"]}) == []
+
+
+def test_of_too_many_combinations_each_value_is_tried_once() -> None:
+    machine = Machine.from_dict({"initial": "a", "states": {"a": {}}})
+    fields = "abcdefg"
+    trees = [parse_expression(f"event.data.{field} == 'x{field}'") for field in fields]
+    schema = {"properties": {field: {"type": "string"} for field in fields}, "required": [*fields]}
+    tried = list(samples(machine, schema, trees, {}))
+    assert len(tried) == 3 * len(fields) < 3 ** len(fields)
+    for field in fields:
+        assert {data[field] for data in tried} == {"Ani", "", f"x{field}"}
 
 
 def test_what_is_invoked_is_walked_too() -> None:
