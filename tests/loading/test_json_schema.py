@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from lumen.interpreters.json_schema import MAX_DATA_DEPTH, JsonSchema
-from lumen.loading.document import Document
+from lumen.loading.document import MAX_NODE_DEPTH, Document
 from lumen.loading.files import read_files
 from lumen.loading.messages import build_message
 from lumen.loading.project_folders import FILE_KINDS, kind_of
@@ -153,6 +153,14 @@ def test_data_in_which_jsonschema_rs_would_end_the_process_is_not_given_to_it(sc
 
 def test_a_schema_that_nests_too_deep_fits_nothing() -> None:
     assert not JsonSchema({"const": _nested(50_000)}).fits(1)
+
+
+def test_a_message_schema_that_is_nested_too_deep_is_not_read() -> None:
+    content = [b'{"items":' * depth + b"{}" + b"}" * depth for depth in (MAX_NODE_DEPTH - 1, MAX_NODE_DEPTH)]
+    assert build_message("x.schema.json", content[0])[1] == ()
+    read, (found,) = build_message("x.schema.json", content[1])
+    assert read is None
+    assert (found.code, found.message) == ("too-large", f"the file is nested deeper than {MAX_NODE_DEPTH} levels")
 
 
 @pytest.mark.parametrize("reference", ["#/anyOf/" + "9" * 5_000, "#/anyOf/\u0663", "#/anyOf/-1", "#/anyOf/0"])

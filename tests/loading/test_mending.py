@@ -3,6 +3,7 @@
 from random import Random
 
 from lumen.loading.bracketed_texts import bracketed
+from lumen.loading.document import MAX_NODE_DEPTH
 from lumen.loading.line_marks import marks_of
 from lumen.loading.mending import failure, mistake
 from tests import ROOT
@@ -31,6 +32,27 @@ def test_the_mended_text_is_yaml_and_has_the_same_lines() -> None:
     assert failed - slip.line > 5  # it was noticed much later
     assert failure(mended) is None
     assert mended == TOUR
+
+
+@for_each(
+    ("line", "meant"),
+    [
+        ('say: {en: "Hello, id: "Halo"}', 'say: {en: "Hello", id: "Halo"}'),
+        ("say: ['Hello, 'Halo']", "say: ['Hello', 'Halo']"),
+    ],
+)
+def test_a_quote_that_is_missing_at_the_end_of_a_text_stands_before_the_comma(line: str, meant: str) -> None:
+    found = mistake(line, 0, 0)
+    assert found is not None
+    slip, mended = found
+    assert mended == meant
+    assert slip.column == line.index("Hello")
+    assert slip.message == "a quoted text begins here and is not closed"
+
+
+def test_what_is_nested_too_deep_is_not_read_further() -> None:
+    assert failure(f"a: 1\nb: {'[' * (MAX_NODE_DEPTH - 1)}{']' * (MAX_NODE_DEPTH - 1)}\n") is None
+    assert failure(f"a: 1\nb: {'[' * MAX_NODE_DEPTH}{']' * MAX_NODE_DEPTH}\n") == 0
 
 
 @for_each("seed", range(60))

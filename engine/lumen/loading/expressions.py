@@ -159,10 +159,7 @@ def place_within(document: Document, path: NodePath, source: str, offset: int, l
     A text that computes how long an `after` waits is the last of its path: it is a key.
     """
     place = document.place(path, key=path[-2:] == ("after", source))
-    lines = lines_of(document.text)
-    if place.line > len(lines):
-        return place
-    line = lines[place.line - 1]
+    line = lines_of(document.text)[place.line - 1]
     start = place.column - 1
     start += line[start : start + 1] in ("'", '"')
     if place.line != place.end_line or not line.startswith(source, start):
