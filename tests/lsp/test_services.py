@@ -217,6 +217,24 @@ def test_the_key_in_a_way_that_assign_goes() -> None:
 
 
 @for_each(
+    "text",
+    [
+        r'"context.visitor != \"\" && size(context.visi|tor) < 9"',
+        "'context.visitor != '''' && size(context.visi|tor) < 9'",
+        "context.visitor != '' &&\n            size(context.visi|tor) < 9",
+        "\"context.visitor != '' && \\\n            size(context.visi|tor) < 9\"",
+    ],
+)
+def test_a_name_is_renamed_in_a_text_that_is_folded_or_escaped(text: str) -> None:
+    analysis, here = written(TOUR, "{posture: Stand}", f"{{if: {text}, then: [{{posture: Stand}}]}}")
+    word = renamable(analysis, *here)
+    assert word
+    assert word.text == "visitor"
+    after = applied(analysis, rename(analysis, word, "guest")).text(TOUR)
+    assert text.replace("|", "").replace("visitor", "guest") in after
+
+
+@for_each(
     ("file", "text", "name", "reason"),
     [
         (TOUR, "target: how_are|_you", "greet", "already"),
