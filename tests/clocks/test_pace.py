@@ -9,13 +9,16 @@ from lumen.app.pace import PaceWatch
 from lumen.app.setup import Setup, set_up_with
 from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
+from lumen.buses.memory import MemoryBus
 from lumen.buses.validated import validated
 from lumen.clocks.following import CATCH_UP, SILENCE, FollowingClock
 from lumen.clocks.pace import WINDOW
 from lumen.clocks.simulated import MAX_ARREARS, SimulatedClock
+from lumen.language.events import Event
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.loop import TICK_PERIOD
+from lumen.runtime.loop import BRAIN_LOST_AFTER, TICK_PERIOD, BehaviorLoop
 from lumen.runtime.presence import Presence
+from lumen.statechart import Machine
 from tests.exhibits import project
 from tests.nodes import Printed, whole
 from tests.waiting import Collector
@@ -107,6 +110,26 @@ def test_an_exhibition_that_is_slow_publishes_that(capsys: pytest.CaptureFixture
     assert [body["realtime"] for body in heard.bodies if "realtime" in body] == [0.8]
     assert exhibition.summary()[-1] == "at its slowest, it ran at 0.80 × real time"
     exhibition.close()
+
+
+LOST = {"seconds": "event.data.seconds", "lost": "context.lost + 1"}
+
+
+def test_a_behaviour_hears_once_that_its_ticks_stopped() -> None:
+    well = {"on": {"brain.lost": {"actions": {"assign": LOST}}}}
+    machine = Machine.from_dict({"context": {"lost": 0, "seconds": 0.0}, "states": {"well": well}}, "tour")
+    exhibit = project(behaviors={"tour": machine})
+    robot = RecordingRobot(exhibit.body)
+    clock = SimulatedClock(robot.advance)
+    loop = BehaviorLoop(exhibit, robot, MemoryBus(), clock)
+    loop.start()
+    loop.tick(BRAIN_LOST_AFTER)
+    assert loop.runtime.snapshot.context == {"lost": 0, "seconds": 0.0}
+    clock.wait(2 * BRAIN_LOST_AFTER + 1.0)
+    robot._notice(Event("brain.lost", {"seconds": 9.0}, robot.time))
+    loop.tick(clock.now())
+    loop.tick(clock.now() + TICK_PERIOD)
+    assert loop.runtime.snapshot.context == {"lost": 1, "seconds": BRAIN_LOST_AFTER + 1.0}
 
 
 @pytest.mark.parametrize(("speed", "pace"), [(1.0, 0.85), (4.0, 0.5), (1.0, 1.02)])
