@@ -1,22 +1,29 @@
 """Presence, the guard over a brain, and commands to a robot that does not answer: in virtual time."""
 
 from collections.abc import Iterator
+from math import inf
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+import lumen
 from lumen.app.parts.guard import BrainGuard
+from lumen.app.parts.motion import MotionPart
 from lumen.bus import Bus, BusError, connect
+from lumen.buses.validated import validated
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
 from lumen.ports import Aim, Message, Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteRobot
-from lumen.runtime.delegated_tracking import DelegatedTracking
+from lumen.runtime.delegated_tracking import DelegatedTracking, motion_key
 from lumen.runtime.presence import LOST_AFTER, MAX_PEERS, Presence
 from tests.exhibits import BODY, JOINTS, messages, project
+from tests.nodes import Printed
 
+ROOT = Path(__file__).parents[2]
 PROJECT = project(messages=messages())
 
 
@@ -338,3 +345,24 @@ def test_aims_are_sent_and_readings_come(line: Line) -> None:
     line.hall.bus.publish("avatar.NAO.data.joint", {"name": names, "angle": zeros, "stiffness": zeros, "time": 7.0})
     line.hall.time += 0.5
     assert line.robot.time() == pytest.approx(7.5)
+
+
+def test_controllers_are_off_once_the_brain_is_gone(hall: Hall) -> None:
+    shipped, clock = lumen.load(ROOT), SimpleNamespace(now=lambda: hall.time)
+    own, brain, robot = (hall.presence(name) for name in ("motion", "brain", "robot"))
+    for one in (own, brain, robot):
+        one.settle()
+    bus, narrator = validated(hall.bus, shipped), Printed(clock.now, lambda: shipped.machine)
+    part = MotionPart(shipped, bus, clock, own, narrator)  # type: ignore[arg-type]
+    part.begin(0.0)
+    hall.live(1.0, own, brain, robot)
+    bus.publish(motion_key(shipped), {"track": "head", "on": True})
+    part.tick(hall.time, ())
+    assert part.quiet_until(0.0) == 0.0
+    hall.live(LOST_AFTER - 2.0, own, robot)
+    part.tick(hall.time, ())
+    assert part.quiet_until(0.0) == 0.0
+    hall.live(LOST_AFTER, own, robot)
+    part.tick(hall.time, ())
+    assert part.quiet_until(0.0) == inf
+    part.close()
