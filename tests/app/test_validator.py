@@ -5,10 +5,12 @@ from collections.abc import Mapping
 
 import lumen
 from lumen.app.rehearsal import Rehearsal
+from lumen.app.reload.validation_process import failure
 from lumen.app.reload.validation_worker import Loaded
 from lumen.app.reload.validator import BundleValidator
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.language.projects import Project
+from lumen.language.stories import Expect, Story, StoryPause, StoryStep
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.runtime.watcher import SavedFiles
@@ -72,3 +74,15 @@ def test_two_threads_are_judged_one_after_the_other() -> None:
         thread.join()
     assert found == [True, True]
     assert judge.most == 1
+
+
+def test_a_story_that_takes_too_long_is_no_failure() -> None:
+    steps = StoryStep(Expect(("nowhere",), within=1.0)), StoryStep(StoryPause(1.0))
+    stories = {name: Story(name, name, steps[at:]) for at, name in enumerate(("failing", "well"))}
+    project = replace(lumen.load(ROOT), stories=stories)
+    found = failure(project, "failing", inf)
+    assert found
+    assert found.failed
+    assert found.failed.step == 1
+    assert failure(project, "failing", -1.0) is None
+    assert failure(project, "well", inf) is None

@@ -78,6 +78,16 @@ def test_a_behaviour_that_never_comes_to_rest_fails_the_story(story: Write, caps
     assert captured.err == ""
 
 
+def test_a_behaviour_that_can_not_begin_fails_the_story(story: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    project = story("  - wait: 1s\n")
+    door = project / "behaviors" / "door.yaml"
+    door.write_text(door.read_text("utf-8").replace("initial: closed", "initial: spinning"), "utf-8")
+    assert main(["test", str(project), "knocking"]) == 1
+    captured = capsys.readouterr()
+    assert "step 1: `door` never comes to rest" in captured.out
+    assert captured.err == ""
+
+
 def test_the_time_of_day_is_ten_where_a_story_does_not_say(story: Write) -> None:
     project = story(f"{KNOCK}  - expect: {{published: {{route: journal, body: {{at: 10}}}}}}\n")
     assert main(["test", str(project), "knocking"]) == 0
