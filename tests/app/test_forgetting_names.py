@@ -1,8 +1,18 @@
-"""Names to be forgotten that flood in keep nobody busy: one at a time, each once, and none that waits is lost."""
+"""Names to be forgotten: none that waits is lost, and the files of a running exhibition are left to it."""
 
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumen.app.forgetting import files
+from lumen.app.forgetting.files import forget_in
+from lumen.app.forgetting.report import Forgetting, ForgottenPlace
 from lumen.app.parts.forgetting import FORGETTING_SPACING, MAX_PENDING_NAMES, ForgettingPart
 from lumen.bus import connect
 from lumen.language.people import PersonName
+from lumen.runtime.home import Home
+from lumen.runtime.snapshot_store import SNAPSHOT_FILE
 from tests.exhibits import project
 
 KEY = "lumen.NAO.persistence.forgotten"
@@ -26,3 +36,45 @@ def test_names_are_forgotten_one_at_a_time_and_each_once() -> None:
     assert "ünal" in forgotten
     assert len(forgotten) == MAX_PENDING_NAMES + 1
     bus.close()
+
+
+class Waiting:
+    """A clock for the one who waits; what another process does meanwhile happens in each pause."""
+
+    def __init__(self, work: Callable[[], object]) -> None:
+        self.now, self.pauses, self._work = 0.0, 0, work
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def time(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+        self.pauses += 1
+        self._work()
+
+
+def forgotten(folder: Path, monkeypatch: pytest.MonkeyPatch, work: Callable[[], object]) -> tuple[Forgetting, Waiting]:
+    """What comes of forgetting Ani while another process has the home, and the clock of those who waited."""
+    running, waiting, found = Home(folder), Waiting(work), Forgetting()
+    assert running.hold()
+    monkeypatch.setattr(files, "time", waiting)
+    (folder / SNAPSHOT_FILE).write_text('{"snapshot": {"context": {"visitor": "Ani"}}}')
+    forget_in(folder, "Ani", found)
+    running.release()
+    return found, waiting
+
+
+def test_the_file_of_a_running_exhibition_is_left_to_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    work = iter([lambda: None, lambda: (tmp_path / SNAPSHOT_FILE).write_text("{}")])
+    found, waiting = forgotten(tmp_path, monkeypatch, lambda: next(work)())
+    assert waiting.pauses == 2
+    assert found.left == []
+
+
+def test_a_running_exhibition_that_does_not_forget_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found, waiting = forgotten(tmp_path, monkeypatch, lambda: None)
+    assert files.PATIENCE <= waiting.now < files.PATIENCE + 1.0
+    assert found.left == [ForgottenPlace(SNAPSHOT_FILE, "the running exhibition has not forgotten the name")]
