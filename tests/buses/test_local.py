@@ -10,9 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from lumen.bus import BusError, connect
+from lumen.bus import BusError, Message, connect
+from lumen.buses.bodies import encode
 from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
-from lumen.buses.local.frames import frame
+from lumen.buses.local.frames import frame, framed
+from lumen.buses.local.server import ClientConnection
 from lumen.buses.memory import MemoryBus
 from tests.waiting import HANG, Collector, finished, until
 
@@ -178,6 +180,65 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
         assert all(client.bytes < 2_000_000 for client in opened.server._clients.values())
         held.set()
         slow.close()
+
+
+class Narrow:
+    """A wire that takes so many bytes, and then no more."""
+
+    def __init__(self, room: int) -> None:
+        self.room, self.taken = room, b""
+
+    def send(self, data: memoryview) -> int:
+        if not self.room:
+            raise BlockingIOError
+        sent = bytes(data[: self.room])
+        self.room -= len(sent)
+        self.taken += sent
+        return len(sent)
+
+
+@pytest.mark.once  # it opens nothing
+def test_of_what_waits_the_oldest_gives_way_but_not_what_is_partly_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lumen.buses.local.server.MAX_UNSENT_BYTES", 100)
+    wire = Narrow(5)
+    client = ClientConnection(wire)  # type: ignore[arg-type]
+    for letter in (b"a", b"b", b"c", b"d", b"e"):
+        client.send(40 * letter)
+        client.flush()
+    assert (wire.taken, client.bytes) == (5 * b"a", 80)
+    wire.room = 1_000
+    client.flush()
+    assert wire.taken == 40 * b"a" + 40 * b"e"
+    assert (client.bytes, client.sent) == (0, 0)
+
+
+@pytest.mark.once  # its wire is a pair of sockets without an address
+def test_what_waits_for_a_subscription_that_has_ended_is_not_handled(monkeypatch: pytest.MonkeyPatch) -> None:
+    wire, exhibition = socket.socketpair()
+    monkeypatch.setattr("lumen.buses.local.client._connect", lambda _: (wire, bytearray()))
+    client, seen = LocalBusClient(LocalAddress()), Collector()
+
+    def handle(message: Message) -> None:
+        seen(message)
+        with client._arriving:
+            assert client._arriving.wait_for(lambda: len(client._arrived) == 2, HANG)
+        undo()
+
+    def answer() -> None:
+        exhibition.recv(1 << 16)
+        exhibition.sendall(frame("subscribed", 0, ""))
+
+    answering = threading.Thread(target=answer)
+    answering.start()
+    undo = client.subscribe("lumen.a", handle)
+    for body in (1, 2):
+        exhibition.sendall(framed(["message", 0, "lumen.a", "", "", "", "", 0.0, ""], encode(body)))
+    exhibition.sendall(frame("marked"))
+    assert client._marked.wait(HANG)
+    assert seen.bodies == [1]
+    finished(answering)
+    exhibition.close()
+    client.close()
 
 
 def much(opened: Opened) -> None:

@@ -1,6 +1,7 @@
 """What only the embedded bus promises: no thread, and done when `publish` returns."""
 
 import threading
+from collections.abc import Callable
 
 import pytest
 
@@ -61,6 +62,20 @@ def test_who_subscribes_later_is_not_told_what_was_published_before() -> None:
     bus.subscribe("lumen.a", handler)
     bus.publish("lumen.a", 0)
     assert late.bodies == []
+
+
+def test_who_has_unsubscribed_is_not_told_what_is_being_delivered() -> None:
+    bus, heard = connect("memory://"), list[str]()
+    undo = list[Callable[[], None]]()
+
+    def first(message: Message) -> None:
+        heard.append("first")
+        undo[1]()
+
+    undo += [bus.subscribe("lumen.a", handler) for handler in (first, lambda _: heard.append("second"))]
+    bus.subscribe("lumen.a", lambda _: heard.append("third"))
+    bus.publish("lumen.a", 0)
+    assert heard == ["first", "third"]
 
 
 def test_buses_without_a_name_are_strangers_and_a_name_is_shared() -> None:

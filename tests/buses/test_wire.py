@@ -12,6 +12,7 @@ from pika.exceptions import InvalidFrameError
 
 from lumen.buses.properties import MessageProperties, read_properties, write_properties
 from lumen.buses.wire import WireConnection
+from tests.tables import for_each
 
 PIECE = 50
 """How much of a body goes into a frame here [bytes]."""
@@ -88,6 +89,54 @@ def test_what_is_no_short_text_is_refused_before_anything_is_written(text: str, 
     with pytest.raises(ValueError, match=why):
         write_properties({"content_type": text})
     assert not wire.written
+
+
+class Line:
+    """What pika writes to: a socket that fails, or takes a few bytes at once, and pika's own buffer."""
+
+    def __init__(self, takes: int | OSError) -> None:
+        self._sock, self._takes = self, takes
+        self.at_once, self.later = b"", b""
+
+    def get_write_buffer_size(self) -> int:
+        return len(self.later)
+
+    def send(self, data: bytes) -> int:
+        if isinstance(self._takes, OSError):
+            raise self._takes
+        self.at_once += data[: self._takes]
+        return min(self._takes, len(data))
+
+    def write(self, data: bytes) -> None:
+        self.later += data
+
+
+class OpenWire(WireConnection):
+    """A connection that writes to such a line."""
+
+    is_closed = False
+
+    def __init__(self, line: Line) -> None:
+        self._transport, self._plain, self._frames, self._size = line, True, [], 0
+        self.bytes_sent = 0
+
+
+@for_each(
+    ("takes", "at_once"),
+    [(BlockingIOError(), b""), (BrokenPipeError(), b""), (3, b"ab1"), (6, b"ab12cd"), (100, b"ab12cd")],
+)
+def test_what_the_system_does_not_take_at_once_is_left_to_pika(takes: int | OSError, at_once: bytes) -> None:
+    line = Line(takes)
+    wire = OpenWire(line)
+    for piece in (b"ab", b"12", b"cd"):
+        wire._adapter_emit_data(piece)
+    wire.flush()
+    assert line.at_once == at_once
+    assert line.at_once + line.later == b"ab12cd"
+    wire.flush()
+    wire._adapter_emit_data(b"ef")
+    wire.flush()
+    assert line.at_once + line.later == b"ab12cdef", "what waits for room is sent first"
 
 
 @pytest.mark.network

@@ -1,6 +1,7 @@
 """What takes much memory is computed by processes that end, and whatever becomes of them is a line for the page."""
 
 import asyncio
+import errno
 import json
 import math
 import sys
@@ -61,6 +62,15 @@ def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytes
     late = "this takes longer than 0.5 s: use `lumen` in a terminal"
     assert [reason for _, reason in told].count(late) == MAX_WAITING
     assert "try again in a moment" in told[-1][1]
+
+
+def test_a_process_that_can_not_be_started_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def refused(*_: Any, **__: Any) -> None:
+        raise BlockingIOError(errno.EAGAIN, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", refused)
+    reason = "cannot start a process to compute this: Resource temporarily unavailable"
+    assert reasons(done("echo", "echo")) == [(503, reason), (503, reason)]
 
 
 @pytest.mark.process
