@@ -2,6 +2,8 @@
 
 import io
 import sys
+import threading
+from itertools import count
 
 import pytest
 
@@ -53,6 +55,25 @@ def test_what_is_short_shows_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     with progress() as tell:
         tell(1, 4, "wave")
     assert "wave" not in terminal.getvalue()
+
+
+def test_nothing_is_shown_before_there_is_something_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal, looked = Terminal(), count()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(module, "REDRAWING", 0.001)
+    monkeypatch.setattr(module, "PATIENCE", 0.0)
+    drawn = threading.Event()
+
+    def clock() -> float:
+        if next(looked) == 5:
+            drawn.set()
+        return 0.0
+
+    with progress(clock=clock) as tell:
+        assert drawn.wait(HANG)
+        assert terminal.getvalue() == ""
+        tell(1, 4, "wave")
+        until(lambda: "1 of 4 wave" in terminal.getvalue())
 
 
 def test_a_file_never_sees_it(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

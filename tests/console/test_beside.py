@@ -3,6 +3,7 @@
 import os
 import signal
 import socket
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -49,6 +50,16 @@ def test_it_is_begun_begun_again_and_ended(copy: Path, monkeypatch: pytest.Monke
     part.close()
     with pytest.raises(OSError, match="refused"):
         browser.get("/api/now")
+
+
+def test_a_line_that_it_repeats_is_told_once() -> None:
+    told = list[str]()
+    part = ConsolePart(Path(), "memory://", told.append)
+    part._looked = inf  # it is not begun here
+    for lines in (["one", "one", "two"], ["two", "one"], ["one"]):
+        part._lines += lines
+        part.tick(0.0, ())
+    assert told == ["one", "two", "one"]
 
 
 @pytest.mark.slow

@@ -8,18 +8,22 @@ import sys
 from collections.abc import AsyncIterator
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import lumen
 from lumen.console import jobs
+from lumen.console.job_promises import OUT_OF_MEMORY, REFUSED
 from lumen.console.jobs import MAX_WAITING, Jobs
+from lumen.console.poses import Poses
 from lumen.console.requests import DeniedError
 from lumen.errors import BusError
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served, Stream
 from tests.guarded import PIPE, Guarded
+from tests.tables import for_each
 from tests.waiting import until
 
 JOINTS = "avatar.NAO.data.joint"
@@ -81,6 +85,29 @@ def test_what_tells_a_job_may_fail() -> None:
         raise BusError("nobody answers")
 
     assert [str(one) for one in done("echo", told=told())] == ["nobody answers"]
+
+
+@for_each(
+    ("code", "wrote", "reason"),
+    [
+        (REFUSED, b"there is no such model", "there is no such model"),
+        (OUT_OF_MEMORY, b"", "this needs more memory than the console allows: use `lumen` in a terminal"),
+        (1, b"[[0.1, ", "the process that computes this ended without an answer (exit code 1): try again, or use"),
+    ],
+)
+def test_a_process_of_poses_that_has_ended_says_why(code: int, wrote: bytes, reason: str) -> None:
+    async def begin(job: str, home: str) -> Any:
+        assert (job, home) == ("poses", "/home")
+        drained = asyncio.sleep
+        pipe = SimpleNamespace(write=lambda _: None, drain=lambda: drained(0), readline=lambda: drained(0, wrote))
+        return SimpleNamespace(stdin=pipe, stdout=pipe, returncode=code)
+
+    watch = SimpleNamespace(keys=SimpleNamespace(home=lambda robot: "/home"))
+    poses = Poses(watch, SimpleNamespace(begin=begin), "NAO")  # type: ignore[arg-type]
+    with pytest.raises(DeniedError) as raised:
+        asyncio.run(poses._asked(b"{}"))
+    assert raised.value.reason.startswith(f"the robot cannot be drawn: {reason}")
+    assert poses._child is None, "the next look begins another one"
 
 
 @pytest.mark.process

@@ -63,6 +63,15 @@ def test_of_the_same_files_nothing_is_made_anew(project: Path, monkeypatch: pyte
     assert memoization.newly_made() < MUCH
 
 
+def test_of_files_that_were_saved_just_now_nothing_is_kept(
+    project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check_files(project, read_files(project))
+    monkeypatch.setattr(looks, "SETTLED_NS", 10**18)
+    keep_memory(project)
+    assert not (tmp_path / "cache/lumen/memory").exists()
+
+
 def test_only_what_was_asked_for_is_kept(project: Path, tmp_path: Path) -> None:
     memoization.memoize("another project", 1, lambda: "x" * 100_000)
     recall_memory(project)
