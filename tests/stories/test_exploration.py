@@ -256,6 +256,34 @@ def test_a_text_is_tried_that_the_guard_names(guard: str, text: str) -> None:
     assert {"text": text} in list(samples(machine, SAID, [parse_expression(guard)], context))
 
 
+@for_each(
+    ("guard", "context"),
+    [
+        ("event.data.text == context.answer", {"answer": "Paris"}),
+        ("context.answer == event.data.text && context.asked", {"answer": "Paris", "asked": True}),
+        ("contains(event.data.text, context.answer) || event.data.text == context.answer", {"answer": "Paris"}),
+        ("heard(event.data.text, context.titles)", {"titles": ["Golden Boy"]}),
+        ("heard(event.data.text, context.titles) && size(event.data.text) > 3", {"titles": {"en": ["Golden Boy"]}}),
+        ("size(words(event.data.text)) == context.length", {"length": 2}),
+        ("event.data.text != context.answer", {"answer": "Ani"}),
+    ],
+)
+def test_what_an_event_says_is_compared_with_the_context(guard: str, context: dict[str, Any]) -> None:
+    states = {"a": {"on": {"go": "b"}}, "b": {"on": {"heard": {"guard": guard, "target": "a"}}}}
+    assert found(walked(states, context=context)) == []
+
+
+def test_what_is_compared_with_the_context_is_found_anew_when_it_changes() -> None:
+    asks = {"guard": "context.answer == ''", "target": "b", "actions": {"assign": {"answer": "'Paris'"}}}
+    again = {"target": "b", "actions": {"assign": {"answer": "'Rome'"}}}
+    right = {"guard": "event.data.text == context.answer && context.answer == 'Rome'", "target": "c"}
+    wrong = {"guard": "event.data.text == context.answer", "target": "a"}
+    states = {"a": {"on": {"go": [asks, again]}}, "b": {"on": {"heard": [right, wrong]}}, "c": {"on": {"back": "a"}}}
+    exploration = walked(states, context={"answer": ""})
+    assert found(exploration) == []
+    assert exploration.never_entered == ()
+
+
 def test_no_text_is_tried_of_a_table_without_phrases() -> None:
     for context in ({}, {"titles": None}, {"titles": 3}, {"titles": {"en": 3}}):
         assert phrases_at(("context", "titles"), context) == []

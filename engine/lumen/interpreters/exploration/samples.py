@@ -115,7 +115,7 @@ def _mentioned(
             case Binary(left=left, right=right):
                 for one, other in ((left, right), (right, left)):
                     sized = any(isinstance(n, FunctionCall) and n.function == "size" for n, _ in walk(one))
-                    found = _compared(other, sized=sized)
+                    found = _compared(other, context, sized=sized)
                     yield from ((path, found) for path in _fields(one))
 
 
@@ -136,21 +136,29 @@ def texts_for(machine: MachineDefinition, function: str, text: str) -> list[Any]
 
 def phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list[Any]:
     """Phrases that stand in the context, one for each language."""
-    value: Any = {"context": context}
-    for key in path or ():
-        value = value.get(key) if isinstance(value, Mapping) else None
+    value = _value_at(path, context)
     try:
-        return [text for texts in phrases_of(value).values() for text in texts[:1]] if path and value else []
+        return [text for texts in phrases_of(value).values() for text in texts[:1]] if value else []
     except FaultError:
         return []
 
 
-def _compared(other: ExpressionNode, *, sized: bool) -> list[Any]:
+def _value_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> Any:
+    """The value that a path leads to in the context; None if there is none."""
+    if not path or path[0] != "context":
+        return None
+    value: Any = context
+    for key in path[1:]:
+        value = value.get(key) if isinstance(value, Mapping) else None
+    return value
+
+
+def _compared(other: ExpressionNode, context: Mapping[str, Any], *, sized: bool) -> list[Any]:
     items = other.items if isinstance(other, ListLiteral) else (other,)
     found: list[Any] = []
     for item in items:
-        if isinstance(item, Literal):
-            value = item.value
+        value = item.value if isinstance(item, Literal) else _value_at(path_of(item), context)
+        if isinstance(item, Literal) or isinstance(value, str | int | float):
             if sized and isinstance(value, int):
                 found += [" ".join([SAMPLE_TEXT] * n) for n in (value, value + 1) if 0 <= n < 50]
             elif isinstance(value, int | float) and not isinstance(value, bool):

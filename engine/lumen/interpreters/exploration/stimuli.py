@@ -10,7 +10,7 @@ from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_blo
 from lumen.interpreters.exploration.samples import FieldPath, samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS
-from lumen.interpreters.expressions.tree import children
+from lumen.interpreters.expressions.tree import Binary, FunctionCall, children
 from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
@@ -23,6 +23,8 @@ from lumen.language.events import ARRIVED, Event
 from lumen.language.machines import Hears, MachineDefinition, Transition
 
 FAILURE_REASON = "it does not work"
+
+COMPARISONS = frozenset(("==", "!=", "<", "<=", ">", ">=", "in"))
 
 
 class StimulusKind(StrEnum):
@@ -83,6 +85,7 @@ class StimulusFinder:
         self._machine, self._events = machine, events
         self._compiled = compiled(machine)
         self._known: dict[tuple[Any, ...], tuple[Any, ...]] = {}
+        self._keys: dict[tuple[Any, ...], tuple[frozenset[str], ...]] = {}
 
     def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Stimulus]:
         """The stimuli of a snapshot; `commands` are those started so far, by id."""
@@ -114,14 +117,27 @@ class StimulusFinder:
         if not heard:
             return ()
         entries = (repr(context[key]["entry"]) for machine, _, context in heard for key in loop_keys(machine))
-        known = (name, *(id(transition) for _, transition, _ in heard), *entries)
+        transitions = (name, *(id(transition) for _, transition, _ in heard))
+        if transitions not in self._keys:
+            self._keys[transitions] = tuple(map(_compared_keys, heard))
+        compared = zip(heard, self._keys[transitions], strict=True)
+        known = (
+            *transitions,
+            *entries,
+            *(repr(one.context.get(key)) for one, keys in compared for key in sorted(keys)),
+        )
         if known not in self._known:
             self._known[known] = tuple(self._sorts(name, heard))
         return self._known[known]
 
     def _sorts(self, name: str, heard: tuple[HeardTransition, ...]) -> Iterator[Any]:
         trees = [(one, use.tree) for one in heard for use in _uses(one)]
-        atoms = [(one, unparse(node)) for one, tree in trees for node in _known_of_events(tree, loop_keys(one.machine))]
+        atoms = [
+            (one, unparse(node))
+            for one, tree in trees
+            for part in (_known_of_events(tree, loop_keys(one.machine)), _compared(tree, loop_keys(one.machine)))
+            for node in part
+        ]
         seen = set()
         for machine in dict.fromkeys(id(one.machine) for one in heard):
             about = [tree for owner, tree in trees if id(owner.machine) == machine]
@@ -206,6 +222,24 @@ def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[Ex
     elif not alone:
         for child in children(tree):
             yield from _known_of_events(child, loops)
+
+
+def _compared(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
+    """The smallest parts of an expression that depend on the event's data and on the context besides entries."""
+    within = [node for child in children(tree) for node in _compared(child, loops)]
+    yield from within
+    compares = tree.sign in COMPARISONS if isinstance(tree, Binary) else isinstance(tree, FunctionCall)
+    if compares and not within:
+        speaks = names(tree)
+        if speaks.context - loops and "event" in unparse(tree) and not speaks.functions & {"In", *CLOCK_FUNCTIONS}:
+            yield tree
+
+
+def _compared_keys(heard: HeardTransition) -> frozenset[str]:
+    """The keys of the context that a transition compares with the event's data."""
+    loops = loop_keys(heard.machine)
+    found = (names(node).context for use in _uses(heard) for node in _compared(use.tree, loops))
+    return frozenset().union(*found)
 
 
 def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
