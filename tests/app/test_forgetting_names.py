@@ -68,8 +68,8 @@ def forgotten(folder: Path, monkeypatch: pytest.MonkeyPatch, work: Callable[[], 
 
 
 def test_the_file_of_a_running_exhibition_is_left_to_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    work = iter([lambda: None, lambda: (tmp_path / SNAPSHOT_FILE).write_text("{}")])
-    found, waiting = forgotten(tmp_path, monkeypatch, lambda: next(work)())
+    texts = iter(['{"visitor": "Ani"}', "{}"])
+    found, waiting = forgotten(tmp_path, monkeypatch, lambda: (tmp_path / SNAPSHOT_FILE).write_text(next(texts)))
     assert waiting.pauses == 2
     assert found.left == []
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from math import inf
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,6 +14,7 @@ from lumen.bus import Bus, BusError, connect
 from lumen.buses.validated import validated
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
+from lumen.loading.packaged import shipped_root
 from lumen.ports import Aim, Message, Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteRobot
@@ -23,7 +23,6 @@ from lumen.runtime.presence import LOST_AFTER, MAX_PEERS, Presence
 from tests.exhibits import BODY, JOINTS, messages, project
 from tests.nodes import Printed
 
-ROOT = Path(__file__).parents[2]
 PROJECT = project(messages=messages())
 
 
@@ -348,12 +347,12 @@ def test_aims_are_sent_and_readings_come(line: Line) -> None:
 
 
 def test_controllers_are_off_once_the_brain_is_gone(hall: Hall) -> None:
-    shipped, clock = lumen.load(ROOT), SimpleNamespace(now=lambda: hall.time)
+    shipped, clock = lumen.load(shipped_root()), SimpleNamespace(now=lambda: hall.time)
     own, brain, robot = (hall.presence(name) for name in ("motion", "brain", "robot"))
     for one in (own, brain, robot):
         one.settle()
     bus, narrator = validated(hall.bus, shipped), Printed(clock.now, lambda: shipped.machine)
-    part = MotionPart(shipped, bus, clock, own, narrator)  # type: ignore[arg-type]
+    part = MotionPart(shipped, bus, clock, own, narrator)
     part.begin(0.0)
     hall.live(1.0, own, brain, robot)
     bus.publish(motion_key(shipped), {"track": "head", "on": True})
