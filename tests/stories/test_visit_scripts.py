@@ -1,4 +1,4 @@
-"""What the robot did badly in a recorded visit, as `robot:` of a story describes it."""
+"""The faults of a robot in a recorded visit, as `robot:` of a story describes them."""
 
 from typing import Any
 
