@@ -2,6 +2,8 @@
 
 import threading
 from collections.abc import Mapping
+from dataclasses import replace
+from math import inf
 
 import lumen
 from lumen.app.rehearsal import Rehearsal
