@@ -201,7 +201,7 @@ steps:
     )
     (folder / "behaviors" / "stories" / "none.yaml").write_text("steps: [{operator: {approve: go}}]")
     assert played(folder, "go") == ""
-    assert "nothing waits for approval" in played(folder, "none")
+    assert "nothing is waiting for approval" in played(folder, "none")
 
 
 def played(folder: Path, story: str) -> str:

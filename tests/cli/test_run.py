@@ -48,7 +48,7 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
     assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "short"]) == 1
     told = capsys.readouterr().out
     assert "The story failed" in told
-    assert "step 2 of `short`: expected within 3 s state `dance`, but active are" in told
+    assert "step 2 of `short`: expected state `dance` within 3 s, but the active states are" in told
 
 
 @pytest.mark.process

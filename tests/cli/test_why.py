@@ -93,9 +93,9 @@ def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
     ("question", "what", "said"),
     [
         ("why", "dnace", "did you mean `dance`?"),
-        ("why", "dance", "ask `lumen why-not dance`"),
+        ("why", "dance", "run `lumen why-not dance`"),
         ("why-not", "dnace", "did you mean `dance`?"),
-        ("why-not", "talking", "ask `lumen why talking`"),
+        ("why-not", "talking", "run `lumen why talking`"),
         ("why-not", "", "name a state, a motion or a text"),
     ],
 )
@@ -129,7 +129,7 @@ def test_who_runs_is_asked_and_who_does_not_has_a_journal(
     assert main(["why-not", "dance", str(copy)]) == 0
     assert "its state was not active" in capsys.readouterr().out
     assert main(["why-not", "idle", str(copy)]) == 1
-    assert "ask `lumen why idle`" in capsys.readouterr().err
+    assert "run `lumen why idle`" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -55,7 +55,7 @@ def test_what_was_raised_leads_to_the_action_that_raised_it() -> None:
     assert play.why("wave") == [
         "command: plays wave",
         "activity: in the `entry` of c",
-        "transition: b → c, as soon as it can",
+        "transition: b → c, as soon as possible",
         "transition: a → b, on inner",
         "event: raised inner",
         "transition: a → (stays), on go",
@@ -112,12 +112,12 @@ def test_it_ends_at_a_person_a_file_or_the_start() -> None:
     play = Play({"initial": "a", "states": {"a": {"entry": {"play": "first"}, "on": {"stop": "b"}}, "b": {}, "c": {}}})
     assert play.why("first")[-1] == "start: m begins"
     play.happen("stop", {"by": "Ani"})
-    assert play.why("b")[-1] == "person: Ani said so"
+    assert play.why("b")[-1] == "person: Ani requested it"
     goto = Event("operator.goto", {"by": "Budi", "state": "c"}, play.now.at)
     play.take(entered_directly(play.machine, play.now, "c", goto))
-    assert play.why("c") == ["person: Budi let it enter c (lumen goto)"]
+    assert play.why("c") == ["person: Budi moved the behaviour to c (`lumen goto`)"]
     play.take(Step(None, ("c",), ("a",), (), play.now._replace(configuration=frozenset("a"))))
-    assert play.why("a") == ["file: the files were saved and reloaded while it ran"]
+    assert play.why("a") == ["file: the files were saved and reloaded during the run"]
 
 
 def test_a_message_says_its_key_its_sender_and_its_id() -> None:

@@ -101,7 +101,7 @@ def test_what_becomes_of_each_row(text: str, fates: dict[str, str]) -> None:
             1,
             {},
         ),
-        ("sing|refusal", "well", "none of its phrases is in “well”", 0, {}),
+        ("sing|refusal", "well", "none of its phrases occurs in “well”", 0, {}),
         ("named", "my name is Ani", "“my name is Ani” in “my name is Ani”", 3, {
             "heard.phrase": "my name is Ani", "heard.name": "Ani",
         }),
@@ -176,7 +176,7 @@ def _leads(play: Play, change: Any, number: int, state: str) -> bool | None:
          "offer → asked, hears asked dance; heard came, but “Dance” is not part of a question in “Dance”",
          {"event.data.result": "who dance"}),
         ("Sing for me", "answered", "unheard",
-         "offer → answered, hears faq; heard came, but none of its phrases is in “Sing for me”",
+         "offer → answered, hears faq; heard came, but none of its phrases occurs in “Sing for me”",
          {"event.data.result": "how tall"}),
         ("My name is Ani. Dance", "dance", "preempted",
          "offer → dance, hears dance, as context.n < 3; heard came, offer → named, hears named was taken instead",
@@ -415,7 +415,7 @@ def test_phrases_of_a_lists_entry_are_found_and_proposed() -> None:
     play.happen("heard", {"result": "three"})
     reason = refused(play, "quiz.praise")
     assert reason["text"] == (
-        "quiz.ask → quiz.praise, hears question.right; heard came, but none of its phrases is in “three”"
+        "quiz.ask → quiz.praise, hears question.right; heard came, but none of its phrases occurs in “three”"
     )
     assert (reason["change"], reason["proved"]) == ({"event.data.result": "four"}, True)
 

@@ -99,23 +99,23 @@ def test_what_only_else_took_was_not_understood(text: str, is_understood: bool) 
     ("before", "after", "told"),
     [
         ({"sing": "sing"}, {"sing": "sing"}, []),
-        ({"my_name": NAMED}, {"dance": "dance", "my_name": NAMED}, ["goes to `dance` on `hears dance` now"]),
+        ({"my_name": NAMED}, {"dance": "dance", "my_name": NAMED}, ["now goes to `dance` on `hears dance`"]),
         ({"dance": "dance", "my_name": NAMED}, {"my_name": NAMED}, ["no longer goes to `dance` on `hears dance`"]),
-        ({"dance": "dance"}, {"dance": "sing"}, ["goes to `sing` on `hears dance` now, not `dance`"]),
+        ({"dance": "dance"}, {"dance": "sing"}, ["now goes to `sing` on `hears dance`, not `dance`"]),
         ({"dance": "dance"}, {"not dance": "sing"}, [
-            "no longer goes to `dance` on `hears dance`", "goes to `sing` on `hears not dance` now",
+            "no longer goes to `dance` on `hears dance`", "now goes to `sing` on `hears not dance`",
         ]),
         ({"dance": "dance"}, {"dance|sing": "dance"}, ["hears `dance|sing`, not `dance`"]),
         ({"my_name": NAMED}, {"asked my_name": NAMED}, ["hears `asked my_name`, not `my_name`"]),
-        ({"dance": "dance"}, {"dance": GUARDED}, ["goes to `dance` on `hears dance` if `context.n > 3` now"]),
+        ({"dance": "dance"}, {"dance": GUARDED}, ["now goes to `dance` on `hears dance` if `context.n > 3`"]),
         ({"my_name": NAMED}, {"my_name": {**NAMED, "guard": "heard.name != ''"}}, [
-            "goes to `dance` on `hears my_name` if `heard.name != ''` now"
+            "now goes to `dance` on `hears my_name` if `heard.name != ''`"
         ]),
         ({"my_name": NAMED}, {"my_name": {**NAMED, "actions": {"assign": {"visitor": "heard.text"}}}}, [
             "now sets `visitor` on `hears my_name`"
         ]),
         ({"dance": "dance", "sing": "sing"}, {"sing": "sing", "dance": "dance"}, [
-            "tries its rows of `hears` in another order"
+            "tries its rows of `hears` in a different order"
         ]),
     ],
 )  # fmt: skip
@@ -129,5 +129,5 @@ def test_phrases_that_changed_are_told() -> None:
     other = machine({"dance": "dance"}, dance={"en": ["dance", "dancing"]}, sing={"en": ["sing"], "anyhow": True})
     assert [change.sentence for change in machine_changes("m", machine({"dance": "dance"}), other)] == [
         "phrases `dance` changed",
-        "phrases `sing` count even if they are negated now",
+        "phrases `sing` now count even if they are negated",
     ]

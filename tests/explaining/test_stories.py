@@ -30,7 +30,7 @@ def check(story: str, tally: Counter[str], project: str = ".") -> None:
         for effect in (*done, *(Effect(number, "", state=name) for name in one.step.entered)):
             last = chain(history, effect)[-1]
             assert last.kind in ENDS
-            assert last.kind != "event" or last.text == "the robot noticed it"
+            assert last.kind != "event" or last.text == "the robot detected it"
             tally[f"end at a {last.kind}"] += 1
     for state in steps[-1].machine.states.values():
         try:

@@ -141,8 +141,8 @@ def test_hints() -> None:
     assert hint("event.data.date") == "guard it with has(event.data.date)"
     assert hint("context.n == '3'") == "this is always false"
     assert hint("In('tlak')").startswith("did you mean `talk`?")
-    assert hint("context.n ** 2") == "there are no powers; multiply"
-    assert hint("context.n // 2").startswith("between whole numbers")
+    assert hint("context.n ** 2") == "there is no operator for powers: multiply"
+    assert hint("context.n // 2").startswith("to divide, write `/`")
     assert hint("context.n <> 2") == "write `!=`"
     assert hint("event?.data") == "ask `has(…)` first"
     assert hint("context.größe").startswith("a field with such a letter is written in brackets")

@@ -27,7 +27,7 @@ UNREADABLE: dict[str, tuple[int, str, str]] = {
     r"'\ud800'": (1, r"`\ud800` is not an escape", ""),
     "12u": (2, "`u` can't follow a number", "no `u`"),
     "9223372036854775808": (0, "`9223372036854775808` is too large", "64 bits"),
-    "1e999": (0, "`1e999` is too large a number", ""),
+    "1e999": (0, "the number `1e999` is too large", ""),
     "{a: 1}": (1, "`a` is not allowed here", "put the key in quotes: 'a'"),
     "{'a': 1, 'a': 2}": (9, "the key 'a' is in the map twice", ""),
     "visitor == 1": (0, "nothing is called `visitor`", "`context`"),
@@ -38,9 +38,9 @@ UNREADABLE: dict[str, tuple[int, str, str]] = {
     "1 + size()": (4, "`size` takes 1 argument, and none are given", "write `size(text)`"),
     "hour(1)": (0, "`hour` takes no arguments, and 1 is given", "write `hour()`"),
     "'a'.contains()": (4, "`contains` takes 2 arguments, and 1 is given", ""),
-    "has(1)": (4, "`has` checks if a field exists", "has(event.data.x)"),
-    "has(context)": (4, "`has` checks if a field exists", ""),
-    "matches('a', context.name)": (13, "`matches` needs its pattern written as a text", ""),
+    "has(1)": (4, "the argument of `has` must be a field", "has(event.data.x)"),
+    "has(context)": (4, "the argument of `has` must be a field", ""),
+    "matches('a', context.name)": (13, "the pattern of `matches` must be a text in quotes", ""),
     "matches('a', '(?!a)')": (13, "in the pattern, a group can't begin with `(?` here", ""),
     "false && nothing()": (9, "there is no function `nothing`", ""),
 }
@@ -56,22 +56,22 @@ WORTHLESS: dict[str, tuple[int, str, str]] = {
     "context.list[3]": (0, "there is no element 3 in a list of 3", "count from 0"),
     "context.list[-1]": (0, "there is no element -1 in a list of 3", ""),
     "context.list[0.5]": (0, "there is no element 0.5 in a list of 3", ""),
-    "context.list[true]": (13, "`true` is true or false, and `[…]` needs a number", ""),
-    "context.map[context.n]": (12, "`context.n` is a number, and `[…]` needs a text", ""),
-    "context.n[0]": (0, "`context.n` is a number, and `[…]` needs a list or a map", ""),
+    "context.list[true]": (13, "`true` is true or false, but `[…]` needs a number", ""),
+    "context.map[context.n]": (12, "`context.n` is a number, but `[…]` needs a text", ""),
+    "context.n[0]": (0, "`context.n` is a number, but `[…]` needs a list or a map", ""),
     "1 < 'a'": (0, "a number and a text can't be combined in `<`", ""),
     "context.yes < 2": (0, "true or false and a number can't be combined in `<`", ""),
     "[1] < [2]": (0, "a list and a list can't be combined in `<`", ""),
     "true && context.none >= 1": (8, "null and a number can't be combined in `>=`", ""),
     "1 + 'a'": (0, "a number and a text can't be combined in `+`", ""),
-    "context.name - 1": (0, "`context.name` is a text, and `-` needs a number", ""),
-    "1 * context.name": (4, "`context.name` is a text, and `*` needs a number", ""),
+    "context.name - 1": (0, "`context.name` is a text, but `-` needs a number", ""),
+    "1 * context.name": (4, "`context.name` is a text, but `*` needs a number", ""),
     "true + 1": (0, "true or false and a number can't be combined in `+`", ""),
-    "-context.name": (1, "`context.name` is a text, and `-` needs a number", ""),
-    "!context.n": (1, "`context.n` is a number, and `!` needs true or false", ""),
-    "true && context.n": (8, "`context.n` is a number, and true or false is needed", ""),
-    "context.n || false": (0, "`context.n` is a number, and true or false is needed", ""),
-    "context.n ? 1 : 2": (0, "`context.n` is a number, and true or false is needed", ""),
+    "-context.name": (1, "`context.name` is a text, but `-` needs a number", ""),
+    "!context.n": (1, "`context.n` is a number, but `!` needs true or false", ""),
+    "true && context.n": (8, "`context.n` is a number, but true or false is needed", ""),
+    "context.n || false": (0, "`context.n` is a number, but true or false is needed", ""),
+    "context.n ? 1 : 2": (0, "`context.n` is a number, but true or false is needed", ""),
     "1 / 0": (0, "this divides by zero", ""),
     "1.5 / 0.0": (0, "this divides by zero", ""),
     "1 % 0": (0, "this divides by zero", ""),
@@ -79,10 +79,10 @@ WORTHLESS: dict[str, tuple[int, str, str]] = {
     "context.big * context.big": (0, "the number becomes too large", ""),
     "-9223372036854775808 / -1": (0, "the number becomes too large", ""),
     "1e308 * 10": (0, "the number becomes too large", ""),
-    "1 in 'a'": (5, "`'a'` is a text, and `in` needs a list or a map", ""),
-    "size(1)": (5, "`1` is a number, and `size` needs a text or a list or a map", ""),
-    "contains('a', context.n)": (14, "`context.n` is a number, and `contains` needs a text", ""),
-    "lower(context.none)": (6, "`context.none` is null, and `lower` needs a text", ""),
+    "1 in 'a'": (5, "`'a'` is a text, but `in` needs a list or a map", ""),
+    "size(1)": (5, "`1` is a number, but `size` needs a text or a list or a map", ""),
+    "contains('a', context.n)": (14, "`context.n` is a number, but `contains` needs a text", ""),
+    "lower(context.none)": (6, "`context.none` is null, but `lower` needs a text", ""),
     "heard('a', 'danse')": (0, "there are no phrases named `danse`", "did you mean `dance`?"),
     "heard('a', context.list)": (0, "these are not phrases", "a list of texts, or one for each language"),
     "heard('b', context.map)": (0, "these are not phrases", "a list of texts, or one for each language"),
@@ -118,10 +118,10 @@ def test_no_event() -> None:
 
 
 def test_a_guard_is_true_or_false() -> None:
-    with pytest.raises(ExpressionError, match=r"`context\.n` is a number, and true or false is needed"):
+    with pytest.raises(ExpressionError, match=r"`context\.n` is a number, but true or false is needed"):
         compile_guard("context.n")(SCOPE)
 
 
 def test_what_is_not_json_is_refused() -> None:
-    with pytest.raises(ExpressionError, match="an expression can't use a value here"):
+    with pytest.raises(ExpressionError, match="an expression can't use this value"):
         compile_expression("context.x == context.x")(Scope(context={"x": object()}))

@@ -81,10 +81,10 @@ def test_does_not_match(pattern: str, text: str) -> None:
 @for_each(
     ("pattern", "message", "offset"),
     [
-        (r"(a)\1", "refers back to a group", 3),
+        (r"(a)\1", "refers to an earlier match", 3),
         (r"(?=a)", "can't begin", 0),
         ("(?<!a)b", "can't begin", 0),
-        ("a**", "a repetition is repeated", 2),
+        ("a**", "two repetition signs follow each other", 2),
         ("*a", "has nothing before it", 0),
         ("(a", "is not closed", 0),
         ("a)", "a `(` is missing", 1),

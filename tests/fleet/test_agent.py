@@ -165,7 +165,7 @@ def test_orders_of_strangers_other_houses_other_centres_and_older_ones_are_refus
         (ordered(stranger, other, 9), "not signed"),
         (ordered(house.signer, other, 9, house="museum"), "not for this house"),
         (ordered(house.signer, other, 9, centre="two"), "two centres"),
-        (ordered(house.signer, other, 5), "was different when it first arrived"),
+        (ordered(house.signer, other, 5), "differs from the one that arrived first"),
         (ordered(house.signer, other, 9, term=0), "is over"),
         ({"order": 3}, "an order is not valid"),
         ("x", "an order is not valid"),

@@ -272,7 +272,7 @@ def test_the_commands_publish_roll_out_tell_and_abort(
         assert "-> 40%: at most 2 robots" in capsys.readouterr().out
         assert told("log").keys() == {"incidents", "kinds", "numbers"}
         assert main(["fleet", "rollout", hash, *where]) == 2
-        assert "is going: abort it, or let it end" in capsys.readouterr().err
+        assert "is going: abort it, or wait until it ends" in capsys.readouterr().err
         told("abort")
         until(lambda: museums.have(hash) == 0)
         behavior.write_text("states: {")

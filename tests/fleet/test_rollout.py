@@ -206,7 +206,7 @@ def test_robots_that_are_there_and_try_nothing_are_told() -> None:
     world.keep(decide(world.centre, "going"))
     assert not world.centre.rollout.tried
     until(world, lambda: state_of(world) == PERSON)
-    assert world.centre.rollout.reason == "not tried by all after 10 min: h0/nao3"
+    assert world.centre.rollout.reason == "some robots have not tried it after 10 min: h0/nao3"
     world.keep(abort(world.centre, "by a person"))
     assert (world.centre.trying, world.on(NEW)) == ("", 0)
 

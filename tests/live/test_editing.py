@@ -88,7 +88,7 @@ def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
         ('"#ask_name"', '"#asking"'),
     ):
         live.edit(old, new)
-    live.until_told("waiting for `ask_name`: `ask_name` is active but gone")
+    live.until_told("waiting for `ask_name`: `ask_name` is active but was removed")
     walker.actor.speak("my name is Ada")
     live.until_told("are active")
     assert "how_are_you" in live.states

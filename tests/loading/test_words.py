@@ -95,7 +95,7 @@ def test_a_change_of_words_is_seen_at_once_and_told_once_in_their_file() -> None
     assert after
     (change,) = changes(before, after)
     assert (change.file, change.risk) == (FAQ, Risk.COSMETIC)
-    assert change.sentence == "`faq` answers “Five kilograms.” now"
+    assert change.sentence == "`faq` now answers “Five kilograms.”"
 
 
 def test_the_shipped_answers_stand_in_words() -> None:

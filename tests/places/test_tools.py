@@ -77,7 +77,7 @@ def test_a_story_says_where_the_robot_is_in_place_of_where_it_should_be(
     steps = "behavior: guide\nsteps:\n  - expect: {place: clock, within: 60s}\n  - expect: {place: organ, within: 1s}\n"
     story.write_text(steps, "utf-8")
     assert main(["test", str(guide), "tourist"]) == 1
-    assert "expected within 1 s the robot at `organ`, but it is at `clock`" in capsys.readouterr().out
+    assert "expected the robot to be at `organ` within 1 s, but it is at `clock`" in capsys.readouterr().out
 
 
 def test_exploring_knows_where_a_walk_leads() -> None:

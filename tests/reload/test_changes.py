@@ -71,19 +71,19 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "a text",
         [(TOUR, "en: Never mind.", "en: No problem.")],
-        [f"state `{name}` says “No problem.” on `hears else` now (en)" for name in ("ask_name", "check_name")],
+        [f"state `{name}` now says “No problem.” on `hears else` (en)" for name in ("ask_name", "check_name")],
         Risk.COSMETIC,
     ),
     (
         "an answer",
         [(FAQ, "I weigh a little more than five kilograms.", "Five kilograms.")],
-        ["`faq` answers “Five kilograms.” now"],
+        ["`faq` now answers “Five kilograms.”"],
         Risk.COSMETIC,
     ),
     (
         "another order of answers",
         [(FAQ, "[how heavy, your weight, ", "[how heavy, ")],
-        ["`faq` listens for other phrases, or in another order"],
+        ["`faq` listens for different phrases, or in a different order"],
         Risk.BEHAVIOR,
     ),
     ("a motion", [(TOUR, "{play: dance}", "{play: photo}")], ["state `dance` now plays `photo`"], Risk.BEHAVIOR),
@@ -102,13 +102,13 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "a guard",
         [(TOUR, "context.mood_tries < 3", "context.mood_tries < 2")],
-        ["state `not_understood` goes to `how_are_you` when it is done if `context.mood_tries < 2` now"],
+        ["state `not_understood` now goes to `how_are_you` when it is done if `context.mood_tries < 2`"],
         Risk.BEHAVIOR,
     ),
     (
         "a target",
         [(TOUR, '  fine: "#fine"', '  fine: "#offer"')],
-        ["state `how_are_you` goes to `offer` on `hears fine` now, not `fine`"],
+        ["state `how_are_you` now goes to `offer` on `hears fine`, not `fine`"],
         Risk.BEHAVIOR,
     ),
     ("phrases", [(VISITORS, "dance, dances, danced", "dance, danced")], ["phrases `dance` changed"], Risk.BEHAVIOR),
@@ -130,7 +130,12 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         ["fuzzy rule 2 of `head` changed: `if FaceXLoc is Zero then AngleX is Positive`"],
         Risk.MOTION,
     ),
-    ("tracking", [("fuzzy/head.yaml", "hold: 2s", "hold: 3s")], ["`head` tracks differently: `hold`"], Risk.MOTION),
+    (
+        "tracking",
+        [("fuzzy/head.yaml", "hold: 2s", "hold: 3s")],
+        ["the tracking of `head` changed: `hold`"],
+        Risk.MOTION,
+    ),
     (
         "the stage",
         [("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]")],
@@ -140,7 +145,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "a renamed state",
         [*RENAMING, (TOUR, "type: parallel\n", "renamed: {ask_name: asking}\ntype: parallel\n")],
-        ["state `ask_name` is `guide.talking.waiting.asking` now"],
+        ["state `ask_name` is now `guide.talking.waiting.asking`"],
         Risk.BEHAVIOR,
     ),
     (
@@ -149,11 +154,11 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         [
             "state `ask_name` removed",
             "state `asking` added",
-            "state `greet` goes to `asking` when it is done now, not `ask_name`",
-            "state `greet` goes to `asking` when it fails now, not `ask_name`",
-            "state `waiting` begins in `asking` now",
-            "state `check_name` goes to `asking` on `hears english|indonesian|what|again` now, not `ask_name`",
-            "state `check_name` goes to `asking` on `hears else` if `context.name_tries < 2` now, not `ask_name`",
+            "state `greet` now goes to `asking` when it is done, not `ask_name`",
+            "state `greet` now goes to `asking` when it fails, not `ask_name`",
+            "state `waiting` now begins in `asking`",
+            "state `check_name` now goes to `asking` on `hears english|indonesian|what|again`, not `ask_name`",
+            "state `check_name` now goes to `asking` on `hears else` if `context.name_tries < 2`, not `ask_name`",
         ],
         Risk.BEHAVIOR,
     ),
@@ -176,7 +181,7 @@ def test_all_changes_in_one_line() -> None:
     )
     expected = "state `dance` now plays `photo`; route `command` ttl 2 s → 3 s; 3 texts changed"
     assert summary(changes(PLAIN, other)) == expected
-    assert summary(()) == "nothing that matters changed"
+    assert summary(()) == "no relevant changes"
     many = [Change("story", "", "", Risk.COSMETIC), Change("behavior", "", "", Risk.BEHAVIOR)]
     assert summary(many * 5) == "5 behaviors changed; 5 stories changed"
 
@@ -210,16 +215,16 @@ def test_a_revision_is_compared_and_every_configuration_told(
     repository: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["diff", "HEAD"]) == 0
-    assert capsys.readouterr().out == "nothing that matters changed\n"
+    assert capsys.readouterr().out == "no relevant changes\n"
     tour = repository / TOUR
     tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
     assert main(["diff", "HEAD", "--configurations"]) == 1
     out = capsys.readouterr().out.splitlines()
     assert (
-        out[:3] == [TOUR, "  state `talk.ask` removed (behavior)", "  `talk` begins in `talk.dance` now (behavior)"]
+        out[:3] == [TOUR, "  state `talk.ask` removed (behavior)", "  `talk` now begins in `talk.dance` (behavior)"]
         or out
     )
-    assert "refused talk.ask: `talk.ask` is active but gone, and no `onReload` names another state" in out
+    assert "refused talk.ask: `talk.ask` is active but was removed, and no `onReload` names another state" in out
     assert "kept    idle" in out
     assert out[-1] == "3 configurations: 1 refused, 2 kept"
     tour.write_text(tour.read_text().replace("talk: {", "talk: {onReload: .dance, "))
@@ -261,7 +266,7 @@ def test_what_runs_is_compared_with_what_is_saved(repository: Path, capsys: pyte
     tour = repository / TOUR
     tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
     assert main(["diff", "live"]) == 1
-    assert "now: refused talk.ask: `talk.ask` is active but gone" in capsys.readouterr().out
+    assert "now: refused talk.ask: `talk.ask` is active but was removed" in capsys.readouterr().out
     home.release()
     assert main(["diff", "live"]) == 2
 

@@ -89,7 +89,7 @@ def test_a_renamed_state_takes_those_within_along() -> None:
 def test_a_state_that_is_gone_and_was_not_renamed_is_refused_with_a_hint() -> None:
     verdict = reload(ASKING, talk({"dance": {**DANCE, "onDone": "dance"}}))
     assert isinstance(verdict, Refusal)
-    assert "`talk.ask` is active but gone" in verdict.reason
+    assert "`talk.ask` is active but was removed" in verdict.reason
     assert verdict.hint == "give `talk` an `onReload`, or write the new name of `talk.ask` under `renamed`"
     assert (verdict.state, verdict.behavior, verdict.where) == ("talk.ask", "tour", ("states", "talk"))
 
@@ -175,7 +175,7 @@ def test_what_can_not_be_active_together_any_more_needs_an_on_reload() -> None:
     alone = {**BOTH, "type": "compound"}
     verdict = reload(at(BOTH), alone)
     assert isinstance(verdict, Refusal)
-    assert verdict.reason == "`a` and `b` are active, but can't be active together in `m` now"
+    assert verdict.reason == "`a` and `b` are active, but can no longer be active together in `m`"
     assert active(planned(at(BOTH), {**alone, "onReload": ".b"})) == {"b"}
 
 

@@ -52,18 +52,18 @@ def refusal(url: str) -> str:
 @for_each(
     ("password", "said"),
     [
-        ("QQ/QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %2F for `/`"),
-        ("QQ#QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %23 for `#`"),
-        ("QQ?QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %3F for `?`"),
-        ("17/QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %2F for `/`"),
-        ("17#QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %23 for `#`"),
-        ("QQ?a=QQ", "`amqp://h/` is not the address of a broker (in the name and the password write %3F for `?`"),
+        ("QQ/QQ", "`amqp://h/` is not the address of a broker (in the user name and password, write %2F for `/`"),
+        ("QQ#QQ", "`amqp://h/` is not the address of a broker (in the user name and password, write %23 for `#`"),
+        ("QQ?QQ", "`amqp://h/` is not the address of a broker (in the user name and password, write %3F for `?`"),
+        ("17/QQ", "`amqp://h/` is not the address of a broker (in the user name and password, write %2F for `/`"),
+        ("17#QQ", "`amqp://h/` is not the address of a broker (in the user name and password, write %23 for `#`"),
+        ("QQ?a=QQ", "`amqp://h/` is not the address of a broker (in the user name and password, write %3F for `?`"),
         (
             "Q[Q]",
-            "`amqp://h/` is not the address of a broker (in the name and the password write %5B for `[`, %5D for `]`",
+            "`amqp://h/` is not the address of a broker (in the user name and password, write %5B for `[`, %5D for `]`",
         ),
-        ("QQ/Q#Q?", "(in the name and the password write %2F for `/`, %3F for `?`, %23 for `#`"),
-        ("QQ@Q/Q", "`amqp://h/` is not the address of a broker (in the name and the password write %2F for `/`"),
+        ("QQ/Q#Q?", "(in the user name and password, write %2F for `/`, %3F for `?`, %23 for `#`"),
+        ("QQ@Q/Q", "`amqp://h/` is not the address of a broker (in the user name and password, write %2F for `/`"),
     ],
 )
 def test_a_password_with_signs_of_an_address_is_not_shown(password: str, said: str) -> None:
@@ -115,11 +115,11 @@ def test_another_error_in_an_address_does_not_show_the_password(url: str, said: 
     [
         (
             "/museum/hall",
-            "a virtual host is one segment, with %2F for each slash: write /museum%2Fhall for /museum/hall",
+            "a virtual host is one segment, with %2F for each slash: write /museum%2Fhall instead of /museum/hall",
         ),
-        ("//museum", "with %2F for each slash: write /%2Fmuseum (or /museum) for //museum"),
-        ("//", "write /%2F for //"),
-        ("/a/b/", "write /a%2Fb%2F for /a/b/"),
+        ("//museum", "with %2F for each slash: write /%2Fmuseum (or /museum) instead of //museum"),
+        ("//", "write /%2F instead of //"),
+        ("/a/b/", "write /a%2Fb%2F instead of /a/b/"),
         ("/museum#hall", "write %23 for `#`"),
     ],
 )

@@ -170,7 +170,7 @@ def test_an_error_in_an_invoked_behaviour_is_named_with_its_way(
 def test_after_a_fall_a_run_does_not_end_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     root = exhibition(tmp_path, read("walk-over-the-edge.yaml"), WAIT)
     assert run(root, "--story", "visitor", robot="simulation") == 1
-    assert "expected the robot on its feet, but it fell" in capsys.readouterr().out
+    assert "expected the robot to stay on its feet, but it fell" in capsys.readouterr().out
     assert run(root, "--for", "15s", robot="simulation") == 1
     told = capsys.readouterr().out
     assert "Ended with trouble: 0:15" in told

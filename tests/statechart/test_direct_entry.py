@@ -73,7 +73,7 @@ def test_what_is_left_does_its_exit_and_what_is_entered_sets_its_timers() -> Non
     ("name", "says"),
     [
         ("ofer", "there is no state `ofer`: did you mean `offer`?"),
-        ("bye", "`bye` is the end of several: `guide.talking.bye`, `touch.bye`"),
+        ("bye", "`bye` is ambiguous: choose one of `guide.talking.bye`, `touch.bye`"),
         ("", "there is no state ``"),
     ],
 )

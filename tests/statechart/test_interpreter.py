@@ -138,7 +138,7 @@ def test_a_restored_interpreter_goes_on_with_its_do() -> None:
 @for_each(
     ("change", "difference"),
     [
-        ({"id": "other"}, "it is of `tour`"),
+        ({"id": "other"}, "it belongs to `tour`"),
         ({"states": {"idle": None}}, "state `greet` is gone"),
         ({"states": {**TOUR["states"], "dance": None}}, "state `dance` is new"),  # type: ignore[dict-item]
         ({"context": {"visits": 0}, "types": {}}, "context key `visitor` is gone"),
@@ -172,7 +172,7 @@ def test_timers_that_set_ever_more_timers_end_in_an_error() -> None:
     later = {"send": {"delay": "0.01ms", "event": "go"}}
     machine = Machine.from_dict({"entry": later, "on": {"go": {"actions": [later, later]}}, "states": {"a": {}}})
     reached = [initial(machine).snapshot]
-    with pytest.raises(LumenError, match="timers set more than 10,000 other timers a second, `go` among them"):
+    with pytest.raises(LumenError, match="its timers start more than 10,000 new timers per second, among them `go`"):
         reached.extend(taken.snapshot for taken in elapse(machine, lambda: reached[-1], 0.02))
     assert 1000 < len(reached[-1].timers) < MAX_TIMERS
 

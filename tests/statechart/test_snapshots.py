@@ -161,7 +161,7 @@ def change(data: Any, path: tuple[Any, ...], value: Any) -> dict[str, Any]:
     [
         (("version",), 2, "of version 2"),
         (("version",), ..., "lacks `version`"),
-        (("machine", "hash"), 7, "`machine.hash` should be a text"),
+        (("machine", "hash"), 7, "`machine.hash` should be a string"),
         (("configuration",), ["on"], "only 0 of the 2 regions of `on`"),
         (("configuration",), [], "0 states of `rich` are active"),
         (("configuration",), ["nowhere"], "`rich` has no state `nowhere`"),

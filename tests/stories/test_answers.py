@@ -82,7 +82,7 @@ def test_each_question_has_an_answer_of_its_own(play: Play) -> None:
 def test_an_answer_to_no_question_fails(play: Play, capsys: pytest.CaptureFixture[str], question: str) -> None:
     assert play(f"{question}  - answers: I only rest.\n") == 1
     told = capsys.readouterr().out
-    assert "expected within 30 s a question to the module `answers`, but none was asked" in told
+    assert "expected a question to the module `answers` within 30 s, but none was asked" in told
 
 
 def test_a_question_that_nobody_waits_for_any_more_is_none(play: Play, capsys: pytest.CaptureFixture[str]) -> None:

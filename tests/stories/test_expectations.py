@@ -36,14 +36,14 @@ def test_a_message_is_known_by_a_part_of_its_body(story: Write, body: str) -> No
 @pytest.mark.parametrize(
     ("expected", "words"),
     [
-        ("{state: closed}", "expected within 30 s state `closed`, but active are `open`"),
-        ("{said: goodbye}", "expected within 30 s to hear “goodbye”, but it said “Hello, Ani!”"),
-        ("{said_exactly: hello}", "expected within 30 s to hear exactly “hello”, but it said “Hello, Ani!”"),
-        ("{played: dance}", "expected within 30 s the motion `dance`, but it played `goodbye`"),
+        ("{state: closed}", "expected state `closed` within 30 s, but the active states are `open`"),
+        ("{said: goodbye}", "expected to hear “goodbye” within 30 s, but it said “Hello, Ani!”"),
+        ("{said_exactly: hello}", "expected to hear exactly “hello” within 30 s, but it said “Hello, Ani!”"),
+        ("{played: dance}", "expected the motion `dance` within 30 s, but it played `goodbye`"),
         ("{published: fact}", "a message on `fact`, but it sent {'who': 'Ani', 'at': 9, 'times': [1, 2]} on `journal`"),
         ("{published: {route: journal, body: {who: Budi}}}", "a message on `journal` with {'who': 'Budi'}, but it"),
         ("{published: {route: journal, body: {times: [1]}}}", "a message on `journal` with {'times': [1]}, but it"),
-        ("{context: {opened: 2}, within: 3s}", "expected within 3 s opened = 2, but it is 1"),
+        ("{context: {opened: 2}, within: 3s}", "expected opened = 2 within 3 s, but it is 1"),
     ],
 )
 def test_what_does_not_hold_is_told_with_its_place(

@@ -326,7 +326,7 @@ def test_the_story_of_a_finding_can_be_pasted_and_leads_there(
     door.write_text(text.replace(", spin: null", "") + "  spinning: {}\n", "utf-8")
     assert main(["test", str(folder), "--explore", "--behavior", "door"]) == 1
     told = capsys.readouterr().out
-    assert "a dead end: nothing leads out of `spinning`" in told
+    assert "a dead end: no transition leads out of `spinning`" in told
     lines = told.partition("    # yaml-language-server")[2].split("\n\n")[0].splitlines()
     pasted = "# yaml-language-server" + "\n".join([lines[0], *(line[4:] for line in lines[1:])])
     (folder / "behaviors" / "stories" / "found.yaml").write_text(pasted + "\n", "utf-8")

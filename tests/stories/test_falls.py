@@ -26,7 +26,7 @@ def player(project: Any, story: str) -> StoryPlayer:
 def test_a_fall_that_the_story_does_not_speak_of_fails_it(project: Any) -> None:
     played = player(project, "visitor")
     played.answered(Event("fallen", {}, 12.0))
-    assert "expected the robot on its feet, but it fell" in played.failure
+    assert "expected the robot to stay on its feet, but it fell" in played.failure
 
 
 def test_a_story_of_a_fall_goes_on(project: Any) -> None:

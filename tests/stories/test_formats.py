@@ -46,7 +46,7 @@ def test_json_says_what_was_expected_and_what_was(story: Write, capsys: pytest.C
     assert found["failed"] == 1
     assert failed["passed"] is False
     assert failed["failure"]["line"] == 4
-    assert failed["failure"]["was"] == "active are `closed`, `closed.wait`"
+    assert failed["failure"]["was"] == "the active states are `closed`, `closed.wait`"
     assert found["coverage"]["states"] == {"covered": 2, "of": 6}
     assert {"file", "line", "column", "message"} == set(found["coverage"]["gaps"][0])
 

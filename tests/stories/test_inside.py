@@ -101,7 +101,7 @@ def test_what_exploring_finds_inside_is_a_story(host: Story, capsys: pytest.Capt
     faq.write_text(FAQ.replace("    onError: enough\n", ""), "utf-8")
     assert main(["test", str(folder), "--explore", "--behavior", "host"]) == 1
     shown = capsys.readouterr().out
-    assert "nothing leads out of `faqs` with `first/answering`" in shown
+    assert "no transition leads out of `faqs` with `first/answering`" in shown
     found = shown.partition("    # yaml-language-server")[2].split("\n\n")[0].splitlines()
     story = "\n".join([f"# yaml-language-server{found[0]}", *(line[4:] for line in found[1:])])
     (folder / "behaviors" / "stories" / "asked.yaml").write_text(story + "\n", "utf-8")

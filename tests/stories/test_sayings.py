@@ -51,7 +51,7 @@ def test_one_that_does_not_hold_is_named_with_its_place(tmp_path: Path, capsys: 
     assert capsys.readouterr().out.splitlines()[1:] == [
         "sayings: 1 of 4 (25 %)",
         "  behaviors/sayings/bad.yaml:3:17: “Sing!” in `choice`: `else` matches it, but `sing` should; the guard"
-        " `context.tries > 2` of `sing` is false for the first values of the context",
+        " `context.tries > 2` of `sing` is false with the initial values of the context",
         "  behaviors/sayings/bad.yaml:7:11: “What time is it?” in `choice`: `else` matches it, but `dance` should",
         "  behaviors/sayings/bad.yaml:8:20: “exhibit four” in `choice`: `n` is `4`, but should be `3`",
     ]

@@ -47,7 +47,7 @@ def need_numbers(values: Any, what: str) -> None:
 
 def need_path(value: Any) -> Path:
     """The path of a file; raises UsageError where it is none."""
-    need(value, (str, Path), "the path of a file", "a text or a Path")
+    need(value, (str, Path), "the path of a file", "a string or a Path")
     if "\0" in str(value):
         raise UsageError("the path of a file contains a character that is not allowed in paths")
     return Path(value)

@@ -57,7 +57,7 @@ class JsonSchema:
     def errors(self, data: Any) -> "Iterator[ValidationError]":
         """What is wrong with the data; raises RecursionError where schema or data lead on and on."""
         if deeper_than(MAX_DATA_DEPTH, data):
-            raise RecursionError(f"nested in more than {MAX_DATA_DEPTH} levels")
+            raise RecursionError(f"nested more than {MAX_DATA_DEPTH} levels deep")
         if self._only_quick:
             return self._told(data)
         return iter(self._explaining.iter_errors(data)) if self._quick else self._guessed(data)

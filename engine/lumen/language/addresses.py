@@ -36,7 +36,7 @@ def unescaped(url: str) -> str:
 def fault_of_broker(url: str) -> str:
     """The fault of an address that can't be a broker's, with the remedy; empty for a possible address."""
     if signs := unescaped(url):
-        return f"in the name and the password write {signs}, and %40 for `@` after the host"
+        return f"in the user name and password, write {signs}; after the host, write %40 for `@`"
     try:
         parts = urlsplit(url)
         host = parts.hostname
@@ -54,5 +54,5 @@ def fault_of_broker(url: str) -> str:
     if "/" in segment.removesuffix("/") or segment == "/":
         meant, bare = quote(unquote(segment), safe=""), segment.strip("/")
         other = f" (or /{bare})" if bare and "/" not in bare else ""
-        return f"a virtual host is one segment, with %2F for each slash: write /{meant}{other} for /{segment}"
+        return f"a virtual host is one segment, with %2F for each slash: write /{meant}{other} instead of /{segment}"
     return ""

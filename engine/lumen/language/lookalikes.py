@@ -23,7 +23,7 @@ def difference(word: str, other: str) -> str:
     if word == other or typed(word) != typed(other):
         return ""
     if unicodedata.normalize("NFC", word) == unicodedata.normalize("NFC", other):
-        return "they look equal, but one has its accents as separate characters: type the word again"
+        return "they look the same, but one of them stores its accents as separate characters: type the word again"
     return next(_odd(word), "") or next((f"there {said}" for said in _odd(other)), "")
 
 

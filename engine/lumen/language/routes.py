@@ -17,8 +17,8 @@ MEANINGS: Mapping[str, str] = {
     TACTILE: "which of its sensors are pressed",
     BATTERY: "how full its battery is",
     FACE: "the position of a visitor's face in the camera's image; simulated visitors appear on it",
-    HEARD: "what a visitor said, typed or says in a story",
-    COMMAND: "commands of other modules to the robot",
+    HEARD: "what a visitor said or typed, or says in a story",
+    COMMAND: "commands from other modules to the robot",
     STOP: "commands to rest or to stop, on a separate route",
 }
 """The routes whose names mean something to Lumen itself, and what each is for; all others are the exhibition's own."""

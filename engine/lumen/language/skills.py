@@ -7,7 +7,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, JOINT_PATHS, BaseKind
 
-_WOULD_GIVE = " under `roles` of its body would add it"
+_ADD = "add {} under `roles` of its body"
 
 
 class Lack(NamedTuple):
@@ -23,15 +23,13 @@ def lack_of(command: object, body: Body) -> Lack | None:
     match command:
         case Walk() | Move() | GoTo() if roles.base.kind is BaseKind.FIXED:
             wanted = "`base: {kind: biped}` with `legs`, `soles` and `sensors`, or `base: {kind: wheels, …}`"
-            return Lack(f"{body.name} has no legs and no wheels", wanted + _WOULD_GIVE)
+            return Lack(f"{body.name} has no legs and no wheels", _ADD.format(wanted))
         case Look() if not any(role in roles.head for role in HEAD_ROLES):
-            return Lack(
-                f"{body.name} has no head that turns", "`head: {yaw: …}` under `roles` of its body would add it"
-            )
+            return Lack(f"{body.name} has no head that turns", _ADD.format("`head: {yaw: …}`"))
         case Leds(colours) if colours and not any(group in roles.lights for group in colours):
             names = ", ".join(f"`{group}`" for group in colours)
             wanted = f"`lights: {{{next(iter(colours))}: […]}}`"
-            return Lack(f"{body.name} has no lights {names}", wanted + _WOULD_GIVE)
+            return Lack(f"{body.name} has no lights {names}", _ADD.format(wanted))
     return None
 
 
@@ -41,7 +39,7 @@ def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:
     if not wanted or any(name in body.joints for name in wanted) or not all(name in JOINT_PATHS for name in wanted):
         return None
     names = ", ".join(f"`{name}`" for name in wanted)
-    return Lack(f"{body.name} has no {names}", "these" + _WOULD_GIVE)
+    return Lack(f"{body.name} has no {names}", _ADD.format("these"))
 
 
 def tracked(command: object) -> str:

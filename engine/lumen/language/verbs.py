@@ -53,8 +53,8 @@ class Quantity(Enum):
     PLAIN = "used as written: a text, a number without a unit, true or false"
     LENGTH = "in the file's unit of length, [m] in the command; per second, [m/s]"
     ANGLE = "in the file's unit of angles, [rad] in the command; per second, [rad/s]"
-    DURATION = "a number and its unit, `500ms`, [s] in the command"
-    TEMPLATE = "a text that may hold `{{ expression }}`, replaced when the command begins"
+    DURATION = "a number and its unit, such as `500ms`; [s] in the command"
+    TEMPLATE = "a text that can contain `{{ expression }}`, replaced when the command begins"
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +161,7 @@ _LOOK = Verb(
     Look,
     (VerbField("yaw", Quantity.ANGLE), VerbField("pitch", Quantity.ANGLE)),
     lambda c: "turns its head",
-    lambda c: f"looks to yaw {c.yaw:.3g} rad, pitch {c.pitch:.3g} rad",
+    lambda c: f"turns its head to yaw {c.yaw:.3g} rad, pitch {c.pitch:.3g} rad",
 )
 _LEDS = Verb(
     "leds",
@@ -174,8 +174,8 @@ _VOLUME = Verb(
     "volume",
     Volume,
     (VerbField("level"),),
-    lambda c: f"speaks with volume {c.level:g} from now on",
-    lambda c: f"speaks with volume {c.level:g} from that moment on",
+    lambda c: f"sets the volume to {c.level:g}",
+    lambda c: f"sets the volume to {c.level:g}",
 )
 _SOUND = Verb(
     "sound",
@@ -201,7 +201,7 @@ _LANGUAGE = Verb(
     Language,
     (VerbField("language", names="language"),),
     lambda c: f"speaks {c.language} from now on",
-    lambda c: f"speaks `{c.language}` from that moment on",
+    lambda c: f"switches to `{c.language}`",
     instant=True,
 )
 

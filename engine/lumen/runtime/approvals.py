@@ -20,8 +20,8 @@ from lumen.language.machines import Approval, MachineDefinition, Transition
 
 MAX_WAITING = 20
 """Events that may wait for GO at once; the oldest gives way."""
-LEFT, REPLACED, LATE = "its state was left", "too many others wait", "no answer came"
-RELOADED, FORGOTTEN = "the files changed", "a visitor is forgotten"
+LEFT, REPLACED, LATE = "the behaviour left the state", "too many other approvals are waiting", "no answer came"
+RELOADED, FORGOTTEN = "the files changed", "a visitor's data was deleted"
 
 
 class MarkedTransition(NamedTuple):

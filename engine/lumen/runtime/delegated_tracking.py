@@ -95,6 +95,6 @@ class DelegatedTracking:
         try:
             self._bus.publish(motion_key(self._project), body, ttl=MOTION_TTL)
         except BusError as error:
-            _log.warning("the motion module got no request: %s", error)
+            _log.warning("the request could not be sent to the motion module: %s", error)
             return False
         return True

@@ -68,7 +68,7 @@ class Inbox:
                 cause = Cause("message", message.id, message.key, robot, time())
                 self._push(event, data, cause)
             case _:
-                _log.warning("a message on %s is not an event that this robot waits for", message.key)
+                _log.warning("a message on %s is ignored: it is not an event that this robot expects", message.key)
 
     def drain(self, now: float) -> list[Event]:
         """Everything that has arrived, as events at `now` [s]; each is caused by its message."""
@@ -88,4 +88,4 @@ class Inbox:
         return receive
 
     def _push(self, event: str, body: object, cause: Cause) -> None:
-        self._drops.push(self._waiting, (event, body, cause), lambda waiting: waiting[0], "the behaviour is too slow")
+        self._drops.push(self._waiting, (event, body, cause), lambda waiting: waiting[0], "the behaviour can't keep up")

@@ -51,7 +51,7 @@ class Journal:
                 forget_lines(self._file.with_suffix(".jsonl.1"), person)
                 forget_lines(self._file, person)
         except ModuleError as error:
-            _log.warning("the journal still names a person who should be forgotten: %s", error)
+            _log.warning("the journal still contains data of a visitor that should be deleted: %s", error)
 
     def entries(self) -> Iterator[dict[str, Any]]:
         """All that is kept, the oldest first; a line that a crash cut off is left out."""

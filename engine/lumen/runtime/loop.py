@@ -31,7 +31,7 @@ from lumen.runtime.wall_clock_watch import WallClockWatch
 
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0
-NOTHING_WAITS = "nothing waits for approval"
+NOTHING_WAITS = "nothing is waiting for approval"
 CAUSES = ("brain.lost", "robot.lost")
 """What comes before the failures that it causes."""
 

@@ -129,7 +129,7 @@ class Navigator:
             return
         if (here := self._fresh(way)) is None:
             if now > way.since + POSITION_PATIENCE:
-                yield from self._fail(way, "the robot does not report its place", now)
+                yield from self._fail(way, "the robot does not report its position", now)
             return
         if target != way.target:
             way.target, way.left = target, most_legs(here, target)

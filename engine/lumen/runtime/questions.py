@@ -135,7 +135,7 @@ class Questions:
             body = message.body if isinstance(message.body, dict) else {}
             id = body.get("id")
             if not isinstance(id, str) or id not in self._open:
-                _log.info("an answer on %s is ignored: no question waits for it", message.key)
+                _log.info("an answer on %s is ignored: no open question has its id", message.key)
                 continue
             cause = Cause("message", message.id, message.key, message.sender, at)
             events.append(self._heard(id, body, now)._replace(cause=cause))
@@ -170,8 +170,8 @@ class Questions:
             case {"event": str(event), "data": dict(data)} if event in offers:
                 if JsonSchema({"type": "object", **(offers[event] or {})}).fits(data):
                     return Event(f"answer.command.{id}", {"raise": {"event": event, "data": data}}, now)
-        _log.warning("an answer names an event that was not offered, or has other data: it is ignored")
-        return _unanswered(id, now, "the answer is an event that was not offered")
+        _log.warning("an answer is ignored: its event was not offered, or its data does not match the offer")
+        return _unanswered(id, now, "the answer raises an event that was not offered")
 
     def _take(self, message: Message) -> None:
         self._came.append((message, time()))

@@ -12,7 +12,7 @@ from lumen.language.commands import Cancel, Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 
-LOST_COMMAND_REASON = "the engine was restarted while it ran"
+LOST_COMMAND_REASON = "the engine was restarted while the command was running"
 
 
 class FreshStart(NamedTuple):

@@ -78,7 +78,7 @@ class Runtime:
     def snapshot(self) -> Snapshot:
         """Where the behaviour stands."""
         if self._snapshot is None:
-            raise RuntimeError("start the runtime first")
+            raise RuntimeError("the runtime is not started: call `start` first")
         return self._snapshot
 
     def start(

@@ -94,7 +94,7 @@ class SharedBoard:
             case {"from": str(robot), "values": dict(values), "asks": bool(asks)} if project:
                 pass
             case _:
-                _log.warning("a message on %s has no values", message.key)
+                _log.warning("a message on %s is ignored: it has no values", message.key)
                 return
         if robot == project.robot:
             return
@@ -102,7 +102,11 @@ class SharedBoard:
         owned = {name: key for name, key in project.shared.items() if key.owner == robot}
         news = {name: value for name, value in values.items() if name in owned}
         if wrong := [name for name in values if name not in owned or not _fits(owned[name].type, values[name])]:
-            _log.warning("%s sends `%s`, which is not its own or has another type", robot[:60], wrong[0][:60])
+            _log.warning(
+                "a message from %s is ignored: `%s` is not its own key, or the value has the wrong type",
+                robot[:60],
+                wrong[0][:60],
+            )
             return
         if news:
             self._waiting.append((news, Cause("message", message.id, message.key, robot, time())))

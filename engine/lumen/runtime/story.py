@@ -160,7 +160,7 @@ class StoryPlayer(Observer):
 
     def answered(self, event: Event) -> None:
         if event.name == FALLEN and not self._falls:
-            self.fail(UnmetExpectation("the robot on its feet", "it fell"))
+            self.fail(UnmetExpectation("the robot to stay on its feet", "it fell"))
         if event.name.startswith("done.command."):
             motion = self._witness.playing.pop(event.name.removeprefix("done.command."), None)
             if motion:
@@ -238,7 +238,7 @@ class StoryPlayer(Observer):
                 if reason := send(
                     self._exhibition.bus, self._exhibition.project, name, body, MessageOrigin(sender=VISITOR)
                 ):
-                    self.fail(UnmetExpectation(f"to send on `{name}`", reason))
+                    self.fail(UnmetExpectation(f"a message to be sent on `{name}`", reason))
             case _:
                 assert_never(action)
         return True
@@ -249,7 +249,7 @@ class StoryPlayer(Observer):
             before = self._moment(self._since) - 1
             self._awaited = next_moment(schedule, before, self._exhibition.project.timezone)
         if self._awaited is None:
-            self.fail(UnmetExpectation("", f"`{schedule.text}` is past, and does not come again"))
+            self.fail(UnmetExpectation("", f"`{schedule.text}` is in the past and will not come again"))
             return False
         return self._moment(now) >= self._awaited
 
@@ -275,7 +275,7 @@ class StoryPlayer(Observer):
             self._missed = lacking
         if now >= self._since + expected.within:
             lacking = self._missed or lacking
-            self.fail(lacking._replace(expected=f"within {expected.within:g} s {lacking.expected}"))
+            self.fail(lacking._replace(expected=f"{lacking.expected} within {expected.within:g} s"))
         return False
 
     def fail(self, lack: UnmetExpectation) -> None:

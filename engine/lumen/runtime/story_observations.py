@@ -34,9 +34,9 @@ class StoryObservations:
     def lacks(self, expected: Expect) -> UnmetExpectation | None:
         """The first thing of `expected` that does not hold."""
         if missing := [s for s in expected.states if s not in self.states]:
-            return UnmetExpectation(f"state `{missing[0]}`", f"active are {listed(self.states)}")
+            return UnmetExpectation(f"state `{missing[0]}`", f"the active states are {listed(self.states)}")
         if expected.place is not None and expected.place != self.place:
-            return UnmetExpectation(f"the robot at `{expected.place}`", f"it is {_at(self.place)}")
+            return UnmetExpectation(f"the robot to be at `{expected.place}`", f"it is {_at(self.place)}")
         return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
 
     def _unheard(self, expected: Expect) -> UnmetExpectation | None:
@@ -113,7 +113,7 @@ def listed(names: object) -> str:
 
 
 def _at(place: str) -> str:
-    return f"at `{place}`" if place else "at none of the places"
+    return f"at `{place}`" if place else "at none of the project's places"
 
 
 def _texts(texts: list[str]) -> str:

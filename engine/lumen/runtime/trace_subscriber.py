@@ -50,7 +50,7 @@ class TraceSubscriber:
         self.project, self.bus, self.happen = project, bus, happen
         self.watchers: list[TraceListener] = []
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
-        self._guard = MessageGuard(_log, "who watches the behaviour")
+        self._guard = MessageGuard(_log, "a listener of the behaviour's trace")
         self._undo = bus.subscribe(project.key_of(TRACE_ROUTE), self._came.append)
 
     def tick(self, now: float) -> None:

@@ -233,7 +233,7 @@ class FileWatcher(Generic[T]):
                         if watched_folders(self._root) != folders:
                             break
             except OSError as error:
-                _log.warning("files are no longer watched, only read once a second: %r", error)
+                _log.warning("the system no longer reports saved files, so Lumen reads them once a second: %r", error)
                 return
 
 
@@ -263,7 +263,7 @@ def _as_others_need() -> Iterator[None]:
     try:
         yield
     except Exception:
-        _log.exception("the saved files could not be judged")
+        _log.exception("the saved files could not be checked")
     finally:
         sys.setswitchinterval(usual)
 

@@ -67,7 +67,7 @@ class WatchedThread:
     def revive(self) -> None:
         """Begin it again where it has died without ending its work; from a thread that watches over it."""
         if self.started and not self.is_alive() and not self._ending.is_set() and not self.lost:
-            _log.error("the thread `%s` has died and is started again", self.name)
+            _log.error("the thread `%s` died and is being restarted", self.name)
             if self._again("it died"):
                 self._begin()
 
@@ -149,5 +149,5 @@ class MessageGuard:
             kind = (key, type(error).__name__)
             if kind not in self._kinds and len(self._kinds) < MAX_KINDS:
                 self._kinds.add(kind)
-                self._log.exception("%s failed on a message on `%s`", self._what, key)
-            self.drops.add(key, f"{self._what} failed on it: {error!r}")
+                self._log.exception("%s could not process a message on `%s`", self._what, key)
+            self.drops.add(key, f"{self._what} could not process it: {error!r}")

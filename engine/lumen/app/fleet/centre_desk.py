@@ -63,7 +63,7 @@ class CentreDesk:
                 return {"bundle": hash}
             case {"ask": "try", "bundle": str(name)}:
                 if state.rollout and state.rollout.under_way:
-                    raise UsageError("a rollout is under way: abort it, or let it end")
+                    raise UsageError("a rollout is under way: abort it, or wait until it ends")
                 hash = self._named(name)
                 centre.change(state.attempt(hash), f"{by} lets all robots try {hash[:12]}")
                 return {"bundle": hash}

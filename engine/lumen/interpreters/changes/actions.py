@@ -37,7 +37,7 @@ def block_changes(
         if one is not None and other is not None:
             yield from _action(one, other, title, when, file)
         elif other is not None:
-            yield Change("action", title, f"{title} {described(other)}{when} as well", Risk.BEHAVIOR, file)
+            yield Change("action", title, f"{title} now also {described(other)}{when}", Risk.BEHAVIOR, file)
         elif one is not None:
             yield Change("action", title, f"{title} no longer {described(one)}{when}", Risk.BEHAVIOR, file)
 
@@ -77,22 +77,22 @@ def _action(old: Action, new: Action, title: str, when: str, file: str) -> Itera
         case SayText(before, gestured), SayText(after, gestures):
             if gestured != gestures:
                 how = "without" if gestures else "with"
-                yield Change("text", title, f"{title} speaks{when} {how} gestures now", Risk.COSMETIC, file)
+                yield Change("text", title, f"{title} now speaks{when} {how} gestures", Risk.COSMETIC, file)
             for language in dict.fromkeys((*before, *after)):
                 if before.get(language) != after.get(language):
                     yield _text(language, after.get(language), title, when, file)
         case If(before, then, otherwise), If(after, then_now, otherwise_now):
             if before != after:
-                now = f"{title} decides{when} by {code(after.source)} now, not {code(before.source)}"
+                now = f"{title} now decides{when} by {code(after.source)}, not {code(before.source)}"
                 yield Change("action", title, now, Risk.BEHAVIOR, file)
             yield from block_changes(then, then_now, title, when, file)
             yield from block_changes(otherwise, otherwise_now, title, when, file)
         case AskQuestion(before, within, otherwise), AskQuestion(after, within_now, otherwise_now):
             if before != after:
-                now = f"{title} asks{when} for {code(after.source)} now, not {code(before.source)}"
+                now = f"{title} now asks{when} for {code(after.source)}, not {code(before.source)}"
                 yield Change("action", title, now, Risk.BEHAVIOR, file)
             if within != within_now:
-                now = f"{title} waits{when} {seconds(within_now)} for an answer now, not {seconds(within)}"
+                now = f"{title} now waits {seconds(within_now)} for an answer{when}, not {seconds(within)}"
                 yield Change("action", title, now, Risk.BEHAVIOR, file)
             yield from block_changes(otherwise, otherwise_now, title, when, file)
         case Parallel(before), Parallel(after):
@@ -106,7 +106,7 @@ def _text(language: str, texts: Sequence[object] | None, title: str, when: str, 
     if not texts:
         return Change("text", title, f"{title} no longer speaks{when} in `{language}`", Risk.COSMETIC, file)
     said = quoted(str(getattr(texts[0], "text", ""))) + (" and others" if len(texts) > 1 else "")
-    return Change("text", title, f"{title} says {said}{when} now{spoken}", Risk.COSMETIC, file)
+    return Change("text", title, f"{title} now says {said}{when}{spoken}", Risk.COSMETIC, file)
 
 
 def described(action: Action) -> str:

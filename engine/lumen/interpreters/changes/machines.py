@@ -55,7 +55,7 @@ class _Comparison:
             parent = self.old.states[path].parent
             moved = image is not None and parent is not None and image != _below(self.images[parent], path)
             if moved and image is not None:
-                sentence = f"{self.title(self.old.states[path])} is `{self.new.states[image].path}` now"
+                sentence = f"{self.title(self.old.states[path])} is now `{self.new.states[image].path}`"
                 yield self.change("state", path, sentence)
 
     def outermost(self, machine: MachineDefinition, paths: Collection[str], how: str) -> Iterator[Change]:
@@ -69,10 +69,10 @@ class _Comparison:
     def state(self, old: State, new: State) -> Iterator[Change]:
         title = self.title(new)
         if old.kind != new.kind:
-            yield self.change("state", title, f"{title} is {new.kind} now, not {old.kind}")
+            yield self.change("state", title, f"{title} is now {new.kind}, not {old.kind}")
         if self.mapped(old.initial) != new.initial and old.kind == new.kind:
             begin = names(self.new.states[path].name for path in new.initial) or "nothing"
-            yield self.change("state", title, f"{title} begins in {begin} now")
+            yield self.change("state", title, f"{title} now begins in {begin}")
         for when, before, after in (
             (" on entering", old.entry, new.entry),
             ("", old.do, new.do),
@@ -82,24 +82,26 @@ class _Comparison:
         yield from transition_changes(old, new, title, self.file, self.mapped, self.named_now)
         yield from self.invokes(old, new, title)
         if old.for_each != new.for_each:
-            how = f"goes through {code(new.for_each.each.shown)}" if new.for_each else "no longer goes through a list"
-            yield self.change("state", title, f"{title} {how} now (`for`)")
+            how = (
+                f"now goes through {code(new.for_each.each.shown)}" if new.for_each else "no longer goes through a list"
+            )
+            yield self.change("state", title, f"{title} {how} (`for`)")
         if old.resume != new.resume:
             yield self.change(
-                "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"
+                "state", title, f"`resume` of {title} {f'is now `{new.resume}`' if new.resume else 'is gone'}"
             )
         if old.life != new.life:
-            how = f"has the style of life `{new.life}`" if new.life else "no longer sets a style of life"
-            yield self.change("state", title, f"{title} {how} now" if new.life else f"{title} {how}")
+            how = f"now has the style of life `{new.life}`" if new.life else "no longer sets a style of life"
+            yield self.change("state", title, f"{title} {how}")
         if old.gestures != new.gestures:
             how = "without" if new.gestures else "with"
-            yield self.change("state", title, f"{title} speaks {how} gestures now")
+            yield self.change("state", title, f"{title} now speaks {how} gestures")
         yield from self.buttons(old, new, title)
         if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
-            target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
+            target = f"now leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
             yield self.change("state", title, f"`onReload` of {title} {target}")
         if old.output != new.output:
-            yield self.change("state", title, f"{title} returns different data")
+            yield self.change("state", title, f"{title} now returns different data")
 
     def buttons(self, old: State, new: State, title: str) -> Iterator[Change]:
         """Buttons by their labels: people press them, the behaviour does nothing else for them."""
@@ -124,8 +126,8 @@ class _Comparison:
                 yield self.change("invoke", title, f"{title} no longer invokes `{before[id].behavior}`")
             elif before.get(id) != after[id]:
                 same = id in before and before[id].behavior == after[id].behavior
-                how = " with other input" if same else ""
-                yield self.change("invoke", title, f"{title} invokes `{after[id].behavior}`{how} now")
+                how = " with different input" if same else ""
+                yield self.change("invoke", title, f"{title} now invokes `{after[id].behavior}`{how}")
 
     def context(self) -> Iterator[Change]:
         old, new = self.old, self.new
@@ -138,10 +140,10 @@ class _Comparison:
                 yield self.change("context", key, f"context key `{key}` added")
                 continue
             if before != key:
-                yield self.change("context", key, f"context key `{before}` is `{key}` now")
+                yield self.change("context", key, f"context key `{before}` is now `{key}`")
             if old.context[before] != new.context[key]:
                 first = f"{code(new.context[key])}, not {code(old.context[before])}"
-                yield self.change("context", key, f"`{key}` has the first value {first} from the next start on")
+                yield self.change("context", key, f"`{key}` begins with {first}, from the next start on")
             if old.types.get(before) != new.types.get(key):
                 yield self.change("context", key, f"the type of `{key}` changed")
 
@@ -149,8 +151,12 @@ class _Comparison:
         yield from self.named("phrases", self.old.phrases, self.new.phrases)
         both = self.old.phrases.keys() & self.new.phrases.keys()
         for name in sorted(both & (self.old.anyhow ^ self.new.anyhow)):
-            how = "count even if they are negated" if name in self.new.anyhow else "do not count if they are negated"
-            yield self.change("phrases", name, f"phrases `{name}` {how} now", part="phrases")
+            how = (
+                "now count even if they are negated"
+                if name in self.new.anyhow
+                else "no longer count if they are negated"
+            )
+            yield self.change("phrases", name, f"phrases `{name}` {how}", part="phrases")
 
     def answers(self) -> Iterator[Change]:
         """Answers: what is said to the same phrases is a text, all else is behaviour."""
@@ -160,11 +166,11 @@ class _Comparison:
             if [row.phrases for row in before] == [row.phrases for row in after]:
                 for one, other in zip(before, after, strict=True):
                     if one.value != other.value:
-                        said = f"`{table}` answers {quoted(_example(other.value))} now"
+                        said = f"`{table}` now answers {quoted(_example(other.value))}"
                         yield self.change("text", table, said, Risk.COSMETIC, "answers")
             else:
                 rows = f"{how_many(len(after), 'row')}, not {len(before)}" if len(before) != len(after) else ""
-                how = f"has {rows}" if rows else "listens for other phrases, or in another order"
+                how = f"now has {rows}" if rows else "listens for different phrases, or in a different order"
                 yield self.change("answers", table, f"`{table}` {how}", part="answers")
 
     def named(self, kind: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:

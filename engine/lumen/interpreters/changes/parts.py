@@ -60,15 +60,15 @@ def _controller(old: ControllerDefinition, new: ControllerDefinition) -> Iterato
         if replace(before, text="") != replace(after, text=""):
             yield f"fuzzy rule {i} of {title} changed: {code(after.text)}"
     if len(old.rules) != len(new.rules):
-        yield f"{title} has {len(new.rules)} fuzzy rules, not {len(old.rules)}"
+        yield f"{title} now has {len(new.rules)} fuzzy rules, not {len(old.rules)}"
     yield from _variables(old, new, title)
     if [block.operators for block in old.blocks] != [block.operators for block in new.blocks]:
         yield f"{title} combines its rules differently"
     if _bound(old) != _bound(new):
-        yield f"{title} is bound differently"
+        yield f"the bindings of {title} changed"
     if old.tracking != new.tracking:
         fields = [f for f in type(new.tracking).__slots__ if getattr(old.tracking, f) != getattr(new.tracking, f)]
-        yield f"{title} tracks differently: {names(fields)}"
+        yield f"the tracking of {title} changed: {names(fields)}"
 
 
 def _bound(controller: ControllerDefinition) -> tuple[object, ...]:
@@ -93,7 +93,7 @@ def _motion(old: MotionDefinition, new: MotionDefinition) -> Iterator[str]:
     if abs(longer) > 1e-9:
         yield f"is {seconds(round(abs(longer), 6))} {'longer' if longer > 0 else 'shorter'}"
     if more := [joint for joint in new.tracks if joint not in old.tracks]:
-        yield f"moves {names(more)} as well"
+        yield f"also moves {names(more)}"
     if fewer := [joint for joint in old.tracks if joint not in new.tracks]:
         yield f"no longer moves {names(fewer)}"
     if other := [joint for joint in new.tracks if joint in old.tracks and old.tracks[joint] != new.tracks[joint]]:

@@ -48,7 +48,7 @@ def summary(found: Sequence[Change]) -> str:
             parts += [change.sentence for change in rows]
     if len(parts) > 2 * MAX_SUMMARY_CHANGES:
         parts = [*parts[: 2 * MAX_SUMMARY_CHANGES], f"{how_many(len(parts) - 2 * MAX_SUMMARY_CHANGES, 'more change')}"]
-    return "; ".join(parts) or "nothing that matters changed"
+    return "; ".join(parts) or "no relevant changes"
 
 
 def _changes(old: Project, new: Project) -> Iterator[Change]:
@@ -93,7 +93,7 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
             how = "added" if language in new.languages else "removed"
             yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
     if old.languages[:1] != new.languages[:1]:
-        yield Change("language", "", f"`{new.languages[0]}` is the first language now", Risk.BEHAVIOR, "lumen.yaml")
+        yield Change("language", "", f"`{new.languages[0]}` is now the first language", Risk.BEHAVIOR, "lumen.yaml")
     if old.alerts != new.alerts:
         yield Change("alerts", "", "the recipients of alerts (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
     if old.show != new.show:
@@ -103,7 +103,7 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
         before, after = getattr(old, field), getattr(new, field)
         if before != after:
             risk = Risk.BEHAVIOR if field == "behavior" else Risk.COSMETIC
-            yield Change("setting", field, f"`{field}` is {code(after)} now, not {code(before)}", risk, "lumen.yaml")
+            yield Change("setting", field, f"`{field}` is now {code(after)}, not {code(before)}", risk, "lumen.yaml")
 
 
 def _named(

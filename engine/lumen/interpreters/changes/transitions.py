@@ -36,7 +36,7 @@ def transition_changes(
         [key for key in one if key.startswith(_ROW) and key in both] for one, both in ((before, after), (after, before))
     )
     if old_rows != new_rows:
-        yield comparison.change(f"{title} tries its rows of `hears` in another order")
+        yield comparison.change(f"{title} tries its rows of `hears` in a different order")
     for trigger in (*before, *more):
         if trigger in fewer:
             yield from (comparison.gone(t, trigger) for t in before[trigger])
@@ -55,7 +55,7 @@ class _TransitionComparison:
         before, after = ([replace(t, event="") for t in rows] for rows in (old, new))
         for one, other in paired(before, after, lambda t: (t.targets, t.guard)):
             if one is None and other is not None:
-                yield self.change(f"{self.title} {self.leads(other)} {trigger}{_if(other)} now")
+                yield self.change(f"{self.title} now {self.leads(other)} {trigger}{_if(other)}")
             elif one is not None and other is None:
                 yield self.gone(one, trigger)
             elif one is not None and other is not None:
@@ -63,20 +63,20 @@ class _TransitionComparison:
 
     def candidate(self, old: Transition, new: Transition, trigger: str) -> Iterator[Change]:
         if old.targets != new.targets:
-            yield self.change(f"{self.title} {self.leads(new)} {trigger}{_if(new)} now, not {self.to(old)}")
+            yield self.change(f"{self.title} now {self.leads(new)} {trigger}{_if(new)}, not {self.to(old)}")
         elif old.guard != new.guard:
             condition = f"if {code(new.guard.shown)}" if new.guard else "without a condition"
-            yield self.change(f"{self.title} {self.leads(new)} {trigger} {condition} now")
+            yield self.change(f"{self.title} now {self.leads(new)} {trigger} {condition}")
         if old.approve != new.approve:
-            how = "waits for approval now" if old.approve is None else "waits for approval in another way now"
+            how = "now waits for approval" if old.approve is None else "now waits for approval in a different way"
             how = how if new.approve else "no longer waits for approval"
             yield self.change(f"{self.title} {how} {trigger}")
         if old.offer != new.offer:
-            how = "may be chosen by a language model" if new.offer else "may no longer be chosen by a language model"
-            yield self.change(f"{self.title} {how} {trigger} now")
+            how = "now offers" if new.offer else "no longer offers"
+            yield self.change(f"{self.title} {how} a language model its transition {trigger}")
         if old.reenter != new.reenter:
-            how = "is left and entered" if new.reenter else "stays active"
-            yield self.change(f"{self.title} {how} {trigger} now")
+            how = "is now left and entered again" if new.reenter else "now stays active"
+            yield self.change(f"{self.title} {how} {trigger}")
         yield from block_changes(old.actions, new.actions, self.title, f" {trigger}", self.file)
 
     def gone(self, transition: Transition, trigger: str) -> Change:
@@ -84,7 +84,7 @@ class _TransitionComparison:
         return self.change(f"{self.title} no longer {how} {trigger}{_if(transition)}")
 
     def leads(self, transition: Transition) -> str:
-        return f"goes to {self.to(transition)}" if transition.targets else "stays in its state and acts"
+        return f"goes to {self.to(transition)}" if transition.targets else "stays in its state and performs actions"
 
     def to(self, transition: Transition) -> str:
         return names(self.name(path) for path in transition.targets) or "anywhere"

@@ -29,7 +29,7 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
     nth = next(i for i, placed in enumerate(state.do) if deed.where[: len(placed.where)] == placed.where)
     if position is not None and position.place < nth:
         ids = list(awaited(position))
-        stands = f"has not reached it, it is at step {position.place + 1} of {len(state.do)}"
+        stands = f"has not reached it and is at step {position.place + 1} of {len(state.do)}"
         text = f"the `do` of {name} {stands}: it waits for {', '.join(ids)}"
         place = last.place(deed.machine, state.do[position.place].where)
         if nth == position.place + 1 and len(ids) == 1 and ids[0].startswith("d"):
@@ -41,7 +41,7 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
         if (false is None) != wanted:
             text = f"the `do` of {name} took the other branch of `if {condition.guard.shown}`"
             place = last.place(deed.machine, condition.guard.where)
-            return Reason("guard", text, at, place, false, note="a `do` does not go back to a branch that it passed")
+            return Reason("guard", text, at, place, false, note="a `do` does not return to a branch that it has passed")
     return None
 
 

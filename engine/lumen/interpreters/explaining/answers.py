@@ -86,14 +86,14 @@ def why_not(
     """
     history = _history(steps, until)
     if not history.steps:
-        raise UsageError("the journal keeps nothing from that time: choose another time with --at")
+        raise UsageError("the journal has no entries from that time: choose another time with `--at`")
     last = history.steps[-1]
     end = last.at if until is None else until
     first = next((n for n, one in enumerate(history.steps) if one.at >= end - back), len(history.steps) - 1)
     machine, known = last.machine, KnownNames(last)
     state = state_named(machine, what)
     if state and state in active_names(last.step.snapshot):
-        raise UsageError(f"it is in `{state}` at that time: ask `lumen why {what}`")
+        raise UsageError(f"the behaviour is in `{state}` at that time: run `lumen why {what}`")
     found = ways(machine, what)
     if not found and not state and not any(deeds(machine, what)):
         raise UsageError(_nothing_leads_there(known, what))
@@ -116,5 +116,5 @@ def _in_activities(history: StepHistory, what: str, state: str) -> Iterator[Reas
 
 def _nothing_leads_there(known: KnownNames, what: str) -> str:
     if what in known.motions:
-        return f"no behaviour plays `{what}`: it needs `play: {what}` somewhere"
+        return f"no behaviour plays `{what}`: add `play: {what}` to one"
     return f"there is no state, motion or text `{what}`: {known.near(what)}"

@@ -155,12 +155,15 @@ class Chain:
         event = one.step.event
         if event is None:
             reload = one.is_reload
-            text = "the files were saved and reloaded while it ran" if reload else f"{one.machine.id} begins"
+            text = "the files were saved and reloaded during the run" if reload else f"{one.machine.id} begins"
             yield self._link(number, "file" if reload else "start", text)
         elif event.name == OPERATOR_GOTO:
             by = event.data.get("by", "somebody") if isinstance(event.data, dict) else "somebody"
             yield self._link(
-                number, "person", f"{by} let it enter {event.data['state']} (lumen goto)", values=brought(event)
+                number,
+                "person",
+                f"{by} moved the behaviour to {event.data['state']} (`lumen goto`)",
+                values=brought(event),
             )
         elif timer := ended_timer(one.before, event):
             yield partial(self.timer, number, event, timer)

@@ -26,7 +26,7 @@ def effect(history: StepHistory, what: str) -> Effect:
     Raises UsageError, saying what to do, where it did not happen as far as is kept.
     """
     if not history.steps:
-        raise UsageError("the journal keeps nothing from that time: choose another time with --at")
+        raise UsageError("the journal has no entries from that time: choose another time with `--at`")
     found = next(_effects(history, what), None)
     if found is None:
         raise UsageError(_unknown(history, what))
@@ -67,13 +67,13 @@ def _unknown(history: StepHistory, what: str) -> str:
     """What to do about a question that has no answer."""
     known = KnownNames(history.steps[-1])
     first = history.steps[0]
-    kept = f"in the {history.steps[-1].at - first.at:.0f} s that are kept until then"
+    kept = f"in the {history.steps[-1].at - first.at:.0f} s that the journal covers"
     if not what:
         return f"nothing happened {kept}"
     if known.has(what):
-        return f"`{what}` did not happen {kept}: ask `lumen why-not {what}`, or about another time with --at"
+        return f"`{what}` did not happen {kept}: run `lumen why-not {what}`, or choose another time with `--at`"
     said = [of_command(c) for one in history.steps for c in one.step.commands if isinstance(c, Start)]
     hint = known.near(what)
-    return f"nothing with the name `{what}`, and no text with these words, happened {kept}" + (
-        f": {hint}" if hint else f"; the last was: it {said[-1]}" if said else ""
+    return f"nothing named `{what}` happened {kept}, and no text contains these words" + (
+        f": {hint}" if hint else f"; the robot's last action: it {said[-1]}" if said else ""
     )

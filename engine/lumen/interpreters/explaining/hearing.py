@@ -43,7 +43,7 @@ class HeardRow(NamedTuple):
             case "taken":
                 return f"{words} in {clause}" if self.words else ""
             case "not found":
-                return f"none of its phrases is in {clause}"
+                return f"none of its phrases occurs in {clause}"
             case "negated":
                 return f"{words} is negated in {clause}"
             case "not negated":

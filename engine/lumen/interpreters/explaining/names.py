@@ -82,7 +82,7 @@ def state_named(machine: MachineDefinition, name: str) -> str:
     exact = {prefix + state.name for prefix, state in found if name in (prefix + state.name, prefix + state.path)}
     ends = exact or {prefix + s.name for prefix, s in found if s.path.rpartition(".")[2] == name}
     if len(ends) > 1:
-        raise UsageError(f"`{name}` is the end of several: {', '.join(f'`{one}`' for one in sorted(ends))}")
+        raise UsageError(f"`{name}` is ambiguous: choose one of {', '.join(f'`{one}`' for one in sorted(ends))}")
     return next(iter(ends), "")
 
 

@@ -24,14 +24,14 @@ def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
         return said
     by = event.data.get("by") if isinstance(event.data, Mapping) else None
     if event.name in ("stop", "resume") and by:
-        return EventOrigin("person", f"{by} said so")
+        return EventOrigin("person", f"{by} requested it")
     project = one.project
     rows = [row for row in project.routes.values() if row.event == event.name] if project else []
     if project and rows:
         key = rows[0].key_for(project.robot)
         return EventOrigin("message", f"a message on {key}", "", {"key": key})
     if event.name in ROBOT_EVENTS:
-        return EventOrigin("event", "the robot noticed it")
+        return EventOrigin("event", "the robot detected it")
     return None
 
 
@@ -50,5 +50,5 @@ def _said(cause: Cause) -> EventOrigin | None:
         case "start":
             return EventOrigin("start", "the run began")
         case "robot":
-            return EventOrigin("event", f"the robot noticed it{by}", cause.id, values)
+            return EventOrigin("event", f"the robot detected it{by}", cause.id, values)
     return None

@@ -144,7 +144,7 @@ class _Asked:
         if rival and not why:
             why = f"{of_transition(one.machine, rival.definition, one.owner)} goes first"
         elif stopped and not why:
-            why = "its time will not come now"
+            why = "its timer is not running"
         closed = bool(why) or (not wanted.event and not wanted.timed)
         due = timer.due if timer else None
         return WayOut(

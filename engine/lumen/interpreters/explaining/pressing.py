@@ -102,6 +102,6 @@ def _elsewhere(machine: MachineDefinition, event: str) -> str:
         if any(transition.matches(event) for transition in node.transitions)
     ]
     if not names:
-        return f"nothing waits for {event}"
+        return f"no state waits for {event}"
     more = f", and {len(names) - MAX_NAMED_STATES} more" if len(names) > MAX_NAMED_STATES else ""
     return f"only in {', '.join(names[:MAX_NAMED_STATES])}{more}"

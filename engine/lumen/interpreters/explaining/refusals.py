@@ -116,11 +116,13 @@ class TransitionRefusals:
             return Reason(because, f"{after}, but {why}", at, place, false, change, note, number)
         place = one.place(machine, rival.where) if rival else None
         who = (
-            f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"
+            f"{of_transition(machine, rival, moment.owner)} was taken instead"
+            if rival
+            else "another transition was taken instead"
         )
         if row and not rival:
             who = "a behaviour that it invokes also listens"
-        note = "" if change else "no other value of the event or the context was found that would select this one"
+        note = "" if change else "no other value of the event or the context was found that would select it"
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
@@ -139,7 +141,7 @@ class TransitionRefusals:
         name = prefix_of(owner) + (source.name or machine.id)
         if inner is None:
             return Reason(
-                "inactive", f"{text}: {prefix_of(owner)[:-1]} does not run", at, place, note="it is not invoked"
+                "inactive", f"{text}: {prefix_of(owner)[:-1]} is not running", at, place, note="it is not invoked"
             )
         happens = taken(last.machine, owner, transition, self.goal)
         if not source.path or source.name in inner.configuration:
@@ -225,9 +227,9 @@ def _standing_in(
 def _awaited(inner: Snapshot, transition: Transition) -> str:
     if transition.timed:
         timer = next((t for t in inner.timers if t.event == transition.event and t.state == transition.source), None)
-        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its time will not come now"
+        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its timer is not running"
     if transition.event.startswith("done."):
-        return "that is not done yet"
+        return "it is not done yet"
     if transition.event.startswith("error."):
         return "nothing failed"
     return f"no `{transition.event}` came" if transition.event else "nothing has happened since it became possible"
@@ -237,8 +239,8 @@ def _no_event(transition: Transition) -> str:
     if transition.timed:
         return "other timers come first, or its guard is false then"
     if transition.event.startswith(("done.", "error.")):
-        return f"it follows from what the behaviour does: {awaited(transition)}"
-    return "no data of that event was found that would select it"
+        return f"the behaviour itself causes its event: {awaited(transition)}"
+    return "no data for that event was found that would select it"
 
 
 def _no_change(false: GuardPart) -> str:

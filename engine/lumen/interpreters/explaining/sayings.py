@@ -54,9 +54,9 @@ def _by_guard(saying: Saying, found: ExplainedSentence) -> str:
     """The guards that decided, if one of them did."""
     rows = [row for row in found.rows if row.key == saying.row and (row.guard is False or row.error)]
     if rows:
-        return f"; {_guard(rows[0])} {'fails' if rows[0].error else 'is false'} for the first values of the context"
+        return f"; {_guard(rows[0])} {'fails' if rows[0].error else 'is false'} with the initial values of the context"
     if found.taken and found.taken.guard:
-        return f"; {_guard(found.taken)} is true for the first values of the context"
+        return f"; {_guard(found.taken)} is true with the initial values of the context"
     return ""
 
 

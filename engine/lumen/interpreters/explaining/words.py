@@ -60,7 +60,7 @@ def awaited(transition: Transition) -> str:
         return transition.awaited_time
     if transition.exact:
         return "when it is done" if transition.event.startswith("done.") else "when it fails"
-    return f"on {transition.event}" if transition.event else "as soon as it can"
+    return f"on {transition.event}" if transition.event else "as soon as possible"
 
 
 def of_event(event: Event) -> str:

@@ -70,7 +70,7 @@ def _dead_ends(
             covered.update(paths)
             inner = [name for name in innermost_names(machine, node.snapshot) if ID_SEPARATOR in name]
             names = " with ".join(f"`{n}`" for n in [*(machine.states[p].name or machine.id for p in paths), *inner])
-            yield _finding(machine, "dead-end", paths[-1], f"nothing leads out of {names}", node)
+            yield _finding(machine, "dead-end", paths[-1], f"no transition leads out of {names}", node)
 
 
 def _no_way_back(

@@ -106,5 +106,5 @@ def _finding(
     condition = property.always or property.eventually
     assert condition is not None
     late = f" within {property.within:g} s" if property.eventually else ""
-    message = f"`{property.name}`: in `{machine.states[state].name}` `{condition.shown}` does not hold{late}"
+    message = f"`{property.name}`: `{condition.shown}` does not hold in `{machine.states[state].name}`{late}"
     return ExplorationFinding("property", state, message, path, property.where, patience)

@@ -70,8 +70,8 @@ def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFi
 
 def _pattern(node: ExpressionNode, pattern: str | None, findings: ExpressionFindings) -> None:
     if pattern is None:
-        hint = "a pattern must be written out; to compare with a value, use `contains`"
-        findings.report(UNSAFE_PATTERN, node, "`matches` needs its pattern written as a text", hint)
+        hint = "to search for a computed value, use `contains`"
+        findings.report(UNSAFE_PATTERN, node, "the pattern of `matches` must be a text in quotes", hint)
         return
     try:
         compile_pattern(pattern)

@@ -238,7 +238,7 @@ class _Checker:
             case "+":
                 common = left.kinds & right.kinds & {NUMBER, TEXT, LIST}
                 if not common:
-                    self.mismatch(node, left, right, "`+` joins two numbers, two texts or two lists")
+                    self.mismatch(node, left, right, "`+` adds two numbers, or joins two texts or two lists")
                 return ValueType(common or KINDS)
         for operand, found in ((node.left, left), (node.right, right)):
             self.expect(operand, found, frozenset((NUMBER,)), f"by `{node.sign}`")
@@ -266,5 +266,10 @@ class _Checker:
         if isinstance(target, FieldAccess | IndexAccess):
             self.member(target, known & KnownFacts(prefixes(target)), must_exist=False)
         else:
-            self.report(WRONG_ARGUMENT, target, "`has` checks if a field exists", "write `has(event.data.x)`")
+            self.report(
+                WRONG_ARGUMENT,
+                target,
+                "the argument of `has` must be a field",
+                "write, for example, `has(event.data.x)`",
+            )
         return of(BOOLEAN)

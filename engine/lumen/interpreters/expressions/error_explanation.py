@@ -43,7 +43,7 @@ def explain(error: Exception, source: str, tree: ExpressionNode, scope: Scope) -
             return _missing(error, source, node, scope)
         case RecursionError():
             return ExpressionError("a value here is nested too deeply", node.offset)
-    return ExpressionError(f"this has no value: {error}", node.offset)
+    return ExpressionError(f"this can't be evaluated: {error}", node.offset)
 
 
 def wrong_kind(
@@ -51,7 +51,7 @@ def wrong_kind(
 ) -> ExpressionError:
     """`culprit`, an operand of `node` or the node itself, is of `kind` where something else is needed."""
     needed = " or ".join(KIND_DESCRIPTIONS[k] for k in wanted)
-    asks = f", and `{_sign(node)}` needs {needed}" if culprit is not node else f", and {needed} is needed"
+    asks = f", but `{_sign(node)}` needs {needed}" if culprit is not node else f", but {needed} is needed"
     return ExpressionError(f"`{_shown(source, culprit)}` is {KIND_DESCRIPTIONS[kind]}{asks}", culprit.offset)
 
 

@@ -80,7 +80,7 @@ class ExpressionFindings:
         """Whether a value of these kinds can be of one that is wanted, saying so where it can't."""
         if kinds & wanted:
             return True
-        self.report(TYPE_MISMATCH, node, f"this is {in_words(kinds)}, and {in_words(wanted)} is needed {whose}")
+        self.report(TYPE_MISMATCH, node, f"this is {in_words(kinds)}, but {in_words(wanted)} is needed {whose}")
         return False
 
 

@@ -46,4 +46,4 @@ def kind_of(value: Any) -> str:
     for base, name in ((str, TEXT), (int, NUMBER), (float, NUMBER), (Mapping, MAP), (list, LIST), (tuple, LIST)):
         if isinstance(value, base):
             return name
-    raise FaultError("an expression can't use a value here", "context and events may contain only JSON data")
+    raise FaultError("an expression can't use this value", "the context and events can contain only JSON data")

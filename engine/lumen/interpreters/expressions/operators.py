@@ -180,7 +180,7 @@ def item(base: Any, key: Any) -> Any:
     if kind_of(key) != NUMBER:
         raise WrongKindError(1, key, NUMBER)
     if key != int(key) or not 0 <= key < len(base):
-        raise FaultError(f"there is no element {key} in a list of {len(base)}", "count from 0")
+        raise FaultError(f"there is no element {key} in a list of length {len(base)}", "count from 0")
     return base[int(key)]
 
 

@@ -15,9 +15,10 @@ _HINTS = {
     "True": "write `true`", "False": "write `false`", "if": "write `condition ? then : otherwise`",
 }  # fmt: skip
 _PAIRS = {
-    "**": "there are no powers; multiply", "//": "between whole numbers `/` leaves out the fraction; no comments here",
-    "<>": "write `!=`", "=>": "write `>=`", "=<": "write `<=`", "++": "give it a new value with `assign`",
-    "??": "ask with `has(…) ? … : …`", "?.": "ask `has(…)` first",
+    "**": "there is no operator for powers: multiply",
+    "//": "to divide, write `/`; an expression can't contain comments",
+    "<>": "write `!=`", "=>": "write `>=`", "=<": "write `<=`", "++": "to change a value, use `assign`",
+    "??": "write `has(…) ? … : …`", "?.": "check with `has(…)` first",
 }  # fmt: skip
 """Signs of other languages that are two tokens here."""
 

@@ -85,7 +85,7 @@ def _check_repetitions(pieces: Sequence[PatternPiece]) -> None:
                 hint = rf"write `\{sign}` for the character itself"
                 raise ExpressionError(f"`{sign}` has nothing before it to repeat", at, hint)
             if before[0] in "*+?{":
-                raise ExpressionError("a repetition is repeated", at, "one `*`, `+` or `?` is enough")
+                raise ExpressionError("two repetition signs follow each other", at, "one `*`, `+` or `?` is enough")
             if (bounds := _BOUNDS.match(piece)) and int(bounds[1]) > int(bounds[2]):
                 raise ExpressionError(f"`{bounds[0]}` counts downwards", at, f"write `{{{bounds[2]},{bounds[1]}}}`")
         before = piece
@@ -95,8 +95,8 @@ def _check_characters(pieces: Sequence[PatternPiece]) -> None:
     """Raise ExpressionError for the first escape or set that the engine can't read."""
     for piece, at in pieces:
         if piece[0] == "\\" and piece[1:2] in tuple("123456789k"):
-            hint = "a pattern can't refer to an earlier match"
-            raise ExpressionError(f"`{piece}` refers back to a group", at, hint)
+            hint = "write out the characters to match"
+            raise ExpressionError(f"`{piece}` refers to an earlier match, which is not allowed", at, hint)
         if piece == "[":
             raise ExpressionError("this `[` is not closed", at, r"look for a missing bracket, or write `\[`")
         if piece[0] == "[" and _read(piece) is None:
@@ -111,7 +111,7 @@ def _check_groups(pieces: Sequence[PatternPiece]) -> None:
     opened: list[int] = []
     for piece, at in pieces:
         if piece[:2] == "(?" and _read(piece.removesuffix(")") + ")") is None:
-            hint = "write `(…)` or `(?:…)`: a pattern can't look around"
+            hint = "write `(…)` or `(?:…)`: lookahead and lookbehind are not allowed"
             raise ExpressionError("a group can't begin with `(?` here", at, hint)
         if piece[0] == "(" and piece[-1] != ")":
             opened.append(at)

@@ -204,7 +204,7 @@ class PrattParser(ABC):
     def member(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
         """`left.field` or `left.function(arguments)`."""
         if self.token.kind != "name":
-            raise self.unexpected("a name follows a `.`")
+            raise self.unexpected("write a name after the `.`")
         name = self.advance()
         if not self.accept("("):
             return FieldAccess(left, name.text, offset=left.offset, end=name.end)

@@ -31,8 +31,8 @@ _HINTS = {
     "|": "write `||`",
     "'": "close the text with `'`",
     '"': 'close the text with `"`',
-    "^": "there are no powers; multiply",
-    ";": "an expression is a single value",
+    "^": "there is no operator for powers: multiply",
+    ";": "delete the `;`: an expression is a single value",
 } | dict.fromkeys("“”„‘’«»", "put texts in straight quotes: 'text'")
 
 
@@ -101,18 +101,18 @@ def _other(source: str, offset: int) -> str:
     """The hint for a character that no expression has: one that looks like another, or a letter with an accent."""
     if (sign := other_sign(source[offset])) and (meant := typed(source[offset])).isascii():
         return f"write `{meant}`: {sign}" if meant else f"delete it: {sign}"
-    return "a field with such a letter is written in brackets: context['…']" if source[offset].isalpha() else ""
+    return "write a field with such a letter in brackets: context['…']" if source[offset].isalpha() else ""
 
 
 def _number(source: str, kind: str, text: str, end: int) -> int | float:
     if source[end : end + 1].isidentifier():
-        hint = "numbers have no `u`" if source[end] in "uU" else "add a space or an operator"
+        hint = "write the number without `u`" if source[end] in "uU" else "add a space or an operator"
         raise ExpressionError(f"`{source[end]}` can't follow a number", end, hint)
     if kind == "int":
         return int(text, 16) if text[:2] in ("0x", "0X") else int(text)
     value = float(text)
     if value == float("inf"):
-        raise ExpressionError(f"`{text}` is too large a number", end - len(text))
+        raise ExpressionError(f"the number `{text}` is too large", end - len(text))
     return value
 
 

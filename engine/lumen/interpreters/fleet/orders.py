@@ -75,9 +75,10 @@ def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[Fo
     if desired.term < followed.term:
         return followed, f"centre {desired.centre[:8]} was replaced: its term {desired.term} is over"
     if desired.centre != followed.centre:
-        return followed, f"two centres: {desired.centre[:8]} sent an order, but {followed.centre[:8]} is followed"
+        other, own = desired.centre[:8], followed.centre[:8]
+        return followed, f"there are two centres: {other} sent an order, but this robot follows {own}"
     if desired.version > followed.version:
         return newer, ""
     if desired.version == followed.version and wanted != followed.wanted:
-        return followed, f"order {desired.version} was different when it first arrived"
+        return followed, f"order {desired.version} differs from the one that arrived first"
     return followed, ""

@@ -45,7 +45,8 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
     if state.overruled:
         raise ValueError(state.overruled)
     if state.rollout and state.rollout.under_way:
-        raise ValueError(f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}: abort it, or let it end")
+        running = f"a rollout of {state.rollout.bundle[:12]} is {state.rollout.state}"
+        raise ValueError(f"{running}: abort it, or wait until it ends")
     for target in plan.steps:
         if not fleet.members(target):
             raise ValueError(f"no robot belongs to the step `{target}`")
@@ -110,10 +111,10 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
     for robot, row in heard.items():
         said = row.presence
         if said.term > state.term:
-            why = f"{robot} follows centre {said.centre[:8]} of term {said.term}: this one was replaced"
+            why = f"{robot} follows centre {said.centre[:8]} of term {said.term}, which replaced this centre"
             return replace(state, overruled=why)
         if said.term == state.term and said.centre == state.centre and said.version > state.version:
-            newer = f"{robot} received order {said.version}, the last one here is {state.version}"
+            newer = f"{robot} received order {said.version}, but the last order here is {state.version}"
             why = f"{newer}: this folder is an old copy"
             return replace(state, overruled=why)
     return state
@@ -208,7 +209,7 @@ def _judged(
     pause = rollout.plan.pause
     if mostly and len(proved) == len(there) and watched >= pause:
         if rollout.plan.abort_if and _holds(rollout, fleet, heard) is None:
-            return _ask(state, rollout, f"no measure is known yet for `{rollout.plan.abort_if}`")
+            return _ask(state, rollout, f"no robot has reported a measure yet for `{rollout.plan.abort_if}`")
         return _onward(state, rollout)
     if rollout.waited > 2.0 * pause + PATIENCE:
         late = [robot for robot, each in zip(rollout.assigned, said, strict=True) if not (each and each in proved)]

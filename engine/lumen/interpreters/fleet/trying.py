@@ -32,11 +32,12 @@ def tried(
     missing = [robot for robot in there if robot not in came]
     if there and not missing:
         if refused := [f"{robot} ({row['why']})" for robot, row in came.items() if row["verdict"] == REFUSED]:
-            return _ask(state, rollout, f"{len(refused)} of {len(came)} would refuse it: {', '.join(refused[:5])}")
+            share = f"{len(refused)} of {len(came)} robots"
+            return _ask(state, rollout, f"{share} would refuse it: {', '.join(refused[:5])}")
         return begin_steps(state, rollout)
     if rollout.waited > TRYING:
         whom = ", ".join(missing[:5]) or "nobody is there"
-        return _ask(state, rollout, f"not tried by all after {rollout.waited / 60.0:.0f} min: {whom}")
+        return _ask(state, rollout, f"some robots have not tried it after {rollout.waited / 60.0:.0f} min: {whom}")
     return replace(state, rollout=rollout)
 
 

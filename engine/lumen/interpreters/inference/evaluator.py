@@ -103,7 +103,7 @@ class Evaluator:
             shapes = {name: c.shape for name, c in zip(self._names, columns, strict=True)}
             raise UsageError(f"the inputs of a batch must have the same shape (n,), not {shapes}")
         if any(np.isnan(column).any() for column in columns):
-            raise UsageError(f"an input of `{self.controller.name}` holds values that are not numbers")
+            raise UsageError(f"an input of `{self.controller.name}` contains values that are not numbers")
         return columns
 
     def _no_numbers(self, inputs: Mapping[str, Any]) -> UsageError:

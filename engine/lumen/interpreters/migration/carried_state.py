@@ -46,7 +46,7 @@ def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identit
         if (loop := state.for_each) and loop.key in kept:
             kept[loop.key] = carried_round(old.definition, new.definition, loop, kept[loop.key])
     notes = [
-        f"`{key}` starts again with its first value: it was a {type_name(values[was])} and is {new.checks[key]} now"
+        f"`{key}` starts again with its first value: it was a {type_name(values[was])} and is now {new.checks[key]}"
         for key, was in names.items()
         if was in values and key not in kept
     ]

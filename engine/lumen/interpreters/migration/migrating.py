@@ -102,7 +102,7 @@ class _Migration:
         spoken, language = situation.options.languages, before.language
         if spoken and language not in spoken:
             language = spoken[0]
-            notes += (f"language `{before.language}` is gone: the behaviour continues in `{language}`",)
+            notes += (f"language `{before.language}` was removed: the behaviour continues in `{language}`",)
         doing = before.activities.positions
         snapshot = Snapshot(
             configuration=frozenset(image.name for image in kept.values() if image.path),

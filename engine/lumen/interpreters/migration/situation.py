@@ -47,10 +47,10 @@ class Situation:
         if len(rivals) > 1:
             *more, last = (f"`{node.name}`" for node in rivals)
             names = f"{', '.join(more)} and {last}"
-            reason = f"{names} are active, but can't be active together in {title} now"
+            reason = f"{names} are active, but can no longer be active together in {title}"
             hint = f"give {title} an `onReload` with the state to go to"
         else:
-            reason = f"`{gone.name}` is active but gone, and no `onReload` names another state"
+            reason = f"`{gone.name}` is active but was removed, and no `onReload` names another state"
             hint = f"give {title} an `onReload`, or write the new name of `{gone.path}` under `renamed`"
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
 
@@ -67,7 +67,7 @@ class Situation:
         reason = f"the behaviour has ended in {ends}, but in the new files it does not end there"
         return Refusal(
             reason,
-            "restart the exhibition: only a restart begins a behaviour that has ended",
+            "restart the exhibition: a reload does not start a behaviour that has ended",
             ends.strip("`"),
             behavior,
         )

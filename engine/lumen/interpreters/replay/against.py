@@ -83,7 +83,7 @@ def played_against(
 def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
     """`home` is where it ended, empty for anywhere; `trouble` what ended it."""
     if play.trouble != trouble:
-        return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "nothing of the kind")
+        return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "no such error")
     was, now = list(noticed(then)), list(noticed(play.done))
     elsewhere = bool(home) and not play.is_home
     for place in range(max(len(was), len(now))):

@@ -93,7 +93,7 @@ def read_entry(data: Any, position: int) -> RecordedEntry:
     try:
         return _jump(data, position) if "jump" in data else _input(data, position)
     except (KeyError, TypeError, ValueError, AttributeError, StopIteration, OverflowError):
-        raise JournalError(f"entry {position} of the journal is not known to this version of Lumen") from None
+        raise JournalError(f"this version of Lumen can't read entry {position} of the journal") from None
 
 
 def _jump(data: Any, position: int) -> JournalJump:

@@ -49,7 +49,7 @@ def fork(
     number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))
     then = _inputs(entries[number:])
     if not then:
-        raise LumenError(f"nothing happened at {position} that could be changed")
+        raise LumenError(f"no event at or after position {position} can be changed")
     old, stands = _before(entries[: entries.index(then[0])], bundles)
     new = saved or old
     play = _Forked(new, takes, hurry)

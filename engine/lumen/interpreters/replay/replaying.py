@@ -32,7 +32,7 @@ class StepOutcome(NamedTuple):
         ways = [f"leaves {', '.join(self.exited)}"] if self.exited else []
         ways += [f"enters {', '.join(self.entered)}"] if self.entered else []
         ways += [json.dumps(command, ensure_ascii=False) for command in self.commands]
-        return "; ".join(ways) or f"changes no state and asks for nothing ({self.digest})"
+        return "; ".join(ways) or f"changes no state and sends no command ({self.digest})"
 
 
 class ReplayedStep(NamedTuple):
@@ -77,7 +77,7 @@ class Replayer:
         self._machines, self._digest = machines, StepDigest()
         self._machine: MachineDefinition | None = None
         self._snapshot: Snapshot | None = None
-        self._unknown = "the time before is not in the journal"
+        self._unknown = "the journal does not contain the time before it"
 
     def take(self, entry: RecordedEntry) -> ReplayedStep:
         """The entry, and what came of it now. Nothing is raised for what stands in a journal."""
@@ -153,7 +153,7 @@ def _taken(machine: MachineDefinition, before: Snapshot, entry: JournalInput) ->
         return entered_directly(machine, before, str(wanted), event)
     timer = due(before)
     if timer is None or timer.sendid != event.sendid:
-        raise LumenError(f"the timer `{event.name}` does not run out then")
+        raise LumenError(f"the timer `{event.name}` does not end at that time")
     taken = step(machine, before, timer)
     return taken._replace(event=timer._replace(cause=Cause("timer", timer.sendid)))
 

@@ -43,7 +43,7 @@ def compile_question(action: AskQuestion) -> Callable[[Scope], BodyCommand]:
     def ask(scope: Scope) -> BodyCommand:
         question = asked(scope)
         if not isinstance(question, str):
-            raise ActionError(f"the question is not a text: {question!r}")
+            raise ActionError(f"the question is not a string: {question!r}")
         known = "".join(sign if sign.isprintable() else " " for sign in question[:MAX_QUESTION])
         return Ask(" ".join(unnamed(known, scope.context).split()), scope.language, action.within, _place(scope))
 

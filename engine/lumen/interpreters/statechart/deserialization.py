@@ -44,10 +44,10 @@ def deserialize(machine: MachineDefinition, data: Mapping[str, Any]) -> Snapshot
 def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
     if data["version"].data != SNAPSHOT_VERSION:
         raise SnapshotError(
-            f"the snapshot is of version {data['version'].data}, and this Lumen reads {SNAPSHOT_VERSION}"
+            f"the snapshot has version {data['version'].data}, but this version of Lumen reads {SNAPSHOT_VERSION}"
         )
     if difference := _difference(machine, data["machine"]):
-        raise SnapshotError(f"the snapshot is not from `{machine.id}` as it is now: {difference}")
+        raise SnapshotError(f"the snapshot does not match `{machine.id}` as it is now: {difference}")
     found = _SnapshotReader(machine, data["configuration"]).read(data)
     if compiled(machine).planner.configuration(found.configuration).finished:  # what is over waits for nothing
         return found._replace(timers=(), doing={}, halted={}, invoked={})
@@ -108,7 +108,7 @@ class _SnapshotReader:
         if not self.active(state.path):
             return f"`{active[0].name}` is active without {here} around it" if active else ""
         if state.kind is StateKind.COMPOUND and len(active) != 1:
-            return f"{len(active)} states of {here} are active, but only one may be"
+            return f"{len(active)} states of {here} are active, but only one can be"
         regions = [child for child in children if child.kind is not StateKind.HISTORY]
         if state.kind is StateKind.PARALLEL and len(active) < len(regions):
             return f"only {len(active)} of the {len(regions)} regions of {here} are active"
@@ -213,9 +213,9 @@ def _position(data: JsonCursor, action: CompiledAction) -> Position:
                 return _within(data, otherwise, ("else",))
             rows = data["branches"].rows()
             if len(rows) < 3 or all(row.data is None for row in rows):
-                raise data["branches"].refused("should have the positions of the answer, its time and the spoken text")
+                raise data["branches"].refused("should contain positions for the answer, its time limit and the text")
             return Fork(tuple(None if row.data is None else _awaiting(row) for row in rows))
-    raise data.refused("is a position in an action that takes no time")
+    raise data.refused("is a position inside an action that has no inner positions")
 
 
 def _awaiting(data: JsonCursor) -> Awaiting:
@@ -229,13 +229,13 @@ def _difference(machine: MachineDefinition, other: JsonCursor) -> str:
         return ""
     ours, keys = {path for path in machine.states if path}, set(machine.context)
     found = [
-        f"it is of `{id}`" if id != machine.id else "",
+        f"it belongs to `{id}`" if id != machine.id else "",
         f"{_list('state', theirs - ours)} is gone" if theirs - ours else "",
         f"{_list('state', ours - theirs)} is new" if ours - theirs else "",
         f"{_list('context key', their_keys - keys)} is gone" if their_keys - keys else "",
         f"{_list('context key', keys - their_keys)} is new" if keys - their_keys else "",
     ]
-    same = f"the states are the same, but their content is not ({hash[:8]} then, {machine.hash[:8]} now)"
+    same = f"the states are the same, but their content differs ({hash[:8]} then, {machine.hash[:8]} now)"
     return "; ".join(filter(None, found)) or same
 
 

@@ -50,7 +50,7 @@ def _named(machine: MachineDefinition, chart: Chart, name: str) -> StateNode:
     if len(found) == 1:
         return found[0]
     if found:
-        raise UsageError(f"`{name}` is the end of several: {', '.join(f'`{node.path}`' for node in found)}")
+        raise UsageError(f"`{name}` is ambiguous: choose one of {', '.join(f'`{node.path}`' for node in found)}")
     if inside := next(_invoked(machine, name), ""):
         raise UsageError(inside)
     raise UsageError(f"there is no state `{name}`: {did_you_mean(name, _names(nodes), 'there are')}")
@@ -64,7 +64,7 @@ def _invoked(machine: MachineDefinition, name: str) -> Iterator[str]:
             paths = [(s.name, s.path, s.path.rpartition(".")[2]) for s in inner.states.values()] if inner else []
             if any(end in names for names in paths):
                 where = f"a state of `{invoke.behavior}`, which `{state.name}` invokes"
-                yield f"`{end}` is {where}: only its own events go there; enter `{state.name}`, where it begins"
+                yield f"`{end}` is {where}, so it can't be entered directly: enter `{state.name}`, which starts it"
 
 
 def _names(nodes: list[StateNode]) -> Iterator[str]:

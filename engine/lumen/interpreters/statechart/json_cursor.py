@@ -31,7 +31,7 @@ class JsonCursor:
 
     def items(self) -> "list[tuple[str, JsonCursor]]":
         if not isinstance(self.data, Mapping) or not all(isinstance(key, str) for key in self.data):
-            raise self.refused("should be a map with texts as keys")
+            raise self.refused("should be a map with strings as keys")
         return [(key, self.below(key)) for key in self.data]
 
     def rows(self) -> "list[JsonCursor]":
@@ -41,7 +41,7 @@ class JsonCursor:
 
     def text(self) -> str:
         if not isinstance(self.data, str):
-            raise self.refused("should be a text")
+            raise self.refused("should be a string")
         return self.data
 
     def texts(self) -> list[str]:
@@ -54,7 +54,7 @@ class JsonCursor:
 
     def count(self) -> int:
         if isinstance(self.data, bool) or not isinstance(self.data, int) or self.data < 0:
-            raise self.refused("should be a whole number from 0 on")
+            raise self.refused("should be a whole number of at least 0")
         return self.data
 
     def plain(self) -> Any:
@@ -93,7 +93,7 @@ def _plain(value: Any, place: str) -> Any:
         case Mapping():
             for key in value:
                 if not isinstance(key, str):
-                    raise UsageError(f"`{place}` has the key {key!r}, which is not a text")
+                    raise UsageError(f"`{place}` has the key {key!r}, which is not a string")
             return {key: _plain(item, f"{place}.{key}") for key, item in value.items()}
         case list() | tuple():
             return [_plain(item, f"{place}.{index}") for index, item in enumerate(value)]

@@ -114,7 +114,7 @@ def _round(transitions: tuple[Transition, ...]) -> str:
     last = next((i for i in range(2, len(transitions) + 1) if transitions[-i] is transitions[-1]), 1)
     taken = transitions[len(transitions) - min(last, MAX_SHOWN_TRANSITIONS + 1) + 1 :]
     ways = [f"`{t.event or 'always'}` of {f'`{t.source}`' if t.source else 'the behaviour'}" for t in taken]
-    return ", then ".join(ways) or "events that nothing waits for"
+    return ", then ".join(ways) or "events that no state waits for"
 
 
 def _holds(context: ExecutionContext, transition: CompiledTransition, guard: CompiledGuard) -> bool:

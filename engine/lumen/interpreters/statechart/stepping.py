@@ -44,7 +44,7 @@ def initial(
     type. `epoch` is when time 0 was [s since 1970, in UTC] and `timezone` where the clock on the wall hangs, an
     IANA name (else UsageError); `seed` begins the drawing of alternatives.
     """
-    need(machine, MachineDefinition, "what is to begin", "a Machine")
+    need(machine, MachineDefinition, "the machine to start", "a Machine")
     if input is not None:
         need_map(input, f"the input of `{machine.id}`")
     need_number(at, "`at`")
@@ -130,8 +130,8 @@ def elapse(machine: MachineDefinition, current: Callable[[], Snapshot], until: f
         left = left - 1 if event.at == last else MAX_MICROSTEPS + waiting(current())
         last, steps = event.at, steps + 1
         if left < 0:
-            raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent over and over without delay")
+            raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent repeatedly without delay")
         if steps > most:
-            many = f"timers set more than {MAX_RATE:,} other timers a second, `{event.name}` among them"
+            many = f"its timers start more than {MAX_RATE:,} new timers per second, among them `{event.name}`"
             raise LumenError(f"`{machine.id}` never comes to rest: {many}")
         yield step(machine, current(), event)

@@ -106,7 +106,7 @@ def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[st
     for key, value in given.items():
         if key not in checks:
             hint = did_you_mean(key, checks)
-            raise UsageError(f"`{name}` has no `{key}` in its context to receive it" + f": {hint}" * bool(hint))
+            raise UsageError(f"`{name}` has no key `{key}` in its context" + f": {hint}" * bool(hint))
         if not fits(value, checks[key]):
             raise UsageError(f"`{key}` {refusal(value, checks[key])}")
     return given

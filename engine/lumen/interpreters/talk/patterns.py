@@ -114,7 +114,7 @@ class _Reader:
         if self.position < len(self.phrase):
             sign = self.phrase[self.position]
             if sign == "|":
-                hint = f"write ({self.phrase.strip()}), or a line for each"
+                hint = f"write ({self.phrase.strip()}), or each alternative in a line of its own"
                 raise PatternError("`|` is allowed only inside ( ) or [ ], between alternatives", hint, self.position)
             raise PatternError(
                 f"`{sign}` closes nothing", f"remove it, or add its opening bracket: {_OPENS[sign]}", self.position

@@ -64,18 +64,16 @@ def read_header(line: bytes, name: str) -> JournalHeader:
             matcher=int(data.get("matcher", 0)),
         )  # fmt: skip
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        raise JournalError(
-            f"{name} is not a journal, or was cut off in its first line: nothing in it can be read"
-        ) from None
+        raise JournalError(f"{name} is not a journal, or its first line is incomplete: it can't be read") from None
     if version != JOURNAL_VERSION:
         raise JournalError(
-            f"{name} was written by another version of Lumen (the journal has version {version}, this one reads"
+            f"{name} was written by another version of Lumen (its format is {version}, this version reads"
             f" {JOURNAL_VERSION}): replay it with that version"
         )
     if header.matcher > MATCHER:
         raise JournalError(
-            f"{name} was written by a later version of Lumen (its rules for sentences are version"
-            f" {header.matcher}, this one has {MATCHER}): replay it with that version"
+            f"{name} was written by a later version of Lumen (its rules for sentences have version"
+            f" {header.matcher}, those of this version have {MATCHER}): replay it with that version"
         )
     return header
 

@@ -215,7 +215,7 @@ class JournalWriter:
         self._retry = time.monotonic() + RETRY_PERIOD
         if not self.trouble:
             self.trouble = f"the journal can't be written: {(error.strerror or str(error)).lower()}"
-            _log.warning("%s: what happens now can't be replayed", self.trouble)
+            _log.warning("%s: events from now on can't be replayed", self.trouble)
         self._end_file()
 
     def _lose(self, count: int) -> None:
@@ -237,4 +237,4 @@ class JournalWriter:
             try:
                 redact(file, person)
             except ModuleError as error:
-                _log.warning("the journal still names a person who should be forgotten: %s", error)
+                _log.warning("the journal still contains data of a visitor that should be deleted: %s", error)

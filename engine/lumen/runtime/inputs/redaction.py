@@ -79,5 +79,5 @@ def _emptied(file: Path) -> bool:
         size = file.stat().st_size
         file.unlink()
     except OSError as error:
-        raise ModuleError(f"{file} can't be read, nor deleted: {error.strerror}") from None
+        raise ModuleError(f"{file} can't be read or deleted: {error.strerror}") from None
     return size == 0
