@@ -144,7 +144,7 @@ def test_hints() -> None:
     assert hint("context.n ** 2") == "there is no operator for powers: multiply"
     assert hint("context.n // 2").startswith("to divide, write `/`")
     assert hint("context.n <> 2") == "write `!=`"
-    assert hint("event?.data") == "ask `has(…)` first"
+    assert hint("event?.data") == "check with `has(…)` first"
     assert hint("context.größe").startswith("a field with such a letter is written in brackets")
 
 

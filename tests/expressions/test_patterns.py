@@ -94,7 +94,7 @@ def test_does_not_match(pattern: str, text: str) -> None:
         ("a{3,2}", "counts downwards", 1),
         (r"(\w{100}){100}", "too large", 0),
         ("a\\", "has no meaning", 1),
-        (r"\k<n>", "refers back", 0),
+        (r"\k<n>", "refers to an earlier match", 0),
         ("{", "nothing before it", 0),
     ],
 )

@@ -36,7 +36,7 @@ def test_lines_of_soccer_teams_that_are_no_pose_are_listed() -> None:
     text = SOCCER.replace("play%-0.5", "wait%-0.5") + "play%x%0%1\nplay%0%0%0\nplay%0%0\n"
     data, diagnostics = read("fall.motion", text)
     assert [frame["at"] for frame in data["keyframes"]] == ["0.5s", "1.5s"]
-    unread = "this line can't be read: write `play%`, 2 angles and a time above 0 s, joined by `%`"
+    unread = "this line can't be read: write `play%`, 2 angles and a time above 0 s, separated by `%`"
     assert said(diagnostics) == [
         f"4:1 not-carried-over {unread}",
         "5:6 not-carried-over `x` is not an angle",
@@ -129,7 +129,7 @@ def test_what_a_program_changes_before_the_call_is_said(statement: str, message:
 
 def test_a_list_whose_length_a_loop_changes_is_refused() -> None:
     before, call, after = EXPORT.partition("try:")
-    with pytest.raises(ForeignFileError, match="names, times and keys do not match"):
+    with pytest.raises(ForeignFileError, match="the names, times and keys of this call do not match"):
         read("keys.py", f"{before}for i in range(3): names.append('HeadPitch')\n\n{call}{after}")
 
 

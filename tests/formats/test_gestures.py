@@ -113,11 +113,11 @@ def test_what_the_robot_cannot_do_is_said_where_it_stands() -> None:
     data, diagnostics = read("bow.motion", text)
     assert data["keyframes"] == [{"at": "1s", "joints": {"HeadYaw": 119.5001}}]
     assert said(diagnostics) == [
-        "2:11 carried-over-differently the names of poses are left out: a motion in Lumen has none",
+        "2:11 carried-over-differently the names of poses are left out: keyframes in Lumen have no names",
         "2:15 not-carried-over NAO has no joint `HipRoll`",
         "2:17 carried-over-differently `HeadYaw` can't reach 515.662 deg: it goes to 119.5 deg",
         "3:19 not-carried-over `x` is not an angle",
-        "4:1 not-carried-over this line can't be read: write a time like 00:01:500",
+        "4:1 not-carried-over this line can't be read: write a time such as 00:01:500",
         "5:1 not-carried-over this line can't be read: write a name and 2 angles",
     ]
 
@@ -171,7 +171,7 @@ def test_muted_curves_and_other_boxes_are_listed() -> None:
     assert data["keyframes"] == [{"at": "1s", "joints": {"RHand": 0.75}}]
     assert [d.message for d in diagnostics] == [
         "`HeadYaw` is muted",
-        "the box `Say` is left out: only joints of a timeline are read",
+        "the box `Say` is left out: only the joints of a timeline are imported",
     ]
 
 
@@ -206,7 +206,7 @@ motion.angleInterpolation("HeadYaw", 0.1, 1.0, False)
         {"at": "2.5s", "joints": {"HeadPitch": 5.7296}},
         {"at": "3s", "joints": {"HeadYaw": -30}},
     ]
-    assert said(diagnostics) == ["4:1 not-carried-over relative angles are not read"]
+    assert said(diagnostics) == ["4:1 not-carried-over relative angles can't be imported"]
 
 
 def test_what_only_a_run_would_tell_is_listed() -> None:

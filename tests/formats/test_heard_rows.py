@@ -93,7 +93,7 @@ def test_rows_come_back_with_their_guards_and_actions(write: Any, read: Any) -> 
 def test_each_row_is_reported_at_its_place(write: Any, word: str) -> None:
     said = write(Machine.from_dict(CHART), dotted("tour"))[1]
     rows = {str(d.place.file): (d.message, d.hint) for d in said if "`hears " in d.message}
-    hint = "another tool must implement this guard: the longest match, negation, questions and the values caught"
+    hint = "implement this guard in the other tool: the longest match, negation, questions and captured values"
     where = "tour (states.offer.hears.{})"
     assert rows == {
         where.format(place): (f"`hears {key}` becomes a {word}", hint)

@@ -137,7 +137,7 @@ def test_what_json_lost_of_xstate_is_listed() -> None:
     data = {"states": {"a": {"entry": [None, "hi"], "on": {"x": {"meta": {"y": 1}}}}}, "output": {"z": 1}}
     found, said = read_xstate("m.json", json.dumps(data).encode(), "m")
     assert {d.message for d in said} == {
-        "a machine has no `output`", "an action is null: JSON can't contain its code",
+        "a machine can't have `output`", "an action is null: JSON can't contain its code",
         "the code of the action `hi` is not in the file", "`meta` is not carried over",
     }  # fmt: skip
     assert "hi" in document_yaml(found)

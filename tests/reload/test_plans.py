@@ -207,7 +207,7 @@ def test_a_name_edited_twice_in_the_same_line_is_followed() -> None:
         (
             {"visitor": 0, "tries": 0},
             0,
-            ("`visitor` starts again with its first value: it was a string and is a number now",),
+            ("`visitor` starts again with its first value: it was a string and is now a number",),
         ),
         ({"tries": 0}, None, ("`visitor` is forgotten",)),
     ],

@@ -40,7 +40,7 @@ def messages(found: list[Diagnostic]) -> list[str]:
 
 def test_a_misspelt_attribute_is_listed_at_its_place() -> None:
     _, found = scxml("attribute-slip.scxml")
-    assert messages(found) == ["2:29 `events` of `<transition>` has no counterpart (did you mean `event`?)"]
+    assert messages(found) == ["2:29 `events` of `<transition>` has no counterpart in Lumen (did you mean `event`?)"]
     assert has_errors(found)
 
 
@@ -101,18 +101,18 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
          "`<target>`: write `target=` in the `<transition>`"),
         ('<state id="a"><onentry><var name="x" expr="1"/></onentry></state>',
          "`<var>`: declare it with `<data>` and set it with `<assign>`"),
-        ('<state id="a"><onentry><qt:beep/></onentry></state>', "`<beep>` has no counterpart"),
+        ('<state id="a"><onentry><qt:beep/></onentry></state>', "`<beep>` has no counterpart in Lumen"),
         ('<datamodel><data expr="1"/></datamodel><state id="a"/>', "a `<data>` has no `id`"),
         ('<datamodel><data name="x"/></datamodel><state id="a"/>', "`name` of `<data>`: write `id`"),
         ('<datamodel><data id="x" expr="1">2</data></datamodel><state id="a"/>',
          "`<data>` has `expr` and `text`: one of them is left out"),
-        ('<state id="a"><log expr="1"/></state>', "`<log>` in `<state>` has no counterpart"),
-        ('<state id="a"><onentri/></state>', "`<onentri>` has no counterpart (did you mean `<onentry>`?)"),
-        ('<state id="a"><onentry>hello</onentry></state>', "the text in `<onentry>` has no counterpart"),
+        ('<state id="a"><log expr="1"/></state>', "`<log>` in `<state>` has no counterpart in Lumen"),
+        ('<state id="a"><onentri/></state>', "`<onentri>` has no counterpart in Lumen (did you mean `<onentry>`?)"),
+        ('<state id="a"><onentry>hello</onentry></state>', "the text in `<onentry>` has no counterpart in Lumen"),
         ('<state id="a"><transition event="e" type="inner" target="a"/></state>',
          '`type` of `<transition>` can\'t be `inner` (write "external" or "internal")'),
         ('<state id="a"><onentry><if cond="true"><log expr="1"/><else><log expr="2"/></else></if></onentry></state>',
-         "`<log>` in `<else>` has no counterpart (move it after `<else/>`)"),
+         "`<log>` in `<else>` has no counterpart in Lumen (move it after `<else/>`)"),
         ('<state id="a"><onentry><if cond="true"/><send event="e"><param name="a" expr="1"/>'
          '<content>2</content></send></onentry></state>',
          "`<send>` has `<param>` and `<content>`: one of them is left out"),
@@ -128,7 +128,7 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><lumen:do>[{"log": "x"}]</lumen:do><lumen:do>[{"log": "y"}]</lumen:do></state>',
          "a second `<lumen:do>` in a `<state>`"),
         ('<state id="a"><lumen:state>{"resume": "soon"}</lumen:state></state>',
-         "`resume: soon` of `<lumen:state>` has no counterpart"),
+         "`resume: soon` of `<lumen:state>` has no counterpart in Lumen"),
         ('<state id="a"><transition event="e" qt:cond="x" target="a"/></state>',
          "`cond` of the namespace `urn:qt` is ignored"),
         ('<state id="a"><invoke type="scxml" src="b.scxml" autoforward="yes"/></state>',
@@ -144,7 +144,7 @@ def test_ids_that_only_clash_after_renaming_stay_two() -> None:
         ('<state id="a"><invoke id="q" src="q.scxml"/><invoke id="q" src="r.scxml"/></state>',
          "`<invoke>`: a second `<invoke>` has the id `q`"),
         ('<state id="a"><invoke src="q.scxml"><finalize><log expr="1"/></finalize></invoke></state>',
-         "`<finalize>` has no counterpart"),
+         "`<finalize>` has no counterpart in Lumen"),
     ],
 )  # fmt: skip
 def test_unread_content_is_listed(text: str, found: str) -> None:
@@ -321,8 +321,9 @@ def test_actions_of_xstate_itself(action: dict[str, Any], ours: dict[str, Any]) 
         ({"type": "xstate.log"}, "`xstate.log`: its code is not in the file"),
         ({"type": "xstate.assign", "assignment": {}}, "`xstate.assign`: its code is not in the file"),
         ({"type": "xstate.assign", "assignment": {"n": 1, "m": 1}}, "`m` is not in the context"),
-        ({"type": "xstate.send", "event": "E", "dely": 3}, "`dely` of an xstate.send has no counterpart"),
-        ({"type": "xstate.send", "params": {"event": "E", "dely": 3}}, "`dely` of an xstate.send has no counterpart"),
+        ({"type": "xstate.send", "event": "E", "dely": 3}, "`dely` of an xstate.send has no counterpart in Lumen"),
+        ({"type": "xstate.send", "params": {"event": "E", "dely": 3}},
+         "`dely` of an xstate.send has no counterpart in Lumen"),
         ({"type": "xstate.send", "event": "E", "params": {"event": "F"}},
          "`event` in `params` of an xstate.send is left out"),
         ({"type": "xstate.send", "event": "E", "params": "soon"}, "`params` of an xstate.send is not an object"),
@@ -336,10 +337,10 @@ def test_missing_parts_of_an_xstate_action_are_listed(action: dict[str, Any], fo
 @for_each(
     ("state", "found"),
     [
-        ({"onn": {"E": "a"}}, "`onn` of a state has no counterpart"),
+        ({"onn": {"E": "a"}}, "`onn` of a state has no counterpart in Lumen"),
         ({"onEntry": "ring"}, "`onEntry` of a state: write `entry`"),
         ({"on": {"E": {"target": "a", "reenter": "yes"}}}, "`reenter` can't be `yes`"),
-        ({"on": {"E": {"target": "a", "guards": "x"}}}, "`guards` of a transition has no counterpart"),
+        ({"on": {"E": {"target": "a", "guards": "x"}}}, "`guards` of a transition has no counterpart in Lumen"),
         ({"on": {"E": {"target": "a", "guard": "x", "cond": "y"}}}, "`cond` beside `guard` is left out"),
         ({"on": {"E": {"target": "a", "in": "b.c"}}}, "`in`: the state `b.c` does not exist"),
         ({"initial": "x"}, "`initial` is left out: the state has no inner states"),
@@ -350,11 +351,11 @@ def test_missing_parts_of_an_xstate_action_are_listed(action: dict[str, Any], fo
         ({"initial": "x", "states": {"x": {}, "h": {"type": "history", "history": "Deep"}}},
          "`history` can't be `Deep`"),
         ({"initial": "x", "states": {"x": {}, "h": {"type": "history", "on": {"E": "x"}}}},
-         "`on` of a history state has no counterpart"),
+         "`on` of a history state has no counterpart in Lumen"),
         ({"invoke": {"src": "x", "input": {"n": 1}}}, "`input` of the `invoke` is left out"),
-        ({"meta": {"lumen": {"resume": "soon"}}}, "`resume` of `meta.lumen` has no counterpart"),
-        ({"description": ["x"]}, "`description` is not a text"),
-        ({"invoke": {"src": "x", "id": 3}}, "`id` is not a text"),
+        ({"meta": {"lumen": {"resume": "soon"}}}, "`resume` of `meta.lumen` has no counterpart in Lumen"),
+        ({"description": ["x"]}, "`description` is not a string"),
+        ({"invoke": {"src": "x", "id": 3}}, "`id` is not a string"),
         ({"invoke": [None]}, "this is not an invocation"),
         ({"invoke": {"src": {"type": "x", "pace": 3}}}, '`invoke` of `x {"pace": 3}`: its code is not in the file'),
         ({"type": "final", "output": 1, "data": 2}, "`data` beside `output` is left out"),

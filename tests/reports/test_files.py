@@ -467,7 +467,7 @@ def test_a_recording_under_another_name_prints_that_name(tmp_path: Path, capsys:
     first = file.read_bytes()
     assert main([*command, "--record", str(file)]) == 0
     told = " ".join(capsys.readouterr().out.split())
-    assert f"{file} exists already: this recording is {tmp_path / 'a-2.mcap'}" in told
+    assert f"{file} already exists: this recording is saved as {tmp_path / 'a-2.mcap'}" in told
     assert file.read_bytes() == first
 
 

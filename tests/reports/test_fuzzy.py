@@ -100,7 +100,11 @@ def test_sections_and_terms_count_by_their_numbers() -> None:
         ("AndMethod", "AndMetod", "`AndMetod` is left out"),
         ("'min'", "'mim'", "unknown conjunction `mim`: the default is used"),
         ("Type='mamdani'", "Type='mamdany'", "unknown system type `mamdany`"),
-        ("Type='mamdani'", "Type='sugeno'", "`Type` is 'sugeno', but the defuzzification is centroid, which is used"),
+        (
+            "Type='mamdani'",
+            "Type='sugeno'",
+            "`Type` is 'sugeno', but the defuzzification is centroid: `Type` is ignored",
+        ),
         ("NumInputs=2", "NumInputs=3", "`NumInputs` is 3, but the file has 2: all are read"),
         ("NumRules=2", "NumRules=1", "`NumRules` is 1, but the file has 2: all are read"),
         ("NumMFs=2", "NumMFs=3", "`NumMFs` is 3, but the file has 2: all are read"),
@@ -284,7 +288,7 @@ def test_two_variables_in_one_declaration_are_read() -> None:
         (
             "FUZZIFY temperature",
             "FUZZIFY temperature RANGE := (0 .. 9);",
-            "`temperature` has a different range in its decl",
+            "the range in the declaration of `temperature` differs",
         ),
         (": REAL;\nEND", ": INT;\nEND", "the type `INT` is read as REAL"),
         (": REAL;\nEND", ": REAL := 5;\nEND", "`:= 5` in a declaration is left out"),

@@ -748,7 +748,7 @@ def test_the_type_of_each_handle_counts() -> None:
     for old, new in (("[3, 0.1, 0]], [0.2", "[1, 0.1, 0]], [0.2"), ("[0.2, [3", "[0.2, [2"), ("[0.2, [3", "[0.2, [1")):
         assert old in keys
         found = script(call.replace("KEYS", keys.replace(old, new)))[1]
-        assert [d.message for d in found] == ["`HeadYaw` reaches its key at 2 s by an unknown interpolation"], new
+        assert [d.message for d in found] == ["`HeadYaw` reaches its key at 2 s with an unknown interpolation"], new
 
 
 @for_each(

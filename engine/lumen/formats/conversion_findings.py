@@ -57,7 +57,7 @@ def check_size(file: str, content: bytes) -> None:
     """Raise ForeignFileError for a file that is too large to be read."""
     if len(content) > MAX_FILE_BYTES:
         hint = f"the maximum is {MAX_FILE_BYTES // 1_000_000} MB"
-        raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
+        raise broken(Place(file), "too-large", f"the file is too large: {len(content) / 1e6:.0f} MB", hint)
 
 
 def decoded(file: str, content: bytes) -> str:

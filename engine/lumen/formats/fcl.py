@@ -297,7 +297,7 @@ class _FclReader:
         declared = self.ranges.get(section.name, ("", None))
         said, statement = settings.get("RANGE", declared)
         if declared[1] and _RANGE.sub(r"\1 \2", said) != _RANGE.sub(r"\1 \2", declared[0]):
-            message = f"`{section.name}` has a different range in its declaration, which is left out"
+            message = f"the range in the declaration of `{section.name}` differs from `RANGE` and is left out"
             self.findings.lost(self.at(declared[1]), message, "delete one of the two ranges")
         match = _RANGE.fullmatch(said)
         if match and match[1] and match[2] and float(match[1]) < float(match[2]):
@@ -367,7 +367,7 @@ class _FclReader:
         """A single value that is computed from the inputs."""
         output = spec is self.draft.sides["outputs"].get(self.draft.names[variable])
         inputs = {theirs: ours for theirs, ours in self.draft.names.items() if ours in self.draft.sides["inputs"]}
-        found = function(text, inputs) if output else Trouble("a single value is not a set", 0)
+        found = function(text, inputs) if output else Trouble("the terms of an input must be sets", 0)
         if isinstance(found, Trouble):
             message = f"the term `{name}` of `{variable}` is left out: {found.message}"
             self.findings.lost(self.at(statement), message)

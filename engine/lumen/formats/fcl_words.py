@@ -81,7 +81,7 @@ def function(text: str, names: Mapping[str, str]) -> str | Trouble:
     """
     doubtful = text.count("^") > 1 or ("%" in text and re.search(r"[*/^]|%.*%", text))
     if doubtful or ("^" in text and re.search(r"[-+][\d.]", text)):
-        return Trouble("signs, `^` and `%` have another precedence in FCL", 0)
+        return Trouble("signs, `^` and `%` have a different precedence in FCL", 0)
     if re.search(r"(?i)\bx\b", text) and "x" not in names:
         return Trouble("unknown name `x`", 0)
     theirs = re.sub(r"(?i)\b(exp|ln|log|sin|cos|tan|abs)(?=\s*\()", lambda match: match[1].lower(), text)

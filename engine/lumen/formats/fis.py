@@ -229,11 +229,11 @@ class _FisReader:
         kind, weighted = head.line("Type"), said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         if kind and (kind.value.strip("'\"").lower() == "mamdani") == weighted:
             method = said.get("defuzzifier", "centroid")
-            message = f"`Type` is {kind.value[:40]}, but the defuzzification is {method}, which is used"
+            message = f"`Type` is {kind.value[:40]}, but the defuzzification is {method}: `Type` is ignored"
             self.findings.changed(
                 kind.place,
                 message,
-                "mamdani needs a defuzzification for sets; sugeno and tsukamoto need wtaver or wtsum",
+                "mamdani needs a defuzzification method for sets; sugeno and tsukamoto need wtaver or wtsum",
             )
         if weighted:
             said.pop("implication", None)  # a value is not cut
@@ -251,7 +251,7 @@ class _FisReader:
         span = section.line("Range")
         ends = _numbers(span.value.strip("[]")) if span else []
         if len(ends) != 2 or not ends[0] < ends[1] or not all(map(isfinite, ends)):
-            self.findings.lost(span.place if span else place, f"`{name}` has no valid range")
+            self.findings.lost(span.place if span else place, f"`{name}` has no valid range: [0 1] is used")
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
         if side == "output":

@@ -6,7 +6,7 @@ from lumen.interpreters.talk.hearing import ENTRY
 from lumen.language.actions import Expression
 from lumen.language.machines import Hears, Transition
 
-LOST_ELSEWHERE = "another tool must implement this guard: the longest match, negation, questions and the values caught"
+LOST_ELSEWHERE = "implement this guard in the other tool: the longest match, negation, questions and captured values"
 """The hint of a finding about a row of `hears`: what is lost."""
 HEARD_TEXT = "event.data.result"
 

@@ -52,7 +52,7 @@ def method(translation: Translation, node: FunctionCall) -> ExpressionNode:
     if name == ".concat":
         return _joined(translation, owner, arguments)
     if _COUNTS.get(name) != len(arguments):
-        raise ScriptError(f"`{name}()` has no counterpart")
+        raise ScriptError(f"`{name}()` has no counterpart in Lumen")
     base, *read = (translation.value(part) for part in (owner, *arguments))
     if name in EQUIVALENT_METHODS:
         return FunctionCall(EQUIVALENT_METHODS[name], (base, *read))
@@ -61,9 +61,9 @@ def method(translation: Translation, node: FunctionCall) -> ExpressionNode:
             return Binary("in", read[0], base)
         if TEXT in (translation.kind(base), translation.kind(read[0])):
             return FunctionCall("contains", (base, read[0]))
-        raise ScriptError("`.includes()` of a value that may be a text or a list")
+        raise ScriptError("`.includes()` is called on a value that can be a string or a list")
     if not (isinstance(read[0], Literal) and isinstance(read[0].value, str)):
-        raise ScriptError(f"`{name}()` needs a text in quotes as its first argument")
+        raise ScriptError(f"`{name}()` needs a string in quotes as its first argument")
     pattern = re.sub(r"([^\w\s])", r"\\\1", read[0].value, flags=re.ASCII)
     return FunctionCall("matches", (base, Literal(f"^{pattern}" if name == ".startsWith" else f"{pattern}$")))
 
@@ -73,7 +73,7 @@ def _joined(translation: Translation, owner: ExpressionNode, arguments: list[Exp
     result, *others = [part for part in parts if part != ListLiteral(())] or [ListLiteral(())]
     for other in others:
         if translation.kind(result) == TEXT or translation.kind(other) not in (LIST, ""):
-            raise ScriptError("`.concat()` of a value that is not a list")
+            raise ScriptError("`.concat()` is called on a value that is not a list")
         result = Binary("+", result, other)
     return result
 
@@ -91,4 +91,4 @@ def _mathematics(translation: Translation, name: str, arguments: list[Expression
                 for _ in range(power - 1):
                     product = Binary("*", product, value)
                 return product
-    raise ScriptError(f"`Math{name}()` has no counterpart")
+    raise ScriptError(f"`Math{name}()` has no counterpart in Lumen")

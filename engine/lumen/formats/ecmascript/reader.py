@@ -152,7 +152,7 @@ class ScriptTranslator:
         if name == "_name":
             return Literal(self.names.title)
         if name in ("_event", "_sessionid", "_ioprocessors", "_x"):
-            raise ScriptError(f"`{name}` as a whole has no counterpart")
+            raise ScriptError(f"`{name}` as a whole has no counterpart in Lumen")
         raise ScriptError(f"`{name}` is not declared in a `<datamodel>`")
 
     def _field(self, base: ExpressionNode, name: str) -> ExpressionNode:
@@ -163,7 +163,7 @@ class ScriptTranslator:
         if base == Identifier("_x") and name in ("state", "heard"):
             return Identifier(name)
         if isinstance(base, Identifier) and base.name in ("_ioprocessors", "_x", "Math"):
-            raise ScriptError(f"`{base.name}.{name}` has no counterpart")
+            raise ScriptError(f"`{base.name}.{name}` has no counterpart in Lumen")
         read = self.value(base)
         if name == "length" and self.kind(read) != MAP:
             return FunctionCall("size", (read,))
@@ -228,7 +228,7 @@ class ScriptTranslator:
         if node.function.startswith("."):
             return method(self, node)
         if node.function not in LUMEN_FUNCTIONS:
-            raise ScriptError(f"`{node.function}()` has no counterpart")
+            raise ScriptError(f"`{node.function}()` has no counterpart in Lumen")
         arguments = tuple(map(self.value, node.arguments))
         if node.function in SIGN_FUNCTIONS and len(arguments) == 2:
             return Binary(SIGN_FUNCTIONS[node.function], *arguments)

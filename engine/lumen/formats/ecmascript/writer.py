@@ -99,7 +99,7 @@ class _ScriptWriter:
 
     def _name(self, name: str) -> ExpressionNode:
         if name not in ("state", "heard"):
-            raise ScriptError(f"`{name}` as a whole has no counterpart")
+            raise ScriptError(f"`{name}` as a whole has no counterpart in ECMAScript")
         self.foreign.append(name)
         return FieldAccess(Identifier("_x"), name)
 

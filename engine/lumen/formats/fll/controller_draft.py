@@ -187,7 +187,7 @@ class ControllerDraft:
         first = next((d for d in self.findings.diagnostics if d.code == LOST), None)
         if first is None:
             return broken(Place(self.file), "not-a-controller", f"nothing is written: {what}", hint)
-        return broken(first.place, "not-a-controller", f"nothing is written, {what}: {first.message}", hint)
+        return broken(first.place, "not-a-controller", f"nothing is written: {what} ({first.message})", hint)
 
 
 def _refused(name: str, shape: Mapping[str, Any], count: int) -> str:

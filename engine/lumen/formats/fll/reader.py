@@ -105,7 +105,7 @@ class _FllReader(FllLineReader):
             self.lost(line or head, f"the range of `{name}` is empty", "write: range: 0.0 1.0")
             ends = [0.0, 1.0]
         if side == "outputs" and not all(map(isfinite, ends)):
-            self.lost(line or head, f"the range of the output `{name}` is infinite", "write two numbers")
+            self.lost(line or head, f"the range of the output `{name}` is infinite", "write two finite numbers")
             ends = [0.0, 1.0]
         spec["range"] = ranged(*ends)
 

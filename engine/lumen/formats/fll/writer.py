@@ -91,13 +91,15 @@ class _FllWriter:
             text, chose = write_formula(term.formula, self.names)
             if chose:
                 message = f"the conditional values in `{term.name}` of `{variable.name}` are written as sums"
-                self.report.changed(message, (*term.where, "function"), "if one side has no value, the sum has none")
+                self.report.changed(
+                    message, (*term.where, "function"), "if one branch has no value, the sum has no value"
+                )
             parameters = [text]
         elif term.kind == "linear":
             parameters += ["0"] * (len(self.controller.inputs) + 1 - len(parameters))
         if term.height != 1.0:
             if term.kind in (*VALUE_TERMS, "function"):
-                self.report.lost(f"FuzzyLite has no height for `{term.kind}`", term.where)
+                self.report.lost(f"the height is left out: FuzzyLite has none for `{term.kind}`", term.where)
             else:
                 parameters.append(written(term.height))
         return " ".join([foreign(SHAPES, term.kind), *parameters])

@@ -48,9 +48,9 @@ KNOWN: FormatTable = {
     "<Timeline> without curves": Known(meaningless={"enable": "it plays nothing"}),
     "<ActuatorCurve> without keys": Known(meaningless={"…": "without a key it moves nothing"}),
     "<Diagram> without boxes": Known(meaningless={"…": "without boxes it does nothing"}),
-    "<Tangent> before a straight way": Known(meaningless={"…": "a straight line needs no tangent"}),
+    "<Tangent> before a straight line": Known(meaningless={"…": "a straight line needs no tangent"}),
     "<script> without text": Known(meaningless={"…": "it does nothing"}),
-    "<script>": Known(frozenset(("<content>",)), meaningless={"language": "scripts are listed in any language"}),
+    "<script>": Known(frozenset(("<content>",)), meaningless={"language": "scripts in all languages are listed"}),
     "<BehaviorLayer>": Known(frozenset(("<BehaviorKeyframe>",)), meaningless={"name": _DRAWING}),
     "<BehaviorKeyframe>": Known(
         frozenset(("<Diagram>",)), meaningless={"name": _DRAWING, "index": "its boxes are left out"}
@@ -186,8 +186,8 @@ def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
         if frame is None or (frame < 1 and frame != none):
             findings.lost(
                 timeline.place,
-                f"`{flag}` is `{said[:20]}`, which is not a frame",
-                f"write a frame, or {none:g} for none",
+                f"`{flag}` is `{said[:20]}`, which is not a frame number",
+                f"write a frame number, or {none:g} for none",
             )
             frame = none
         found[flag] = frame
@@ -210,9 +210,9 @@ def _played(
         else:
             outside.append(key)
     if outside:
-        keys_are = "a key" if len(outside) == 1 else f"{len(outside)} keys"
-        message = f"{keys_are} of `{curve.get('actuator')}` before the Start flag or after the End flag"
-        findings.changed(outside[0].place, f"{message}: left out, as in Choregraphe")
+        count, verb = ("a key", "is") if len(outside) == 1 else (f"{len(outside)} keys", "are")
+        where = f"of `{curve.get('actuator')}` before the Start flag or after the End flag"
+        findings.changed(outside[0].place, f"{count} {where} {verb} left out, as in Choregraphe")
 
 
 def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
@@ -268,7 +268,7 @@ def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, 
         around = any(element is chosen or local(element) == "Box" for element in list(box.walk())[1:])
         if local(box) == "Box" and (id(box) in inside or not around):
             say = findings.changed if asked and id(box) not in inside else findings.lost
-            say(box.place, f"the box `{box.get('name')}` is left out: only joints of a timeline are read")
+            say(box.place, f"the box `{box.get('name')}` is left out: only the joints of a timeline are imported")
 
 
 def _points(

@@ -367,7 +367,7 @@ class _Reading:
         joints = [joint for name in (names if isinstance(names, list) else [names]) for joint in _joints(name)]
         rows = _rows(times, keys, len(joints))
         if rows is None or not all(isinstance(joint, str) for joint in joints):
-            self.findings.lost(self._place(node), "names, times and keys do not match")
+            self.findings.lost(self._place(node), "the names, times and keys of this call do not match")
             return
         for joint, (moments, angles) in zip(joints, rows, strict=True):
             curve = self.curves.setdefault(joint, [])
@@ -415,7 +415,7 @@ class _Reading:
             )
             return
         if not absolute:
-            self.findings.lost(self._place(node), "relative angles are not read")
+            self.findings.lost(self._place(node), "relative angles can't be imported")
             return
         self.play(node, values["names"], values["times"], values["keys"])
 
@@ -430,7 +430,7 @@ class _Reading:
             leaves, out = _handle(handles[1]) if len(handles) > 1 else (kind, (0.0, 0.0))
             if kind not in (BEZIER, LINEAR) or (time != times[0] and left != kind):
                 self.findings.changed(
-                    self._place(node), f"`{joint}` reaches its key at {time:g} s by an unknown interpolation"
+                    self._place(node), f"`{joint}` reaches its key at {time:g} s with an unknown interpolation"
                 )
             left = leaves
             yield CurvePoint(float(time), float(angle), self._place(node), kind != BEZIER, into, out)

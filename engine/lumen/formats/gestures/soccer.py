@@ -30,7 +30,7 @@ def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurv
     for cells in lines:
         takes = _takes(cells, len(joints))
         if takes is None:
-            wanted = f"`{POSE}%`, {len(joints)} angles and a time above 0 s, joined by `%`"
+            wanted = f"`{POSE}%`, {len(joints)} angles and a time above 0 s, separated by `%`"
             findings.lost(cells[0][1], f"this line can't be read: write {wanted}")
             continue
         time += takes

@@ -39,11 +39,11 @@ def read_webots(file: str, text: str, findings: ConversionFindings) -> JointCurv
     for cells in lines:
         time = _time(cells[0][0])
         if time is None or len(cells) != len(joints) + 2:
-            wanted = "a time like 00:01:500" if time is None else f"a name and {len(joints)} angles"
+            wanted = "a time such as 00:01:500" if time is None else f"a name and {len(joints)} angles"
             findings.lost(cells[0][1], f"this line can't be read: write {wanted}")
             continue
         if not renamed and not _PLAIN_NAME.fullmatch(cells[1][0]):
-            findings.changed(cells[1][1], "the names of poses are left out: a motion in Lumen has none")
+            findings.changed(cells[1][1], "the names of poses are left out: keyframes in Lumen have no names")
             renamed = True
         for (joint, _), (word, place) in zip(joints, cells[2:], strict=True):
             angle = number(word)

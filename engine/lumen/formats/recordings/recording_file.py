@@ -106,7 +106,7 @@ class RecordingFile:
 
 def renamed(wanted: Path, path: Path) -> str:
     """Return a notice if a recording could not get the wanted name; empty if it has it."""
-    return f"{wanted} exists already: this recording is {path}" if path != wanted else ""
+    return f"{wanted} already exists: this recording is saved as {path}" if path != wanted else ""
 
 
 def writable(path: Path) -> Path:

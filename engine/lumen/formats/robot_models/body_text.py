@@ -50,7 +50,7 @@ def _lines(
     yield "\nroles:"
     yield from _roles(model, roles)
     if camera := roles.camera:
-        yield "\n# The image has the format 4:3; the angles of view are those of the model."
+        yield "\n# The image has an aspect ratio of 4:3 and the model's angle of view."
         across = 2 * atan2(tan(camera.fovy / 2) * WIDTH / HEIGHT, 1.0)
         down = atan2(-camera.ahead[2], hypot(camera.ahead[0], camera.ahead[1]))
         position = ", ".join(f"{c:.6g}" for c in camera.position)
@@ -58,7 +58,7 @@ def _lines(
             f"camera: {{width: {WIDTH}, height: {HEIGHT}, horizontal_fov: {across:.6g},"
             f" vertical_fov: {camera.fovy:.6g}, position: [{position}], pitch: {down + 0:.6g}}}"
         )
-    yield f"\npostures:{GUESSED}: all joints at zero, or as near to it as they can go"
+    yield f"\npostures:{GUESSED}: all joints at zero, or as close to zero as they can get"
     stand = {joint.name: f"{min(max(0.0, _low(joint)), _high(joint)):.6g}" for joint in joints}
     for posture in ("Stand", "Crouch") if roles.biped else ("Stand",):
         yield f"  {posture}:"

@@ -50,7 +50,7 @@ class _MjcfReader:
         if len(self.sequence) != len(_ORIGIN) or not set(self.sequence.lower()) <= set(AXES):
             findings.lost(
                 root.place,
-                f"`eulerseq` is `{self.sequence[:20]}`",
+                f"`eulerseq` can't be `{self.sequence[:20]}`",
                 "write three of x, y and z, in capitals for fixed axes",
             )
         self.autolimits = compiler.get("autolimits", "true") != "false"
@@ -71,7 +71,7 @@ class _MjcfReader:
         """The element with the defaults of its class; a missing class is listed."""
         for name in (element.get("class"), childclass):
             if not self.defaults.has(name):
-                hint = "correct the name, or add the class to `<default>`: MuJoCo rejects the model"
+                hint = "correct the name, or add the class to `<default>`; MuJoCo rejects the model as it is"
                 self.findings.lost(element.place, f"the class `{name[:60]}` does not exist", hint)
         return self.defaults.whole(element, childclass)
 
@@ -244,7 +244,7 @@ class _MjcfReader:
         given = self.numbers.one(camera, "fovy")
         fovy = _FOVY if given is None else given
         if not 0.0 < fovy < 180.0:
-            self.findings.lost(camera.place, f"`fovy` is {fovy:g} degrees, which is not an angle of view")
+            self.findings.lost(camera.place, f"`fovy` is {fovy:g} degrees: it must be above 0 and below 180")
             return
         position, ahead = self.numbers.vector(camera, "pos", _ORIGIN), rotated(self.turned(camera), (0.0, 0.0, -1.0))
         self.cameras.append(ModelCamera(camera.get("name"), link, position, ahead, fovy * pi / 180.0))

@@ -79,7 +79,7 @@ def _missing(model: RobotModel, joints: Sequence[ModelJoint], findings: Conversi
     """What a body needs that the model does not say."""
     for joint in joints:
         if joint.low is None:
-            hint = f"write its `range` into the body file, which has [-{CIRCLE:.4g}, {CIRCLE:.4g}] now"
+            hint = f"write its `range` into the body file, which now has [-{CIRCLE:.4g}, {CIRCLE:.4g}]"
             findings.changed(joint.place, f"`{joint.name}` has no limits", hint)
         if joint.effort is None and not joint.servo and not joint.follows:
             message = f"`{joint.name}` has no torque in the model, and no servo"

@@ -48,7 +48,9 @@ KNOWN: FormatTable = {
     "<parent>": _LINK,
     "<child>": _LINK,
     "<axis>": Known(frozenset(("xyz",))),
-    "<limit> of a joint that follows": Known(meaningless=dict.fromkeys(("velocity", "effort"), "it has no motor")),
+    "<limit> of a joint that follows another": Known(
+        meaningless=dict.fromkeys(("velocity", "effort"), "it has no motor")
+    ),
     "<limit>": Known(frozenset(("lower", "upper", "effort", "velocity"))),
     "<mimic>": Known(frozenset(("joint", "multiplier", "offset"))),
     "<dynamics>": Known(frozenset(("damping", "friction"))),
@@ -134,7 +136,9 @@ class _UrdfReader:
             return None
         if kind not in _HINGES:
             hint = "only joints that turn are imported: if it turns, write `revolute`"
-            self.findings.lost(joint.place, f"the joint `{name}` is `{kind or 'of no type'}`", hint)
+            self.findings.lost(
+                joint.place, f"the joint `{name}` has {f'the type `{kind}`' if kind else 'no type'}", hint
+            )
             return None
         axis = next(joint.of("axis"), None)
         axis_here = self.numbers.vector(axis, "xyz", AXES["x"]) if axis is not None else AXES["x"]
@@ -162,7 +166,7 @@ class _UrdfReader:
             high = 0.0
         if low is not None and high is not None and low >= high:
             self.findings.lost(
-                limit.place, f"the limits {low:g} to {high:g} are empty", "write an `upper` above `lower`"
+                limit.place, f"the range from {low:g} to {high:g} is empty", "write an `upper` above `lower`"
             )
             low = high = None
         return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
@@ -174,7 +178,9 @@ class _UrdfReader:
             return "", True
         factor, offset = self.numbers.one(mimic, "multiplier"), self.numbers.one(mimic, "offset")
         if not mimic.get("joint"):
-            self.findings.lost(mimic.place, f"`{joint.get('name')}` follows no joint", 'write `<mimic joint="…"/>`')
+            self.findings.lost(
+                mimic.place, f"the `<mimic>` of `{joint.get('name')}` names no joint", 'write `<mimic joint="…"/>`'
+            )
         return mimic.get("joint"), factor in (None, 1.0) and offset in (None, 0.0)
 
 

@@ -23,7 +23,7 @@ _WAY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 
 class LeftOutError(Exception):
-    """An element has no counterpart; the message and the hint are for its author."""
+    """An element has no counterpart in Lumen; the message and the hint are for its author."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -37,7 +37,7 @@ class ScxmlActionReader:
         self.context, self.findings = context, findings
 
     def block(self, elements: Iterable[XmlElement]) -> list[ActionData]:
-        """The actions of these elements; what has no counterpart is reported and left out."""
+        """The actions of these elements; what has no counterpart in Lumen is reported and left out."""
         return [action for element in elements for action in self.actions(element)]
 
     def actions(self, element: XmlElement) -> Iterator[ActionData]:

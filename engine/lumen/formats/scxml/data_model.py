@@ -94,7 +94,9 @@ class ScxmlDataModel:
         first = {id(element) for element in _top_data(outline.scxml)}
         for element in (each for each in elements if id(each) not in first):
             hint = "in Lumen, all values exist from the beginning"
-            self.findings.lost(element.place, f'`binding="late"` of `{element.get("id")}` has no counterpart', hint)
+            self.findings.lost(
+                element.place, f'`binding="late"` of `{element.get("id")}` has no counterpart in Lumen', hint
+            )
 
     def _widen(self, outline: ScxmlStateTree) -> None:
         """Find the keys that are given values of another kind than their first."""

@@ -19,7 +19,7 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
     if "srcexpr" in element.attributes or not source:
         raise LeftOutError("a computed or inline chart is not carried over", "save the chart in its own file")
     if "idlocation" in element.attributes:
-        raise LeftOutError("`idlocation` has no counterpart", "write `id` instead")
+        raise LeftOutError("`idlocation` has no counterpart in Lumen", "write `id` instead")
     name = PurePosixPath(source).stem
     if not _NAME.fullmatch(name):
         raise LeftOutError(f"`{source}` can't be the name of a behaviour", "rename the file")

@@ -203,7 +203,7 @@ class _ScxmlReader:
                 data[key] = value
             else:
                 place = next(node.source.of(f"{{{LUMEN_NAMESPACE}}}state")).place
-                self.findings.lost(place, f"`{key}: {value}` of `<lumen:state>` has no counterpart")
+                self.findings.lost(place, f"`{key}: {value}` of `<lumen:state>` has no counterpart in Lumen")
         return data
 
     def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:
@@ -221,9 +221,9 @@ class _ScxmlReader:
                 continue
             for part in (e for e in element.of("finalize") if e.children):
                 hint = "do it in a transition on the event"
-                self.findings.lost(part.place, "`<finalize>` has no counterpart", hint)
+                self.findings.lost(part.place, "`<finalize>` has no counterpart in Lumen", hint)
             message = f"`<invoke>` of `{element.get('src')}` becomes the behaviour `{rows[-1]['behavior']}`"
-            hint = "import that file, too"
+            hint = "import that file too"
             if element.get("autoforward") != "true":
                 hint += '; the behaviour receives all events from outside, as with `autoforward="true"`'
             self.findings.changed(element.place, message, hint)
@@ -248,7 +248,7 @@ class _ScxmlReader:
     def _several(self, blocks: list[XmlElement]) -> None:
         for block in blocks[:-1]:
             if any(e.tag not in ("raise", "log", "cancel") for e in block.children):
-                hint = "if an action of the first fails, the second is skipped, too"
+                hint = "if an action of the first one fails, the second one is skipped too"
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:

@@ -60,7 +60,7 @@ class UnreadParts:
             element.children[:] = [child for child in element.children if self._is_read(element, child)]
         self._contradictions(element)
         if element.text.strip() and element.tag not in _TEXTS and not element.tag.startswith("{"):
-            self.findings.lost(element.place, f"the text in `<{element.tag}>` has no counterpart", "delete it")
+            self.findings.lost(element.place, f"the text in `<{element.tag}>` has no counterpart in Lumen", "delete it")
         for child in element.children if element.tag not in OPEN else ():
             self._element(child)
 
@@ -102,7 +102,7 @@ class UnreadParts:
             if element.tag not in ACTION_HOLDERS or child.tag in self.passive or local in MEANINGLESS_ELEMENTS:
                 self.notes.setdefault(child.tag, []).append(child)
             else:
-                self.findings.lost(child.place, f"`<{local}>` has no counterpart")
+                self.findings.lost(child.place, f"`<{local}>` has no counterpart in Lumen")
             return False
         known = ELEMENTS.get(shown, _NOTHING)
         losses = list(known.losses([name]))
@@ -164,7 +164,7 @@ def _lost(known: Known, shown: str, name: str, hint: str) -> tuple[str, str]:
     """The message and the hint: a known loss gives its reason, any other may be a slip."""
     if name in known.lost:
         return f"{shown}: {hint}", ""
-    return f"{shown} has no counterpart", hint
+    return f"{shown} has no counterpart in Lumen", hint
 
 
 def _has(element: XmlElement, name: str) -> bool:

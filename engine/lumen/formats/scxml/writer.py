@@ -116,7 +116,9 @@ class _ScxmlWriter:
         if state.output is not None:
             children += self._output(state)
         if state.kind is StateKind.FINAL and self._is_region(state):
-            message = f"`{state.name}`, a final state in a parallel one, becomes a state with an inner final state"
+            message = (
+                f"`{state.name}` is a final state in a parallel state: it becomes a state with an inner final state"
+            )
             self.report.changed(message, state.where)
             return XmlTag(
                 "state", attributes, [*self._blocks(state), XmlTag("final", {"id": f"{attributes['id']}._end"})]
@@ -212,7 +214,7 @@ class _ScxmlWriter:
             return {"lumen:hears": key, "cond": row_condition(key, guard)}
         condition = as_guard(transition)
         if condition is None:
-            raise ScriptError(f"`{row.way}` of phrases in an entry of a list has no counterpart")
+            raise ScriptError(f"`{row.way}` with phrases from a list entry has no counterpart in SCXML")
         self.report.changed(f"`{row.title}` becomes the guard `{condition.source}`", transition.where, LOST_ELSEWHERE)
         return {"cond": self.orders.expression(condition)}
 

@@ -36,7 +36,7 @@ class XStateInvokeReader:
             for key, message, hint in losses("invoke", row):
                 self.parts.lost((*where, key), message, hint)
             if not isinstance(row.get("id", ""), str):
-                self.parts.lost((*where, "id"), "`id` is not a text", "put it in quotes")
+                self.parts.lost((*where, "id"), "`id` is not a string", "put it in quotes")
             if invoked := self._invoked(own, where, row):
                 invokes.append({**invoked, **self._ends(state, where, row)})
             elif (steps := self._steps(row)) is not None and "do" not in data:

@@ -103,7 +103,7 @@ def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
         if name in known.lost:
             yield name, f"`{name}` {whose}: {hint}", ""
         else:
-            yield name, f"`{name}` {whose} has no counterpart", hint
+            yield name, f"`{name}` {whose} has no counterpart in Lumen", hint
 
 
 def is_version_4(machine: Mapping[str, Any]) -> bool:

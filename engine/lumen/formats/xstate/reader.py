@@ -131,7 +131,7 @@ class _XStateReader:
                 self.parts.changed(where, "`meta` is not carried over")
             elif key in ("output", "data") and kind != "final":
                 what = "a machine" if not state.parent else "a state that is not final"
-                self.parts.lost(where, f"{what} has no `{key}`", "give each of its final states an `output`")
+                self.parts.lost(where, f"{what} can't have `{key}`", "give each of its final states an `output`")
             elif key == "type" and value and value not in STATE_KINDS:
                 self.parts.lost(where, f"unknown type of state `{value}`", f"write one of {', '.join(STATE_KINDS)}")
             elif (key, value) in (("type", "atomic"), ("type", "final")) and kind not in ("atomic", "final"):
@@ -143,12 +143,14 @@ class _XStateReader:
             elif key == "history" and value not in (True, "shallow", "deep"):
                 self.parts.lost(where, f"`history` can't be `{value}`", 'write "shallow" or "deep"')
             elif key in ("id", "description") and not isinstance(value, str):
-                self.parts.lost(where, f"`{key}` is not a text", "put it in quotes")
+                self.parts.lost(where, f"`{key}` is not a string", "put it in quotes")
             elif key == "data" and kind == "final" and "output" in source:
                 self.parts.lost(where, "`data` beside `output` is left out", "delete one of them")
         for key, value in _lumen(state).items():
             if not self._is_own(state, key, value):
-                self.parts.lost((*state.where, "meta", "lumen", key), f"`{key}` of `meta.lumen` has no counterpart")
+                self.parts.lost(
+                    (*state.where, "meta", "lumen", key), f"`{key}` of `meta.lumen` has no counterpart in Lumen"
+                )
 
     def _is_own(self, state: XStateNode, key: str, value: Any) -> bool:
         """Whether a part of `meta.lumen` is one that Lumen writes there."""

@@ -139,7 +139,7 @@ class _XStateWriter:
         """Those that can be written: of a row of `hears` that asks for phrases of an entry, only what it finds."""
         for transition in found:
             if transition.hears and not key_of(transition.hears) and as_guard(transition) is None:
-                message = f"`{transition.hears.title}` is left out: phrases in an entry of a list can't be converted"
+                message = f"`{transition.hears.title}` is left out: phrases from a list entry can't be converted"
                 self.report.lost(message, transition.where)
             else:
                 yield transition
