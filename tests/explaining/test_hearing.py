@@ -277,10 +277,10 @@ def test_an_invoked_behaviour_that_listens_keeps_else_from_going() -> None:
     play = Play(host, quiz=quiz)
     play.happen("heard", {"result": "hm"})
     assert refused(play, "lost")["text"] == (
-        "playing → lost, hears else; heard came, a behaviour that it invokes also listens"
+        "playing → lost, hears else; heard came, a behaviour that this state invokes listens too"
     )
     line = IgnoredEvents().line(play.machine, play.steps[-1].step)
-    else_too = "hears else is false in playing (a behaviour that it invokes also listens)"
+    else_too = "hears else is false in playing (a behaviour that this state invokes listens too)"
     assert line == f"“hm” while no row of quiz/ask matches, and {else_too}"
 
 

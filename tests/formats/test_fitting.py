@@ -51,7 +51,8 @@ def test_an_ankle_goes_as_far_as_its_other_angle_lets_it() -> None:
     assert beyond_limits(motion, BODY) == []
     assert motion.tracks["LAnkleRoll"][0].angle < 0.1
     assert said(diagnostics) == [
-        "2:21 carried-over-differently `LAnkleRoll` can't reach 17.19 deg at the angle that `LAnklePitch` has then: "
+        "2:21 carried-over-differently `LAnkleRoll` can't reach 17.19 deg"
+        " at the angle that `LAnklePitch` has at that time: "
         f"it goes to {round(data['keyframes'][0]['joints']['LAnkleRoll'], 2):g} deg"
     ]
 

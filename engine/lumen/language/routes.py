@@ -11,13 +11,13 @@ IMAGE, JOINT, SONAR, TACTILE, BATTERY = "image", "joint", "sonar", "tactile", "b
 FACE, HEARD, COMMAND, STOP = "face", "heard", "command", "stop"
 
 MEANINGS: Mapping[str, str] = {
-    IMAGE: "what the robot's camera sees",
+    IMAGE: "the images of the robot's camera",
     JOINT: "the angles of its joints; without it `track` does not work",
-    SONAR: "how far away the nearest echoes are",
-    TACTILE: "which of its sensors are pressed",
-    BATTERY: "how full its battery is",
+    SONAR: "the distances of the nearest echoes",
+    TACTILE: "the touch sensors that are pressed",
+    BATTERY: "the charge of its battery",
     FACE: "the position of a visitor's face in the camera's image; simulated visitors appear on it",
-    HEARD: "what a visitor said or typed, or says in a story",
+    HEARD: "the words of a visitor: spoken, typed, or from a story",
     COMMAND: "commands from other modules to the robot",
     STOP: "commands to rest or to stop, on a separate route",
 }

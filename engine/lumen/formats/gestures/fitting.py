@@ -65,7 +65,7 @@ def _cut(points: list[CurvePoint], excess: Excess, body: Body, findings: Convers
         points.insert(i, CurvePoint(excess.key.time, excess.limit, near.place, near.straight))
     elif abs(points[i].angle - excess.value) < SAME_ANGLE:
         others = [coupled.on for coupled in body.coupled if coupled.joint == excess.joint]
-        beside = f" at the angle that `{others[0]}` has then" if others else ""
+        beside = f" at the angle that `{others[0]}` has at that time" if others else ""
         findings.changed(points[i].place, f"`{excess.joint}` can't reach {wanted}{beside}: it goes to {limit}")
         points[i] = points[i]._replace(angle=excess.limit, handle_in=(0.0, 0.0), handle_out=(0.0, 0.0))
     else:

@@ -170,7 +170,10 @@ class ScxmlActionReader:
             source = element.get(computed)
             read = constant(parse_script(source), _NOT_CONSTANT)
             if not isinstance(read, str | int | float) or isinstance(read, bool):
-                raise LeftOutError(f"`{computed}` of `<{element.tag}>` is computed: `{source}`", f"write `{name}`")
+                raise LeftOutError(
+                    f"`{computed}` of `<{element.tag}>` is computed, which is not supported: `{source}`",
+                    f"write `{name}`",
+                )
             return str(read)
         if not element.get(name) and not optional:
             raise LeftOutError(f"`<{element.tag}>` has no `{name}`")

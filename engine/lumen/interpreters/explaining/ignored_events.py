@@ -104,7 +104,7 @@ def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
         row = heard_row(machine, wanted, scope) if wanted.hears else None
         if row and row.fate != "guard":
             if row.fate != "not found":
-                why = "a behaviour that it invokes also listens" if row.fate == "taken" else row.why
+                why = "a behaviour that this state invokes listens too" if row.fate == "taken" else row.why
                 yield FalseGuard(state, Expression(row.row.title), {}, why)
         elif guard := wanted.guard:
             values = readings(guard.source, scope, guard.shown)

@@ -121,7 +121,7 @@ class TransitionRefusals:
             else "another transition was taken instead"
         )
         if row and not rival:
-            who = "a behaviour that it invokes also listens"
+            who = "a behaviour that this state invokes listens too"
         note = "" if change else "no other value of the event or the context was found that would select it"
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
@@ -227,7 +227,7 @@ def _standing_in(
 def _awaited(inner: Snapshot, transition: Transition) -> str:
     if transition.timed:
         timer = next((t for t in inner.timers if t.event == transition.event and t.state == transition.source), None)
-        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its timer is not running"
+        return f"its timer ends in {timer.due - inner.at:.1f} s" if timer else "its timer is not running"
     if transition.event.startswith("done."):
         return "it is not done yet"
     if transition.event.startswith("error."):
@@ -237,7 +237,7 @@ def _awaited(inner: Snapshot, transition: Transition) -> str:
 
 def _no_event(transition: Transition) -> str:
     if transition.timed:
-        return "other timers come first, or its guard is false then"
+        return "other timers end first, or its guard is false at that time"
     if transition.event.startswith(("done.", "error.")):
         return f"the behaviour itself causes its event: {awaited(transition)}"
     return "no data for that event was found that would select it"

@@ -22,7 +22,7 @@ from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
 from lumen.language.machines import Hears, MachineDefinition, Transition
 
-FAILURE_REASON = "it does not work"
+FAILURE_REASON = "a simulated failure"
 
 COMPARISONS = frozenset(("==", "!=", "<", "<=", ">", ">=", "in"))
 

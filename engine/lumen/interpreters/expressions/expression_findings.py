@@ -16,7 +16,7 @@ UNKNOWN_FIELD = Code(
 )
 UNKNOWN_STATE = Code("unknown-state", "references", ERROR, "the named state does not exist")
 EXPRESSION_SYNTAX = Code("expression-syntax", "expressions", ERROR, "an expression can't be read")
-TYPE_MISMATCH = Code("type-mismatch", "expressions", ERROR, "an expression combines values of types that do not fit")
+TYPE_MISMATCH = Code("type-mismatch", "expressions", ERROR, "an expression combines values of incompatible types")
 MISPLACED_DRAW = Code("misplaced-draw", "expressions", ERROR, "`shuffle` or `pick` is used outside `assign`")
 UNGUARDED_FIELD = Code(
     "unguarded-field", "expressions", ERROR, "an expression reads a field that some of its events do not have"
