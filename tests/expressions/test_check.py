@@ -138,14 +138,14 @@ def test_hints() -> None:
     assert hint("context.visitr").startswith("did you mean `visitor`? `context` has ")
     assert hint("visitor == 'a'").startswith("did you mean `context.visitor`?")
     assert hint("event.data.rsult").startswith("did you mean `result`?")
-    assert hint("event.data.date") == "guard it with has(event.data.date)"
+    assert hint("event.data.date") == "check it with `has(event.data.date)` first"
     assert hint("context.n == '3'") == "this is always false"
     assert hint("In('tlak')").startswith("did you mean `talk`?")
     assert hint("context.n ** 2") == "there is no operator for powers: multiply"
     assert hint("context.n // 2").startswith("to divide, write `/`")
     assert hint("context.n <> 2") == "write `!=`"
     assert hint("event?.data") == "check with `has(…)` first"
-    assert hint("context.größe").startswith("a field with such a letter is written in brackets")
+    assert hint("context.größe").startswith("write a field with such a letter in brackets")
 
 
 @for_each(
@@ -171,7 +171,7 @@ def test_a_field_of_some_events_has_its_own_message() -> None:
     finding = check_expression("event.data.x", context={}, events=EVENTS)[0]
     assert (finding.message, finding.hint) == (
         "not every event here has `event.data.x`",
-        "guard it with has(event.data.x)",
+        "check it with `has(event.data.x)` first",
     )
 
 

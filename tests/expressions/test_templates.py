@@ -41,7 +41,7 @@ def test_filled(text: str, filled: str) -> None:
         ("Hi {{ }}", 6, "there is no expression"),
         ("Hi {{ 1 + }}", 10, "ends too early"),
         ("Hi {{ 'a }}", 6, "this text is not closed"),
-        ("é {{ nam }}", 5, "nothing is called `nam`"),
+        ("é {{ nam }}", 5, "there is no name `nam`"),
         ("{{ “a” }}", 3, "has no meaning"),
         ("{{ 1 }} {{ 1 2 }}", 13, "`2` is not allowed here"),
     ],

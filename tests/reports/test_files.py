@@ -92,7 +92,7 @@ def assert_told(diagnostics: list[Diagnostic], expected: list[str]) -> None:
             "homoglyph.yaml",
             ["6:5 unknown-key | did you mean `onDone`? `о` is a different letter from `o`: U+043E"],
         ),
-        ("other-minus.motion.yaml", ["2:32 wrong-type | write `-0.5`: `−` is a different minus from `-`"]),
+        ("other-minus.motion.yaml", ["2:32 wrong-type | write `-0.5`: `−` is not the minus sign `-`"]),
         ("at-iso.yaml", ["4:10 bad-time | write `2026-12-24 18:00`"]),
     ],
 )
@@ -207,7 +207,7 @@ def test_an_alias_refers_to_the_nearest_anchor_above() -> None:
         ),
         (
             changed("say: Hello", 'say: "{{ context.n − 1 }}"', "context: {n: 1}\n"),
-            "6:29 expression-syntax | write `-`: `−` is a different minus",
+            "6:29 expression-syntax | write `-`: `−` is not the minus sign",
         ),
         (
             changed("say: Hello", 'say: "{{ context.n + １ }}"', "context: {n: 1}\n"),
@@ -223,7 +223,7 @@ def test_the_difference_between_look_alike_words_is_reported(content: bytes, exp
     ("value", "expected"),
     [
         ("０．５", "write `0.5`: `０` is a different digit from `0`: U+FF10"),
-        ("–0.5", "write `-0.5`: `–` is a different minus"),
+        ("–0.5", "write `-0.5`: `–` is not the minus sign"),
         ("−0,5", "write a point: -0.5"),
         ("٣", "write `3`: `٣` is a different digit from `3`"),
     ],

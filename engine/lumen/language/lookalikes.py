@@ -45,6 +45,6 @@ def _odd(text: str) -> Iterator[str]:
         elif sign.isdigit():
             yield f"`{sign}` is a different digit from `{meant}`: {code}"
         elif meant == "-":
-            yield f"`{sign}` is a different minus from `-`: {code}"
+            yield f"`{sign}` is not the minus sign `-`: {code}"
         else:
             yield f"`{sign}` is a different character from `{meant}`: {code}"

@@ -99,7 +99,7 @@ class Questions:
         if ANSWERS not in project.modules:
             return [_unanswered(id, now, NOBODY)]
         if self.silenced:
-            return [_unanswered(id, now, f"{NOBODY}: {self.silenced} has silenced the language model")]
+            return [_unanswered(id, now, f"{NOBODY}: {self.silenced} has switched off the language model")]
         offers = {} if "@" in id else self.offers()
         body = {
             "id": id, "question": asked.question, "language": asked.language, "robot": project.robot,
@@ -142,7 +142,7 @@ class Questions:
         for id, one in list(self._open.items()):
             if self.silenced:
                 del self._open[id]
-                events.append(_unanswered(id, now, f"{self.silenced} has silenced the language model"))
+                events.append(_unanswered(id, now, f"{self.silenced} has switched off the language model"))
             elif one.filler_at <= now:
                 self._open[id] = one._replace(filler_at=inf)
                 said = {"text": self._fillers.get(one.language, ""), "language": one.language, "source": "filler"}
@@ -156,7 +156,7 @@ class Questions:
         else:
             del self._open[id]
         if self.silenced:
-            return _unanswered(id, now, f"{self.silenced} has silenced the language model")
+            return _unanswered(id, now, f"{self.silenced} has switched off the language model")
         if "raise" in body:
             return self._raised(id, one.offers, body["raise"], now)
         if body.get("text"):

@@ -161,7 +161,7 @@ class _Checker:
             hint = f"write `{node.name}(…)`"
         else:
             hint += f"; put a text in quotes: '{node.name}'"
-        self.report(UNKNOWN_NAME, node, f"nothing is called `{node.name}`", hint)
+        self.report(UNKNOWN_NAME, node, f"there is no name `{node.name}`", hint)
         return ANY
 
     def event(self, known: KnownFacts) -> ValueType:
@@ -211,12 +211,12 @@ class _Checker:
             hint = did_you_mean(key, base.fields(), f"`{owner}` has")
             several = base.fields() and key in base.fields()
             message = f"not every event here has `{owner}.{key}`" if several else f"`{owner}` has no `{key}`"
-            hint = f"guard it with has({owner}.{key})" if several else hint
+            hint = f"check it with `has({owner}.{key})` first" if several else hint
             if path == ("event", key) and key not in ("data", "name"):
                 hint = f"the event's fields are in its data: `event.data.{key}`"
             self.report(UNKNOWN_FIELD, node, message, hint, start)
         else:
-            hint = f"guard it with has({owner}.{key})"
+            hint = f"check it with `has({owner}.{key})` first"
             self.report(UNGUARDED_FIELD, node, f"`{owner}.{key}` may be missing", hint, start)
 
     def binary(self, node: Binary, left: ValueType, right: ValueType) -> ValueType:

@@ -67,13 +67,13 @@ def read_header(line: bytes, name: str) -> JournalHeader:
         raise JournalError(f"{name} is not a journal, or its first line is incomplete: it can't be read") from None
     if version != JOURNAL_VERSION:
         raise JournalError(
-            f"{name} was written by another version of Lumen (its format is {version}, this version reads"
+            f"{name} was written by another version of Lumen (its format is {version}, but this version reads"
             f" {JOURNAL_VERSION}): replay it with that version"
         )
     if header.matcher > MATCHER:
         raise JournalError(
-            f"{name} was written by a later version of Lumen (its rules for sentences have version"
-            f" {header.matcher}, those of this version have {MATCHER}): replay it with that version"
+            f"{name} was written by a later version of Lumen (it uses version {header.matcher} of the rules for"
+            f" sentences, but this version has {MATCHER}): replay it with that version"
         )
     return header
 
