@@ -192,7 +192,7 @@ def test_a_do_that_has_not_come_so_far() -> None:
     near, far = why_not(play.steps, "two").reasons, why_not(play.steps, "three").reasons
     assert near[0].change == {"event": "done.command.d1"}
     assert far[0].note == "other actions come before it"
-    assert "it is at step 1 of 3: it waits for d1" in far[0].text
+    assert "is at step 1 of 3: it waits for d1" in far[0].text
 
 
 def test_a_chain_without_end_shows_both_ends() -> None:
@@ -208,7 +208,7 @@ def test_a_chain_without_end_shows_both_ends() -> None:
 
 
 def test_nothing_has_happened() -> None:
-    with pytest.raises(UsageError, match="the journal keeps nothing from that time"):
+    with pytest.raises(UsageError, match="the journal has no entries from that time"):
         why([])
-    with pytest.raises(UsageError, match="the journal keeps nothing from that time"):
+    with pytest.raises(UsageError, match="the journal has no entries from that time"):
         why_not([], "a")

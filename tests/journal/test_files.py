@@ -72,7 +72,7 @@ def test_a_damaged_byte_costs_what_follows_it() -> None:
     [
         (b'{"lumen-journal":2,"first":0,"run":"","bundle":"","began":0}\n', "version 2"),
         (b'{"lumen-journal":1,"first":0}\n', "is not a journal"),
-        (b'{"lumen-jour', "cut off in its first line"),
+        (b'{"lumen-jour', "its first line is incomplete"),
         (b"", "is not a journal"),
         (b"\xff\n", "is not a journal"),
     ],

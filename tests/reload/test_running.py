@@ -205,7 +205,7 @@ def test_a_language_that_is_gone_is_no_longer_spoken() -> None:
     exhibition, _ = running(project)
     exhibition.runtime.apply(project, exhibition.runtime.snapshot._replace(language="id"))
     plan = swap(exhibition, replace(project, languages=("nl", "en")))
-    assert plan.notes == ("language `id` is gone: the behaviour continues in `nl`",)
+    assert plan.notes == ("language `id` was removed: the behaviour continues in `nl`",)
     assert exhibition.runtime.snapshot.language == "nl"
     assert swap(exhibition, replace(project, languages=("en", "nl"))).notes == ()
     assert exhibition.runtime.snapshot.language == "nl"

@@ -93,5 +93,5 @@ def test_a_state_of_an_invoked_behaviour_is_entered_by_itself_alone(name: str) -
     quiz = {"initial": "ask", "states": {"ask": {"after": {"5s": "over"}}, "over": {"type": "final"}}}
     host: dict[str, Any] = {"states": {"playing": {"invoke": {"id": "game", "behavior": "quiz"}}}}
     machine = Machine.from_dict(host, "host", {"quiz": quiz})
-    with pytest.raises(UsageError, match=r"`ask` is a state of `quiz`, which `playing` invokes: .*; enter `playing`"):
+    with pytest.raises(UsageError, match=r"`ask` is a state of `quiz`, which `playing` invokes, .*: enter `playing`"):
         entered_directly(machine, initial(machine).snapshot, name, Event("operator.goto", at=1.0))

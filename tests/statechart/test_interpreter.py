@@ -142,7 +142,7 @@ def test_a_restored_interpreter_goes_on_with_its_do() -> None:
         ({"states": {"idle": None}}, "state `greet` is gone"),
         ({"states": {**TOUR["states"], "dance": None}}, "state `dance` is new"),  # type: ignore[dict-item]
         ({"context": {"visits": 0}, "types": {}}, "context key `visitor` is gone"),
-        ({"context": {"visits": 1, "visitor": None}}, "their content is not"),
+        ({"context": {"visits": 1, "visitor": None}}, "their content differs"),
     ],
 )
 def test_another_machines_snapshot_is_refused(change: dict[str, Any], difference: str) -> None:
@@ -164,7 +164,7 @@ def test_use_in_the_wrong_order_is_refused() -> None:
 def test_a_send_that_answers_itself_ends_in_an_error() -> None:
     it = Interpreter(Machine.from_dict({"states": {"a": {"on": {"go": {"actions": {"send": "go"}}}}}}))
     it.start()
-    with pytest.raises(LumenError, match="`go` is sent over and over"):
+    with pytest.raises(LumenError, match="`go` is sent repeatedly"):
         it.send("go")
 
 

@@ -159,7 +159,7 @@ def change(data: Any, path: tuple[Any, ...], value: Any) -> dict[str, Any]:
 @for_each(
     ("path", "value", "told"),
     [
-        (("version",), 2, "of version 2"),
+        (("version",), 2, "has version 2"),
         (("version",), ..., "lacks `version`"),
         (("machine", "hash"), 7, "`machine.hash` should be a string"),
         (("configuration",), ["on"], "only 0 of the 2 regions of `on`"),
