@@ -156,7 +156,7 @@ def test_a_centre_that_was_replaced_orders_nothing_more() -> None:
     world.keep(take_over(replace(old, centre="two"), world.heard))
     until(world, lambda: all(robot.followed.centre == "two" for robot in world.robots.values()))
     until(world, lambda: all(row.presence.term == 2 for row in world.heard.values()))
-    assert "was replaced" in step(old, world.fleet, world.heard, world.now).overruled
+    assert "replaced this centre" in step(old, world.fleet, world.heard, world.now).overruled
 
 
 def test_a_paused_rollout_waits_and_goes_on() -> None:
@@ -191,7 +191,7 @@ def test_where_one_would_refuse_it_a_person_decides() -> None:
     world.robots["h0/nao3"].refuses = frozenset((NEW,))
     world.roll(NEW)
     until(world, lambda: state_of(world) == PERSON)
-    assert world.centre.rollout.reason == "1 of 20 would refuse it: h0/nao3 (a:1: b)"
+    assert world.centre.rollout.reason == "1 of 20 robots would refuse it: h0/nao3 (a:1: b)"
     assert world.on(NEW) == 0
     world.approve()
     until(world, lambda: world.on(NEW) == 2)

@@ -67,7 +67,7 @@ def read_header(line: bytes, name: str) -> JournalHeader:
         raise JournalError(f"{name} is not a journal, or its first line is incomplete: it can't be read") from None
     if version != JOURNAL_VERSION:
         raise JournalError(
-            f"{name} was written by another version of Lumen (its format is {version}, but this version reads"
+            f"{name} was written by another version of Lumen (the journal has version {version}, but this Lumen reads"
             f" {JOURNAL_VERSION}): replay it with that version"
         )
     if header.matcher > MATCHER:
