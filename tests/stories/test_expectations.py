@@ -40,9 +40,18 @@ def test_a_message_is_known_by_a_part_of_its_body(story: Write, body: str) -> No
         ("{said: goodbye}", "expected to hear “goodbye” within 30 s, but it said “Hello, Ani!”"),
         ("{said_exactly: hello}", "expected to hear exactly “hello” within 30 s, but it said “Hello, Ani!”"),
         ("{played: dance}", "expected the motion `dance` within 30 s, but it played `goodbye`"),
-        ("{published: fact}", "a message on `fact` within 30 s, but it sent {'who': 'Ani', 'at': 9, 'times': [1, 2]} on `journal`"),
-        ("{published: {route: journal, body: {who: Budi}}}", "a message on `journal` with {'who': 'Budi'} within 30 s, but it"),
-        ("{published: {route: journal, body: {times: [1]}}}", "a message on `journal` with {'times': [1]} within 30 s, but it"),
+        (
+            "{published: fact}",
+            "a message on `fact` within 30 s, but it sent {'who': 'Ani', 'at': 9, 'times': [1, 2]} on `journal`",
+        ),
+        (
+            "{published: {route: journal, body: {who: Budi}}}",
+            "a message on `journal` with {'who': 'Budi'} within 30 s, but it",
+        ),
+        (
+            "{published: {route: journal, body: {times: [1]}}}",
+            "a message on `journal` with {'times': [1]} within 30 s, but it",
+        ),
         ("{context: {opened: 2}, within: 3s}", "expected opened = 2 within 3 s, but it is 1"),
     ],
 )

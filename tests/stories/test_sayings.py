@@ -117,7 +117,7 @@ def test_programs_get_all_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[
         (Saying("guide", "bye", "else", "en", "hello"), "no row matches it, but `else` should"),
         (
             Saying("guide", "ask_name", "my_name", "en", "hm"),
-            "`else` matches it, but `my_name` should; the guard `context.tries < 2` of `else` is true for the first"
+            "`else` matches it, but `my_name` should; the guard `context.tries < 2` of `else` is true with the initial"
             " values of the context",
         ),
         (Saying("guide", "choice", "tour_of", "en", "exhibit one", {"exhibits": "clock"}),
