@@ -1,11 +1,16 @@
 """The schemas themselves, and what is left of a document after its broken nodes are taken out."""
 
 import json
+from collections.abc import Iterator
 from typing import Any
 
 import jsonschema
+import pytest
 
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.loading import misindented, schema
+from lumen.loading.complaints import Complaint
+from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
 from lumen.loading.project_folders import FILE_KINDS
@@ -120,3 +125,33 @@ def test_more_keys_than_are_allowed_are_counted() -> None:
     assert [d.message for d in report.diagnostics if "51" in d.message] == [
         "`sways` has 51 keys, but should have at most 50"
     ]
+
+
+@for_each(
+    "states",
+    [
+        "".join(f"  s{i}:\n    on: {{go: s0}}\n    gaurds: {i}\n" for i in range(1_700)),
+        "".join(f"  s{i}:\n    on:\n      go: s0\n      after: {{9s: s0}}\n" for i in range(1_700)),
+        "  s0:\n    on: {go: s1}\n  after: {3s: s1}\n  s1:\n" + 5_000 * "    # a comment of thirty letters\n",
+    ],
+    ids=lambda states: states[:50],
+)
+def test_a_large_file_is_read_again_for_few_moves_of_its_lines(states: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[str] = []
+    sought: list[Complaint] = []
+    moves = misindented._moves
+
+    def read(text: str) -> Document | None:
+        tried.append(text)
+        return read_text(text)
+
+    def seek(complaint: Complaint, *of: Any) -> Iterator[Any]:
+        sought.append(complaint)
+        return moves(complaint, *of)
+
+    monkeypatch.setattr(schema, "read_text", read)
+    monkeypatch.setattr(misindented, "_moves", seek)
+    check(f"states:\n{states}")
+    assert sum(map(len, tried)) <= misindented.MAX_CHARACTERS
+    assert len(sought) <= misindented.MAX_COMPLAINTS
+    assert sought

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 from lumen.loading.slips import Slip
 
@@ -46,8 +47,21 @@ def holder(lines: Sequence[str], row: int, depth: int) -> str:
     return ""
 
 
-def move_hint(lines: Sequence[str], rows: Sequence[int], shift: int) -> str:
-    """Say by how much to indent the lines of these indices, and what holds them then."""
+class Move(NamedTuple):
+    """The lines of these indices, and by how many spaces they move in (or out, if negative)."""
+
+    rows: Sequence[int]
+    shift: int
+
+
+def move_hint(lines: Sequence[str], move: Move, *others: Move) -> str:
+    """Return which lines to indent, by how much, and what holds them then; `others` are alternatives."""
+    hint = _move_hint(lines, *move)
+    what = hint.partition(" by ")[0]
+    return ", or ".join((hint, *(_move_hint(lines, *other).removeprefix(f"{what} ") for other in others)))
+
+
+def _move_hint(lines: Sequence[str], rows: Sequence[int], shift: int) -> str:
     first, much = lines[rows[0]], abs(shift)
     count = "1 space" if much == 1 else f"{much} spaces"
     amount = f"{count.replace(' ', ' more ')}" if shift > 0 else count.replace(" ", " fewer " if much > 1 else " less ")
@@ -139,7 +153,7 @@ def _moved(lines: Sequence[str], index: int, known: Sequence[int]) -> Iterator[S
         way = "not indented far enough" if depth > here else "indented too far"
         message = f"this line is {way}: it begins in column {here + 1}, but the lines next to it in column {depth + 1}"
         for part in ([index], block) if depth < inner else (block,):
-            hint = move_hint(lines, part, depth - here)
+            hint = move_hint(lines, Move(part, depth - here))
             meant = {j: shifted(lines[j], depth - here) for j in part}
             yield Slip(index + 1, 1, max(here, 1), message, hint, meant, only_whole=True)
 

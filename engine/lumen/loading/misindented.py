@@ -2,7 +2,8 @@
 
 A key one level too far out is a key of something else, where it may mean nothing, or another thing: `onDone` among
 the states is a state. The schema's own words for that would mislead. So blocks near a finding are moved, and if all
-that goes wrong after a move also went wrong before it, and less goes wrong, the indentation was the mistake.
+that goes wrong after a move also went wrong before it, and less goes wrong, the indentation was the mistake. Of the
+moves that mend the most the shortest one is the hint; if two are equally short, in and out, the hint names both.
 """
 
 import re
@@ -14,13 +15,16 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint
 from lumen.loading.document import Document
-from lumen.loading.indentation import holder, indent, is_content, move_hint, shifted
+from lumen.loading.indentation import Move, holder, indent, is_content, move_hint, shifted
 
 MAX_TRIES = 12
 """Moves that are tried in one file."""
 
-MAX_CHARACTERS = 400_000
-"""Characters that are read in all to try moves."""
+MAX_COMPLAINTS = 24
+"""Complaints of one file for which moves are sought: each takes a walk up the lines."""
+
+MAX_CHARACTERS = 300_000
+"""Characters of all trials of one file together: they take less than a second of processor time, in an editor too."""
 
 MAX_LEVELS = 3
 """Levels by which a block may be too far in, or out."""
@@ -33,13 +37,6 @@ CheckedAgain = Callable[[str], list[Complaint] | None]
 
 
 _What = tuple[str, str, str]
-
-
-class _Move(NamedTuple):
-    """The lines of these indices, and by how many spaces they move in (or out, if negative)."""
-
-    rows: tuple[int, ...]
-    shift: int
 
 
 class KeyNames(NamedTuple):
@@ -82,38 +79,51 @@ def misindented(
 ) -> Mapping[Complaint, str]:
     """The complaints that come from a wrong depth: the one to report has the hint, those that follow from it none."""
     lines, before = lines_of(document.text), Counter(map(_what, found))
-    if not document.spans or len(document.text) > MAX_CHARACTERS:
+    if not document.spans:
         return {}
     complained = {row for complaint in found for row in _rows(complaint, document, lines)}
     solved: dict[Complaint, str] = {}
-    tried: set[_Move] = set()
+    tried: set[Move] = set()
+    tries = min(MAX_TRIES, MAX_CHARACTERS // len(document.text))
+    sought = 0
     for complaint in found:
+        if len(tried) >= tries or sought >= MAX_COMPLAINTS:
+            break
         if complaint in solved or complaint.suggestion or complaint.code not in _CODES:
             continue
-        best, gone = None, Counter[_What]()
+        sought += 1
+        best, gone, rest = list[Move](), Counter[_What](), before
         for move in _moves(complaint, document, lines, names, complained):
-            if len(tried) >= MAX_TRIES or len(tried) * len(document.text) > MAX_CHARACTERS:
+            if len(tried) >= tries or (not rest and not _is_opposite(move, best[0])):
                 break
             if move in tried:
                 continue
             tried.add(move)
-            mended = [shifted(line, move.shift) if i in move.rows else line for i, line in enumerate(lines)]
+            mended = list(lines)
+            for row in move.rows:
+                mended[row] = shifted(lines[row], move.shift)
             after = judge("\n".join(mended))
             if after is None or (left := Counter(map(_what, after))) - before:
                 continue
             less = before - left
             if less[_what(complaint)] and less.total() > gone.total():
-                best, gone = move, less
-            if not left:
+                best, gone, rest = [move], less, left
+            elif best and less == gone and _is_opposite(move, best[0]):
+                best.append(move)
                 break
         those = [c for c in found if c not in solved and gone[_what(c)] > 0]
         if best and those:
             solved |= dict.fromkeys(those, "")
-            solved[_first(those, best, document, lines)] = move_hint(lines, best.rows, best.shift)
+            solved[_first(those, best[0], document, lines)] = move_hint(lines, *best)
     return solved
 
 
-def _first(those: Sequence[Complaint], move: _Move, document: Document, lines: Sequence[str]) -> Complaint:
+def _is_opposite(move: Move, other: Move) -> bool:
+    """Whether both move the same line by as many spaces, one in and one out."""
+    return move.rows[0] == other.rows[0] and move.shift == -other.shift
+
+
+def _first(those: Sequence[Complaint], move: Move, document: Document, lines: Sequence[str]) -> Complaint:
     """The complaint to report of those that a move solves: about an empty key, else about the line that moves."""
     empty = (c for c in those if _is_empty(c, document))
     missing = (c for c in those if c.missing)
@@ -151,7 +161,7 @@ def _rows(complaint: Complaint, document: Document, lines: Sequence[str]) -> lis
 
 def _moves(
     complaint: Complaint, document: Document, lines: Sequence[str], names: KeyNames, complained: set[int]
-) -> Iterator[_Move]:
+) -> Iterator[Move]:
     """The moves that may solve a complaint, the likeliest first."""
     rows = _rows(complaint, document, lines)
     empty = bool(rows) and _is_empty(complaint, document)
@@ -171,7 +181,7 @@ def _moves(
             if not _is_sensible(lines, row, depth, names, empty, complaint.path[-1:]):
                 continue
             for part in dict.fromkeys((group, block, tuple(range(row, cut)), (row,))):
-                yield _Move(part, depth - indent(lines[row]))
+                yield Move(part, depth - indent(lines[row]))
 
 
 def _block(lines: Sequence[str], row: int) -> tuple[int, ...]:
@@ -203,11 +213,11 @@ def _group(lines: Sequence[str], row: int, complained: set[int]) -> tuple[int, .
 
 
 def _depths(lines: Sequence[str], row: int) -> list[int]:
-    """The depths at which that line might have been meant to be, the nearest first."""
+    """The depths that may have been meant for that line, the nearest first; of two equally near the inner one."""
     here, inner, outer = indent(lines[row]), set[int](), set[int]()
     lowest = here
     for i in range(row - 1, -1, -1):
-        if not is_content(lines[i]):
+        if (here > lowest <= indent(lines[i])) or not is_content(lines[i]):
             continue
         depth, item = _starts(lines[i])
         bare = lines[i].rstrip().endswith(":") and depth + item <= here
@@ -220,7 +230,8 @@ def _depths(lines: Sequence[str], row: int) -> list[int]:
             inner |= {d for d in found if d > here}
         if lowest == 0 and depth == 0 and here > 0:
             break
-    return [*sorted(inner)[:MAX_LEVELS], *sorted(outer, reverse=True)[:MAX_LEVELS]]
+    levels = [*sorted(inner)[:MAX_LEVELS], *sorted(outer, reverse=True)[:MAX_LEVELS]]
+    return sorted(levels, key=lambda depth: abs(depth - here))
 
 
 def _starts(line: str) -> tuple[int, int]:

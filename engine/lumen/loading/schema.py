@@ -110,7 +110,9 @@ def _key_names(kind: str) -> KeyNames:
 def _judged(kind: str, text: str) -> list[Complaint] | None:
     """What the schema of that kind refuses in a text; None if it is not YAML."""
     document = read_text(text)
-    return list(_complaints(_schema(kind), document.data)) if document else None
+    if not document:
+        return None
+    return [] if _schema(kind).fits(document.data) else list(_complaints(_schema(kind), document.data))
 
 
 def _judge(
