@@ -63,6 +63,14 @@ def shipped_models() -> tuple[str, ...]:
     )
 
 
+def shipped_names(folder: str) -> tuple[str, ...]:
+    """The names that a project may use without a file of its own in that folder."""
+    if folder == MESSAGES:
+        files = (Path(file) for file in shipped())
+        return tuple(file.name.removesuffix(SCHEMA_SUFFIX) for file in files if file.parent == Path(MESSAGES))
+    return shipped_models() if folder == MODELS else ()
+
+
 @cache
 def shipped() -> Mapping[str, Path]:
     """All files that may be lent: what a project writes leads to no other."""

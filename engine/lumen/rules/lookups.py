@@ -8,7 +8,7 @@ from lumen.loading.bodies import UNKNOWN_MODEL
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.keyframes import UNKNOWN_MOTION
-from lumen.loading.lending import shipped_models
+from lumen.loading.lending import shipped_names
 from lumen.loading.linking import UNKNOWN_BEHAVIOR
 from lumen.loading.misnamed import misnamed_for
 
@@ -66,19 +66,21 @@ class References:
         names = self._names.get(folder, frozenset())
         if name in names:
             return True
+        word = name.rpartition("/")[2].removesuffix(".yaml")
+        lent = "" if nearest(word, names) else nearest(word, shipped_names(folder))
+        mean_lent = f"did you mean `{lent}`, which comes with Lumen? " if lent else ""
         there = misnamed_for(self._root, folder, name) if self._root else None
         if there:
             hint, cause = f"rename {there.there} to {there.meant}", f"{kind} {name}"
             report(code, path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
         elif names:
-            hint = did_you_mean(name.rpartition("/")[2].removesuffix(".yaml"), names, f"{folder}/ has")
+            hint = mean_lent + did_you_mean(word, names, f"{folder}/ has")
             cause = f"{kind} {name}"
             report(code, path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
         elif folder not in self._missing:
             self._missing.add(folder)
             hint = f"create the folder {folder}/ and put the file into it"
-            if kind == "model" and (near := nearest(name, shipped_models())):
-                hint = f"did you mean `{near}`, which comes with Lumen? Otherwise {hint}"
+            hint = f"{mean_lent}Otherwise {hint}" if lent else hint
             message = f"there is no {what} `{name}`: {folder}/ is missing or empty"
             report(MISSING_FOLDER, path, message, hint, key=key)
         return False
