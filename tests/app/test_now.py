@@ -11,9 +11,12 @@ import pytest
 import lumen
 from lumen.app.asking import operator_key
 from lumen.app.exhibition import Exhibition
+from lumen.app.raised_events import person_in
 from lumen.bus import Bus, connect
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.events import Event
+from lumen.ports import Message
+from tests.tables import for_each
 from tests.waiting import until
 
 ANSWERS = "test.answers"
@@ -125,7 +128,7 @@ def mine(tmp_path: Path) -> Path:
 
 
 def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path) -> None:
-    bus = connect("memory://")
+    bus = connect("memory://", sender="panel")
     with lumen.open(mine, bus=bus) as exhibition:
         ask = asker(exhibition, bus)
         before = ask("now")
@@ -138,13 +141,21 @@ def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path
         until(lambda: ask("now")["position"] > before["position"])  # it is kept on another thread
         assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": False}
         assert ask("event", event="back") == {"verdict": "done", "taken": True}
-        assert exhibition.why("waiting")["chain"][-1]["text"] == "an operator"
+        assert exhibition.why("waiting")["chain"][-1]["text"] == "panel"
         closed = next(way for way in ask("now")["ways"] if way["event"] == "next")
         assert (closed["open"], closed["why"]) == (False, "context.n < 1 is false: context.n is 1")
         assert ask("event", event="named", data={"name": "Budi"}, by="Aisyah")["taken"]
         assert exhibition.context["who"] == "Budi"
         last = exhibition.why("shown")["chain"][-1]
         assert (last["kind"], last["text"]) == ("person", "Aisyah")
+
+
+@for_each(
+    "body,sender,named",
+    [({"by": "Aisyah"}, "eyes", "Aisyah"), ({}, "eyes", "eyes"), ({"by": ""}, "", "a program on the bus")],
+)
+def test_who_asks_is_the_named_person_else_the_program(body: dict[str, str], sender: str, named: str) -> None:
+    assert person_in(Message("lumen.operator", body, sender=sender)) == named
 
 
 def test_the_data_of_an_event_is_as_declared_or_refused_with_what_would_be_right(mine: Path) -> None:

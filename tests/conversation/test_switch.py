@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lumen.app.model_switch import SILENCED_FILE, ModelSwitch
+from lumen.app.model_switch import SILENCED_FILE, UNREADABLE, ModelSwitch
 from lumen.bus import connect
 from lumen.console.orders import order_of
 from lumen.console.robot_keys import RobotKeys
@@ -37,7 +37,9 @@ def test_it_outlasts_a_restart(project: Project, tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["", "[]", "{", "{}", '{"by": 5}'])
 def test_what_can_not_be_read_is_no_reason_to_speak(project: Project, tmp_path: Path, text: str) -> None:
     (tmp_path / SILENCED_FILE).write_text(text)
-    assert switch(with_model(project, "http://127.0.0.1:9/"), tmp_path, [])[0].state == "off"
+    made, questions = switch(with_model(project, "http://127.0.0.1:9/"), tmp_path, [])
+    assert made.state == "off"
+    assert questions.silenced == ("5" if "5" in text else UNREADABLE)
 
 
 def test_where_it_can_not_be_kept_that_is_said(project: Project, tmp_path: Path) -> None:

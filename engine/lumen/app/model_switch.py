@@ -12,6 +12,7 @@ from lumen.runtime.home import Home
 from lumen.runtime.questions import Questions
 
 SILENCED_FILE = "model-silenced.json"
+UNREADABLE = f"a person whom {SILENCED_FILE} does not name"
 
 
 class ModelSwitch:
@@ -31,7 +32,7 @@ class ModelSwitch:
         self._home = Home(folder)
         if (folder / SILENCED_FILE).exists():  # also where nobody can read who it was
             found = self._home.read_json(SILENCED_FILE)
-            self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or "an operator"))
+            self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or UNREADABLE))
 
     @property
     def state(self) -> str | None:
@@ -44,7 +45,7 @@ class ModelSwitch:
         """Let it speak, or not; the answer for who asked."""
         if self.state is None:
             return refusal("this exhibition has no language model: lumen.yaml has no module `answers`")
-        self._questions.silence("" if on else by or "an operator")
+        self._questions.silence("" if on else by)
         self._record({"model": self.state, "by": by})
         why = ""
         if self._home and on:

@@ -6,13 +6,12 @@ from typing import Any, NamedTuple
 from lumen.app.event_data import EventData
 from lumen.interpreters.explaining.pressing import pressed, takes
 from lumen.interpreters.statechart import Step
-from lumen.language.causes import Cause
+from lumen.language.causes import UNNAMED_PROGRAM, Cause
 from lumen.language.events import Event
 from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Message
 from lumen.runtime.loop import BehaviorLoop, Observer
 
-SOMEBODY = "an operator"
 MAX_NAME = 100
 """Characters of the name of an event, and of a person."""
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
@@ -21,10 +20,9 @@ _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
 Reply = Callable[[Message, Mapping[str, Any]], None]
 
 
-def person_in(body: Mapping[str, Any]) -> str:
-    """Who asks, as far as that is said."""
-    by = body.get("by")
-    return str(by)[:MAX_NAME] if by else SOMEBODY
+def person_in(message: Message) -> str:
+    """Return the person that the message names in `by`, else the program that sent it."""
+    return str(message.body.get("by") or message.sender or UNNAMED_PROGRAM)[:MAX_NAME]
 
 
 def refusal(reason: str) -> dict[str, Any]:
@@ -53,7 +51,7 @@ class RaisedEvents(Observer):
             case {"ask": "press", "button": str(label)}:
                 loop = self._loop
                 machine, snapshot = loop.project.machine, loop.runtime.snapshot
-                found = pressed(machine, snapshot, label[:MAX_NAME], now, person_in(message.body))
+                found = pressed(machine, snapshot, label[:MAX_NAME], now, person_in(message))
                 if isinstance(found, str):
                     self._reply(message, refusal(found))
                 else:
@@ -62,7 +60,7 @@ class RaisedEvents(Observer):
                 if name.startswith(_INTERNAL):
                     self._reply(message, refusal(f"`{name}` is an internal event: only robots send it"))
                     return
-                cause = Cause("person", message.id, sender=person_in(message.body))
+                cause = Cause("person", message.id, sender=person_in(message))
                 data = more.get("data")
                 self._let(message, Event(name, {} if data is None else data, now, cause=cause))
             case {"ask": "press"}:

@@ -40,5 +40,7 @@ PROGRAM, TERMINAL, VISITOR, OPERATOR = "the program", "a terminal", "the visitor
 """Senders that are no part of an exhibition: who opened it in Python, who types commands, who stands before it, and
 who runs it.
 """
+UNNAMED_PROGRAM = "a program on the bus"
+"""The sender of a message that names neither a person nor a program."""
 PEOPLE = frozenset((TERMINAL, VISITOR, OPERATOR))
 """Senders behind whose messages stands a person."""

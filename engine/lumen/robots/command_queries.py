@@ -4,13 +4,12 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
+from lumen.language.causes import UNNAMED_PROGRAM
 from lumen.ports import Message, Robot
 from lumen.robots.command_codec import method_of, own_id
 from lumen.robots.command_parameters import shown
 from lumen.robots.command_reports import CANCELLED, UNKNOWN_COMMAND, CommandRecord, CommandReports
 from lumen.robots.person_hold import PersonHold
-
-SOMEBODY = "a program on the bus"
 
 _log = logging.getLogger(__name__)
 
@@ -49,7 +48,7 @@ class CommandQueries:
         """In the name of who is `by` it."""
         parameter = message.body.get("parameter")
         by = parameter.get("by") if isinstance(parameter, dict) else None
-        self._resume(shown(by) if isinstance(by, str) and by else SOMEBODY)
+        self._resume(shown(by) if isinstance(by, str) and by else UNNAMED_PROGRAM)
         self._reply(message, "command finished")
 
     def _ask(self, message: Message, method: str) -> None:

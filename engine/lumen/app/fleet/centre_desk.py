@@ -13,6 +13,7 @@ from lumen.errors import BusError, UsageError
 from lumen.interpreters.fleet.conditions import condition_faults
 from lumen.interpreters.fleet.rollout import abort, begin, decide, take_over
 from lumen.interpreters.fleet.state import GOING, PAUSED
+from lumen.language.causes import UNNAMED_PROGRAM
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.fleet import RolloutPlan, step_target
 from lumen.ports import Bus, Message
@@ -47,7 +48,7 @@ class CentreDesk:
     def answer(self, body: Any, now: float) -> dict[str, Any]:
         """What is told of a request. Raises UsageError or ValueError, saying why not."""
         centre, state = self._centre, self._centre.state
-        by = str(body.get("by", "an operator"))[:80] if isinstance(body, Mapping) else ""
+        by = str(body.get("by") or UNNAMED_PROGRAM)[:80] if isinstance(body, Mapping) else ""
         match body:
             case {"ask": "status"}:
                 return centre.overview()

@@ -135,8 +135,8 @@ class OperatorPart(Part, Observer):
                     self._answering.answer(message, partial(forked, self._journal, running, message.body))
                 case {"ask": "event" | "press"}:
                     self._raising.happen(message, now)
-                case body:
-                    self._reply(message, self._answer(body, now))
+                case _:
+                    self._reply(message, self._answer(message, now))
 
     def close(self) -> None:
         self._undo()
@@ -190,33 +190,34 @@ class OperatorPart(Part, Observer):
         with suppress(BusError):  # who asked is gone
             self._bus.reply(message, answer)
 
-    def _answer(self, body: Any, now: float) -> dict[str, Any]:
-        match body:
+    def _answer(self, message: Message, now: float) -> dict[str, Any]:
+        by = person_in(message) if isinstance(message.body, dict) else ""
+        match body := message.body:
             case {"ask": "status"}:
                 return self.status()
             case {"ask": "mark"}:
                 kept = self.marking()
-                self._note(body, "mark")
+                self._note(body, by, "mark")
                 return {"verdict": "done", "text": kept or f"in the journal; {NOTHING_RECORDED}"}
             case {"ask": "note", "text": str()}:
-                self._note(body, "note")
+                self._note(body, by, "note")
                 return {"verdict": "done"}
             case {"ask": "approve", "id": str(id), "go": bool(go)}:
-                return self._decisions.approve(id, person_in(body), go=go)
+                return self._decisions.approve(id, by, go=go)
             case {"ask": "autonomy", "level": "ask" | "alone" as level}:
-                return self._decisions.autonomy(level, person_in(body))
+                return self._decisions.autonomy(level, by)
             case {"ask": "model", "on": bool(on)}:
-                return self.model.switch(person_in(body), on=on)
+                return self.model.switch(by, on=on)
             case {"ask": "goto", "state": str(state)}:
-                return self._goto(state[:200], person_in(body), now, only=body.get("only") == "check")
+                return self._goto(state[:200], by, now, only=body.get("only") == "check")
             case _:
                 return refusal(f"the request is not valid: send {REQUESTS}")
 
-    def _note(self, body: Mapping[str, Any], what: str) -> None:
-        """Keep somebody's words in the journal."""
+    def _note(self, body: Mapping[str, Any], by: str, what: str) -> None:
+        """Keep the words of a person or a program in the journal."""
         text = body.get("text")
         words = text[:MAX_NOTE] if isinstance(text, str) else ""
-        self._behavior.loop.runtime.note(**{what: words, "by": person_in(body)})
+        self._behavior.loop.runtime.note(**{what: words, "by": by})
 
     def _goto(self, state: str, by: str, now: float, *, only: bool) -> dict[str, Any]:
         """Enter a state; with `only` say what that would leave and enter."""
