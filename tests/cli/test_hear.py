@@ -18,7 +18,8 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_row_of_a_state_is_explained(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["hear", "Please don't sing", "--state", "choice", "--project", str(root)]
     assert main(words) == 0
-    out = capsys.readouterr().out
+    out, err = capsys.readouterr()
+    assert err == ""
     assert out.splitlines()[0] == "choice"
     rows = [" ".join(line.split()) for line in out.splitlines()[2:-1]]
     assert rows[:4] == [
@@ -34,7 +35,10 @@ def test_every_row_of_a_state_is_explained(root: Path, capsys: pytest.CaptureFix
 
 def test_without_a_state_every_state_that_hears_is_asked(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["hear", "show me the organ", "--project", str(root)]) == 0
-    blocks = capsys.readouterr().out.split("\n\n")
+    out, err = capsys.readouterr()
+    assert err.startswith("each of the 5 states that hear in `guide`")
+    assert "--state STATE shows one" in err
+    blocks = out.split("\n\n")
     assert [block.split("\n")[0] for block in blocks] == ["ask_name", "offer", "choice", "offer.quiet", "quiz.ask"]
     assert "`tour_of` is taken and leads to `choice`\n    exhibits: pipe organ" in blocks[2]
     assert "dance" not in blocks[2]
@@ -44,7 +48,9 @@ def test_without_a_state_every_state_that_hears_is_asked(root: Path, capsys: pyt
 def test_it_ends_with_1_if_no_row_is_taken(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (root / "behaviors" / "deaf.yaml").write_text("states: {a: {hears: {greeting: a}}}\nwords: common\n", "utf-8")
     assert main(["hear", "a chair", "--behavior", "deaf", "--project", str(root)]) == 1
-    assert capsys.readouterr().out == "a\n  no row is taken\n"
+    out, err = capsys.readouterr()
+    assert out == "a\n  no row is taken\n"
+    assert err.startswith("the only state that hears in `deaf`")
     assert main(["hear", "Hello!", "--behavior", "deaf", "--project", str(root)]) == 0
 
 

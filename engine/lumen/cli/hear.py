@@ -1,6 +1,7 @@
 """`lumen hear TEXT`: what a sentence does in a state, row by row."""
 
 import argparse
+import sys
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -62,6 +63,8 @@ def run(options: argparse.Namespace) -> int:
         print_object({"text": options.text, "language": language, "states": states})
     else:
         whole = bool(options.state)
+        if not whole:
+            print(_without_a_state(machine, len(found)), file=sys.stderr)
         print("\n\n".join("\n".join(_lines(machine, path, one, whole)) for path, one in found.items()))
     return int(not any(sentence.taken for sentence in found.values()))
 
@@ -90,6 +93,11 @@ def _paths(machine: MachineDefinition, state: str | None) -> list[str]:
     if not rows_around(machine, path):
         raise UsageError(f"neither `{state}` nor a state around it has `hears`: {did_you_mean('', names, 'choose')}")
     return [path]
+
+
+def _without_a_state(machine: MachineDefinition, count: int) -> str:
+    shown = "the only state that hears" if count == 1 else f"each of the {count} states that hear"
+    return f"{shown} in `{machine.id}`, whichever is active in a run; --state STATE shows one, with all its rows"
 
 
 def _lines(machine: MachineDefinition, path: str, sentence: ExplainedSentence, whole: bool) -> Iterator[str]:
