@@ -6,6 +6,7 @@ hall: the ratio is what counts. A sentence is understood if the same phrases and
 as in its text; what is false is a phrase heard in talk about something else.
 """
 
+import argparse
 import re
 import time
 from collections.abc import Mapping, Sequence
@@ -130,4 +131,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     main()

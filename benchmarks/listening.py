@@ -6,6 +6,7 @@ All voices are espeak-ng's, all noise is made, and the echo is one wall's: no ha
 recorded. What counts is how the rows differ. A sound has a second of rest before and after what is said.
 """
 
+import argparse
 import re
 import statistics
 import sys
@@ -290,4 +291,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     main()

@@ -9,6 +9,7 @@ file.
     python benchmarks/lsp.py
 """
 
+import argparse
 import os
 import platform
 import re
@@ -196,4 +197,5 @@ def shown(took: list[Took]) -> str:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     sys.exit(main())
