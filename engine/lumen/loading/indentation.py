@@ -47,14 +47,14 @@ def holder(lines: Sequence[str], row: int, depth: int) -> str:
     return ""
 
 
-class Move(NamedTuple):
+class LineMove(NamedTuple):
     """The lines of these indices, and by how many spaces they move in (or out, if negative)."""
 
     rows: Sequence[int]
     shift: int
 
 
-def move_hint(lines: Sequence[str], move: Move, *others: Move) -> str:
+def move_hint(lines: Sequence[str], move: LineMove, *others: LineMove) -> str:
     """Return which lines to indent, by how much, and what holds them then; `others` are alternatives."""
     hint = _move_hint(lines, *move)
     what = hint.partition(" by ")[0]
@@ -153,7 +153,7 @@ def _moved(lines: Sequence[str], index: int, known: Sequence[int]) -> Iterator[S
         way = "not indented far enough" if depth > here else "indented too far"
         message = f"this line is {way}: it begins in column {here + 1}, but the lines next to it in column {depth + 1}"
         for part in ([index], block) if depth < inner else (block,):
-            hint = move_hint(lines, Move(part, depth - here))
+            hint = move_hint(lines, LineMove(part, depth - here))
             meant = {j: shifted(lines[j], depth - here) for j in part}
             yield Slip(index + 1, 1, max(here, 1), message, hint, meant, only_whole=True)
 

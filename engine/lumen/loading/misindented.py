@@ -15,7 +15,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint
 from lumen.loading.document import Document
-from lumen.loading.indentation import Move, holder, indent, is_content, move_hint, shifted
+from lumen.loading.indentation import LineMove, holder, indent, is_content, move_hint, shifted
 
 MAX_TRIES = 12
 """Moves that are tried in one file."""
@@ -83,7 +83,7 @@ def misindented(
         return {}
     complained = {row for complaint in found for row in _rows(complaint, document, lines)}
     solved: dict[Complaint, str] = {}
-    tried: set[Move] = set()
+    tried: set[LineMove] = set()
     tries = min(MAX_TRIES, MAX_CHARACTERS // len(document.text))
     sought = 0
     for complaint in found:
@@ -92,7 +92,7 @@ def misindented(
         if complaint in solved or complaint.suggestion or complaint.code not in _CODES:
             continue
         sought += 1
-        best, gone, rest = list[Move](), Counter[_What](), before
+        best, gone, rest = list[LineMove](), Counter[_What](), before
         for move in _moves(complaint, document, lines, names, complained):
             if len(tried) >= tries or (not rest and not _is_opposite(move, best[0])):
                 break
@@ -118,12 +118,12 @@ def misindented(
     return solved
 
 
-def _is_opposite(move: Move, other: Move) -> bool:
+def _is_opposite(move: LineMove, other: LineMove) -> bool:
     """Whether both move the same line by as many spaces, one in and one out."""
     return move.rows[0] == other.rows[0] and move.shift == -other.shift
 
 
-def _first(those: Sequence[Complaint], move: Move, document: Document, lines: Sequence[str]) -> Complaint:
+def _first(those: Sequence[Complaint], move: LineMove, document: Document, lines: Sequence[str]) -> Complaint:
     """The complaint to report of those that a move solves: about an empty key, else about the line that moves."""
     empty = (c for c in those if _is_empty(c, document))
     missing = (c for c in those if c.missing)
@@ -161,7 +161,7 @@ def _rows(complaint: Complaint, document: Document, lines: Sequence[str]) -> lis
 
 def _moves(
     complaint: Complaint, document: Document, lines: Sequence[str], names: KeyNames, complained: set[int]
-) -> Iterator[Move]:
+) -> Iterator[LineMove]:
     """The moves that may solve a complaint, the likeliest first."""
     rows = _rows(complaint, document, lines)
     empty = bool(rows) and _is_empty(complaint, document)
@@ -181,7 +181,7 @@ def _moves(
             if not _is_sensible(lines, row, depth, names, empty, complaint.path[-1:]):
                 continue
             for part in dict.fromkeys((group, block, tuple(range(row, cut)), (row,))):
-                yield Move(part, depth - indent(lines[row]))
+                yield LineMove(part, depth - indent(lines[row]))
 
 
 def _block(lines: Sequence[str], row: int) -> tuple[int, ...]:
