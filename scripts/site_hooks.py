@@ -7,6 +7,7 @@ there, a link to any other file of the repository to a page that shows the file.
 
 import posixpath
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -35,8 +36,11 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    for path, text in made().items():
+    shown = made()
+    for path, text in shown.items():
         files.append(File.generated(config, path, content=text))
+    for path, picture in pictures(shown).items():
+        files.append(File.generated(config, path, abs_src_path=str(picture)))
     return files
 
 
@@ -78,10 +82,23 @@ def made() -> dict[str, str]:
         page, text = waiting.pop()
         for file in filter(None, (outside(found[2], page) for found in LINK.finditer(text))):
             path = shown_at(file)
-            if path not in written and not file.startswith("docs/") and (ROOT / file).is_file():
+            if path in written or file.startswith("docs/") or _is_picture(file):
+                continue
+            if (ROOT / file).is_file():
                 written[path] = _shown(file)
                 waiting.append((path, written[path]))
     return written
+
+
+def pictures(shown: Mapping[str, str]) -> dict[str, Path]:
+    """The pictures of the pages that show files of the repository, by their path in the site."""
+    links = ((found[2], page) for page, text in shown.items() for found in LINK.finditer(text))
+    files = (file for link, page in links if (file := outside(link, page)) and not file.startswith("docs/"))
+    return {shown_at(file): ROOT / file for file in files if _is_picture(file) and (ROOT / file).is_file()}
+
+
+def _is_picture(file: str) -> bool:
+    return file.endswith((".png", ".webp", ".svg"))
 
 
 def outside(link: str, page: str) -> str | None:
@@ -110,7 +127,7 @@ def shown_at(file: str) -> str:
         return f"{REFERENCE}/{match[1]}.md"
     if file.rstrip("/") in ("schemas", "schemas/messages"):
         return f"{REFERENCE}{file.rstrip('/').removeprefix('schemas')}/README.md"
-    return f"{SHOWN}/{file}" if file.endswith(".md") else f"{SHOWN}/{file}.md"
+    return f"{SHOWN}/{file}" if file.endswith(".md") or _is_picture(file) else f"{SHOWN}/{file}.md"
 
 
 def _shown(file: str) -> str:
