@@ -15,6 +15,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
 from lumen.loading.project_folders import FILE_KINDS
 from lumen.loading.schema import check_schema, faults, load_schema
+from lumen.loading.yaml_nodes import read_text
 from lumen.loading.yaml_reader import parse
 from tests.scanning import matching
 from tests.tables import for_each
