@@ -105,7 +105,7 @@ def test_a_moment_says_where_too(ask: Asker) -> None:
     [
         ({}, "add `position`"),
         ({"at": "noon"}, "`noon` is not a time"),
-        ({"position": 100_000}, "nothing happened"),
+        ({"position": 100_000}, "no event at or after position 100000"),
         ({"position": 1, "event": "left"}, "`event` must look like"),
     ],
 )

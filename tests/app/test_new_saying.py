@@ -173,6 +173,6 @@ def test_nothing_is_written_through_a_link(tmp_path: Path) -> None:
     kept = root / "kept.yaml"
     kept.write_text("guide: {choice: {dance: {en: [a]}}}\n", "utf-8")
     (root / DAY_FILE).symlink_to(kept)
-    with pytest.raises(UsageError, match="a link"):
+    with pytest.raises(UsageError, match="a symbolic link"):
         write_saying(root, CHOICE)
     assert kept.read_text("utf-8") == "guide: {choice: {dance: {en: [a]}}}\n"

@@ -11,6 +11,7 @@ from typing import Any
 from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
 from lumen.interpreters.explaining import RecordedStep
+from lumen.language.operator_requests import JOURNAL, WHY
 from lumen.ports import Bus, Message
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.upkeep.drops import DropLog
@@ -20,9 +21,6 @@ MAX_WAITING_QUESTIONS = 20
 DAY = 86_400.0
 MAX_QUESTION = 500
 """Characters of what somebody asks about."""
-WHY, WHY_NOT, JOURNAL = "why", "why-not", "journal"
-"""What may be asked of the past."""
-
 AnswerMaker = Callable[[], dict[str, Any]]
 """Makes an answer."""
 
@@ -34,7 +32,7 @@ def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | No
     from lumen.interpreters.explaining.answers import why, why_not  # thirty modules that only a question needs
 
     until = _until(steps, at) if at else None
-    if question == WHY:
+    if question == WHY.ask:
         return why(steps, what, until).to_json()
     if not what:
         raise UsageError("name a state, a motion or a text, as in `lumen why-not dance`")
@@ -122,16 +120,10 @@ def _made(make: AnswerMaker) -> Any:
 
 def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:
     """What is sent back: the answer, or a verdict that says why there is none."""
-    if body.get("ask") == JOURNAL:
-        position = body.get("from", 0)
-        if type(position) is not int:
-            return {"verdict": "refused", "reason": "`from` must be a whole number: the position of an entry"}
-        return journal_page(journal, position)
-    what, at = body.get("what", ""), body.get("at")
-    if not isinstance(what, str) or not (at is None or isinstance(at, str)):
-        return {"verdict": "refused", "reason": "`what` and `at` must be texts"}
+    if body["ask"] == JOURNAL.ask:
+        return journal_page(journal, body.get("from", 0))
     try:
-        return answer(steps, str(body["ask"]), what[:MAX_QUESTION], at)
+        return answer(steps, body["ask"], body.get("what", "")[:MAX_QUESTION], body.get("at"))
     except TooLongAgoError as error:
         return {"verdict": "refused", "reason": str(error), "kept": "later"}
     except LumenError as error:

@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lumen.app.alerts.desk import AlertDesk
-from lumen.app.answering import WHY, WHY_NOT, answer
+from lumen.app.answering import answer
 from lumen.app.narrator import Narrator
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
@@ -31,6 +31,7 @@ from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
+from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.project_folders import FLEET_FILE
@@ -222,11 +223,11 @@ class Exhibition:
         `what` is a text that was said, a state, a motion or the id of a command; `at` an ISO 8601 time until which it
         happened. Raises UsageError, saying what to do, where it did not.
         """
-        return answer(self.history(), WHY, what, at)
+        return answer(self.history(), WHY.ask, what, at)
 
     def why_not(self, what: str, at: str | None = None) -> dict[str, Any]:
         """Why something did not happen, as `lumen why-not --format json` prints it; raises as `why` does."""
-        return answer(self.history(), WHY_NOT, what, at)
+        return answer(self.history(), WHY_NOT.ask, what, at)
 
     def history(self) -> list[RecordedStep]:
         """The steps of the last minutes, the oldest first: what `why` and `why_not` are answered from."""

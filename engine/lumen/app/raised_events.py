@@ -8,12 +8,11 @@ from lumen.interpreters.explaining.pressing import pressed, takes
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import UNNAMED_PROGRAM, Cause
 from lumen.language.events import Event
+from lumen.language.operator_requests import MAX_NAME, PRESS
 from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Message
 from lumen.runtime.loop import BehaviorLoop, Observer
 
-MAX_NAME = 100
-"""Characters of the name of an event, and of a person."""
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
 """How the names begin of what robots tell themselves or one another: an event of such a name would be taken for it."""
 
@@ -47,26 +46,22 @@ class RaisedEvents(Observer):
 
     def happen(self, message: Message, now: float) -> None:
         """Let the event in that message, or of the button that it names, happen in this tick, or refuse it."""
-        match message.body:
-            case {"ask": "press", "button": str(label)}:
-                loop = self._loop
-                machine, snapshot = loop.project.machine, loop.runtime.snapshot
-                found = pressed(machine, snapshot, label[:MAX_NAME], now, person_in(message))
-                if isinstance(found, str):
-                    self._reply(message, refusal(found))
-                else:
-                    self._let(message, found)
-            case {"ask": "event", "event": str(name), **more} if name and len(name) <= MAX_NAME:
-                if name.startswith(_INTERNAL):
-                    self._reply(message, refusal(f"`{name}` is an internal event: only robots send it"))
-                    return
-                cause = Cause("person", message.id, sender=person_in(message))
-                data = more.get("data")
-                self._let(message, Event(name, {} if data is None else data, now, cause=cause))
-            case {"ask": "press"}:
-                self._reply(message, refusal("`button` must be the label of a button"))
-            case _:
-                self._reply(message, refusal("`event` must be the name of an event"))
+        body = message.body
+        if body["ask"] == PRESS.ask:
+            loop = self._loop
+            machine, snapshot = loop.project.machine, loop.runtime.snapshot
+            found = pressed(machine, snapshot, body["button"][:MAX_NAME], now, person_in(message))
+            if isinstance(found, str):
+                self._reply(message, refusal(found))
+            else:
+                self._let(message, found)
+            return
+        if (name := body["event"]).startswith(_INTERNAL):
+            self._reply(message, refusal(f"`{name}` is an internal event: only robots send it"))
+            return
+        cause = Cause("person", message.id, sender=person_in(message))
+        data = body.get("data")
+        self._let(message, Event(name, {} if data is None else data, now, cause=cause))
 
     def _let(self, message: Message, event: Event) -> None:
         assert event.cause

@@ -5,7 +5,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import WHY, WHY_NOT, answer
+from lumen.app.answering import answer
 from lumen.app.one_robot import one_robot
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.errors import JournalError, UsageError
@@ -13,6 +13,7 @@ from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import Replayer
 from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
 from lumen.loading.running_project import running_project
 from lumen.runtime.home import home_of
@@ -45,12 +46,12 @@ def why(what: str = "", path: str | None = None, at: str | None = None) -> dict[
     `path` is the project's folder, else that here or above; `at` an ISO 8601 time until which it happened. Raises
     UsageError, saying what to do, where it did not, or no journal is kept.
     """
-    return answer_from_journal(path, WHY, what, at, NOT_ASKED)
+    return answer_from_journal(path, WHY.ask, what, at, NOT_ASKED)
 
 
 def why_not(what: str, path: str | None = None, at: str | None = None) -> dict[str, Any]:
     """Why something did not happen in the last run of a project; as `why`."""
-    return answer_from_journal(path, WHY_NOT, what, at, NOT_ASKED)
+    return answer_from_journal(path, WHY_NOT.ask, what, at, NOT_ASKED)
 
 
 def recalled(root: Path, until: float | None = None, robot: str = "") -> Iterator[RecordedStep]:

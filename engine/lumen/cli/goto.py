@@ -11,6 +11,7 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import UsageError
+from lumen.language.operator_requests import GOTO
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -47,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _ask(reached: Reached, state: str, **more: str) -> dict[str, Any]:
-    question = {"ask": "goto", "state": state, **more}
+    question = GOTO(state=state, **more)
     answer: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
     return answer
 

@@ -8,6 +8,7 @@ from lumen.cli.commanding import told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, for_each_robot, reach
+from lumen.language.operator_requests import MODEL
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -26,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
 def _switch(options: argparse.Namespace) -> int:
     reached = reach(options)
     try:
-        question = {"ask": "model", "on": options.state == "on", "by": person()}
+        question = MODEL(on=options.state == "on", by=person())
         answer = next(ask(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()

@@ -12,6 +12,7 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.moments import moment
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusUnreachableError, UsageError
+from lumen.language.operator_requests import OperatorRequest
 
 
 def configure_question(parser: argparse.ArgumentParser) -> None:
@@ -20,7 +21,9 @@ def configure_question(parser: argparse.ArgumentParser) -> None:
     configure_format(parser)
 
 
-def put(options: argparse.Namespace, question: str, shown: Callable[[dict[str, Any]], Iterator[str]]) -> int:
+def put(
+    options: argparse.Namespace, question: OperatorRequest, shown: Callable[[dict[str, Any]], Iterator[str]]
+) -> int:
     """Ask a running exhibition, else the journal of the project, and print what it says; 1 where that is no answer."""
     at = moment(options.at, datetime.now().astimezone()) if options.at else None
     try:
@@ -28,7 +31,7 @@ def put(options: argparse.Namespace, question: str, shown: Callable[[dict[str, A
     except UsageError as error:
         found = {"verdict": "refused", "reason": str(error)}
     if "reason" in found:
-        print(f"lumen {question}: {found['reason']}", file=sys.stderr)
+        print(f"lumen {question.ask}: {found['reason']}", file=sys.stderr)
         return 1
     if options.format == "json":
         print_object(found)
@@ -38,17 +41,17 @@ def put(options: argparse.Namespace, question: str, shown: Callable[[dict[str, A
     return 0
 
 
-def _asked(options: argparse.Namespace, question: str, at: str | None) -> dict[str, Any]:
+def _asked(options: argparse.Namespace, question: OperatorRequest, at: str | None) -> dict[str, Any]:
     what = options.what or ""
     try:
         reached = reach(options)
     except BusUnreachableError as error:
-        return answer_from_journal(options.project, question, what, at, str(error), options.robot_name)
+        return answer_from_journal(options.project, question.ask, what, at, str(error), options.robot_name)
     try:
-        body = {"ask": question, "what": what, **({"at": at} if at else {})}
+        body = question(what=what, **({"at": at} if at else {}))
         found: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), body, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     if found.get("kept") == "later":
-        return answer_from_journal(options.project, question, what, at, found["reason"], options.robot_name)
+        return answer_from_journal(options.project, question.ask, what, at, found["reason"], options.robot_name)
     return found

@@ -22,6 +22,7 @@ from lumen.errors import BusError, UsageError
 from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import renamed, writable
 from lumen.formats.recordings.rewriting import recover
+from lumen.language.operator_requests import MARK, STATUS
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
@@ -86,9 +87,7 @@ def _recover(options: argparse.Namespace) -> int:
 
 
 def _mark(options: argparse.Namespace, reached: Reached) -> int:
-    answer = next(
-        ask(reached.bus, operator_key(reached.robot), {"ask": "mark", "text": options.mark}, OPERATOR_ANSWERS)
-    )
+    answer = next(ask(reached.bus, operator_key(reached.robot), MARK(text=options.mark), OPERATOR_ANSWERS))
     done = answer.get("verdict") == "done" if isinstance(answer, dict) else False
     text = str(answer.get("text" if done else "reason", "")) if isinstance(answer, dict) else str(answer)
     _say(options, f"marked: {text}" if done else f"nothing is kept: {text}", marked=done, reason=text)
@@ -143,7 +142,7 @@ def _running_project(root: Path, reached: Reached) -> Project:
     """The files that run, where they are kept, else those that are there. Raises UsageError where they have errors."""
     kept: dict[str, bytes] | None = None
     with suppress(BusError, TypeError, KeyError):
-        status = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
+        status = next(ask(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS))
         kept = SnapshotStore(Home(home_of(root, reached.home))).files(str(status["bundle"]))
     project = check_files(root, as_robot(kept or read_files(root), reached.home))[0]
     if project is None:

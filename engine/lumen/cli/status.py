@@ -13,11 +13,11 @@ from lumen.app.recovery.last_run import last_run
 from lumen.cli.printing import clock_time
 from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
+from lumen.language.operator_requests import STATUS
 from lumen.loading.running_project import running_project
 
 AMONG_OTHERS = 5.0
 """How long the answer of one robot of several may take [s]."""
-QUESTION = {"ask": "status"}
 EARS = {
     "always": "listen",
     "face": "listen: a face is near and looks at the robot",
@@ -60,7 +60,7 @@ def _status(options: argparse.Namespace, name: str, patience: float) -> dict[str
         return error
     try:
         found: dict[str, Any] = next(
-            ask(reached.bus, operator_key(reached.robot), QUESTION, OPERATOR_ANSWERS, first=patience)
+            ask(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS, first=patience)
         )
         return found
     except BusError as error:

@@ -2,9 +2,9 @@
 
 import argparse
 
-from lumen.app.answering import WHY
 from lumen.cli.answers import why_lines
 from lumen.cli.questions import configure_question, put
+from lumen.language.operator_requests import WHY
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

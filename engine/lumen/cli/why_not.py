@@ -2,9 +2,9 @@
 
 import argparse
 
-from lumen.app.answering import WHY_NOT
 from lumen.cli.answers import why_not_lines
 from lumen.cli.questions import configure_question, put
+from lumen.language.operator_requests import WHY_NOT
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -17,6 +17,7 @@ from lumen.console.requests import ALL
 from lumen.console.streams import Streams
 from lumen.console.watch import Watch
 from lumen.errors import BusError, BusUnreachableError
+from lumen.language.operator_requests import NOTE
 from lumen.runtime.presence import ROBOT_PART
 
 SENT_TIMEOUT = 0.8
@@ -159,7 +160,7 @@ class Commands:
         """Have it in the journal who did that, where the behaviour does not hear of it."""
         if bus := self._watch.link.bus:
             with suppress(BusError):
-                bus.publish(self._watch.keys.of(robot).operator, {"ask": "note", "text": text, "by": by})
+                bus.publish(self._watch.keys.of(robot).operator, NOTE(text=text, by=by))
 
     def _stop_behavior(self, robot: str) -> None:
         """The behaviour hears of it where the robot can't say so."""

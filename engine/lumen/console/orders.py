@@ -7,6 +7,7 @@ from lumen.app.resting import rest_body, resume_body
 from lumen.console.people import Role
 from lumen.console.robot_keys import RobotKeys
 from lumen.errors import UsageError
+from lumen.language.operator_requests import APPROVE, AUTONOMY, EVENT, GOTO, MARK, MODEL, OperatorRequest
 
 MAX_TEXT = 1_000
 MAX_NAME = 200
@@ -109,33 +110,33 @@ def _posture(fields: Fields, keys: RobotKeys, by: str) -> Order:
     return order._replace(note=f"goes into the posture {parameter['postureName']}")
 
 
-def _question(**body: Any) -> Callable[[RobotKeys], Order]:
-    return lambda keys: Order(keys.operator, body, SHORT, verdict_outcome)
+def _question(request: OperatorRequest, **fields: Any) -> Callable[[RobotKeys], Order]:
+    return lambda keys: Order(keys.operator, request(**fields), SHORT, verdict_outcome)
 
 
 def _event(fields: Fields, keys: RobotKeys, by: str) -> Order:
     data = fields.get("data")
     if not (data is None or isinstance(data, dict)):
         raise UsageError("`data` must be an object, or be left out")
-    return _question(ask="event", event=text_in(fields, "event"), data=data or {}, by=by)(keys)
+    return _question(EVENT, event=text_in(fields, "event"), data=data or {}, by=by)(keys)
 
 
 def _approve(fields: Fields, keys: RobotKeys, by: str) -> Order:
     if not isinstance(go := fields.get("go"), bool):
         raise UsageError("`go` must be true or false")
-    return _question(ask="approve", id=text_in(fields, "approval"), go=go, by=by)(keys)
+    return _question(APPROVE, id=text_in(fields, "approval"), go=go, by=by)(keys)
 
 
 def _autonomy(fields: Fields, keys: RobotKeys, by: str) -> Order:
     if (level := fields.get("level")) not in ("ask", "alone"):
         raise UsageError("`level` must be `ask` or `alone`")
-    return _question(ask="autonomy", level=level, by=by)(keys)
+    return _question(AUTONOMY, level=level, by=by)(keys)
 
 
 def _model(fields: Fields, keys: RobotKeys, by: str) -> Order:
     if not isinstance(on := fields.get("on"), bool):
         raise UsageError("`on` must be true or false")
-    return _question(ask="model", on=on, by=by)(keys)
+    return _question(MODEL, on=on, by=by)(keys)
 
 
 def _files(verb: str) -> Callable[[Fields, RobotKeys, str], Order]:
@@ -175,10 +176,8 @@ _MAKERS: dict[str, Callable[[Fields, RobotKeys, str], Order]] = {
     "motion": _play,
     "posture": _posture,
     "event": _event,
-    "goto": lambda fields, keys, by: _question(ask="goto", state=text_in(fields, "state"), by=by)(keys),
-    "mark": lambda fields, keys, by: _question(ask="mark", text=text_in(fields, "text", MAX_NAME, needed=False), by=by)(
-        keys
-    ),
+    "goto": lambda fields, keys, by: _question(GOTO, state=text_in(fields, "state"), by=by)(keys),
+    "mark": lambda fields, keys, by: _question(MARK, text=text_in(fields, "text", MAX_NAME, needed=False), by=by)(keys),
     "approve": _approve,
     "autonomy": _autonomy,
     "model": _model,

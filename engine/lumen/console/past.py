@@ -8,7 +8,6 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from lumen.app.answering import WHY, WHY_NOT
 from lumen.app.new_passage import write_passage
 from lumen.console.entry_words import told_of
 from lumen.console.job_promises import NOTHING
@@ -18,6 +17,7 @@ from lumen.console.known_robot import KnownRobot
 from lumen.console.people import Role
 from lumen.console.requests import NO_STORE, DeniedError, Reception, as_json
 from lumen.errors import BusError, UsageError
+from lumen.language.operator_requests import FORK, WHY, WHY_NOT, OperatorRequest
 
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""
@@ -51,11 +51,11 @@ class Past:
     async def _why_not(self, request: Request) -> Response:
         return await self._explained(request, WHY_NOT)
 
-    async def _explained(self, request: Request, question: str) -> Response:
+    async def _explained(self, request: Request, question: OperatorRequest) -> Response:
         view = self._asked(request, Role.SHOW)
         what = request.query_params.get("what", "")[:MAX_QUESTION]
         at = request.query_params.get("at") or None
-        said = await self._ask(view, {"ask": question, "what": what, **({"at": at} if at else {})})
+        said = await self._ask(view, question(what=what, **({"at": at} if at else {})))
         if said.get("kept") == "later" and self._is_ours(view):
             said = orjson.loads(await self._jobs.do("why", self._home(view), question, what, at))
         if said.get("verdict") == "refused":
@@ -67,7 +67,7 @@ class Past:
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
         asked: dict[str, Any] = {key: data[key] for key in ("at", "position", "event", "bundle") if key in data}
-        said = await self._ask(view, {"ask": "fork", **asked})
+        said = await self._ask(view, FORK(**asked))
         if said.get("verdict") == "refused" or "would" not in said:
             reason = said.get("reason") if said.get("verdict") == "refused" else None
             raise DeniedError(400, str(reason or "this exhibition runs an older Lumen, which cannot do that"))

@@ -15,6 +15,7 @@ from lumen.console.exchanges import Exchanges
 from lumen.console.known_robot import KnownRobot
 from lumen.console.robot_keys import PRESENCE, KeyBook
 from lumen.errors import BusError
+from lumen.language.operator_requests import JOURNAL, NOW, STATUS
 from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Message
 
@@ -142,9 +143,9 @@ class Watch:
     async def _ask(self, view: KnownRobot) -> bool:
         """Ask how it is and what happened; whether there is more of that."""
         keys = self.keys.of(view.robot)
-        said = await self.exchanges.ask(keys.operator, {"ask": "now"}, QUESTION_TIMEOUT)
+        said = await self.exchanges.ask(keys.operator, NOW(), QUESTION_TIMEOUT)
         if not isinstance(said, dict) or "robot" not in said:  # an older Lumen
-            said = await self.exchanges.ask(keys.operator, {"ask": "status"}, QUESTION_TIMEOUT)
+            said = await self.exchanges.ask(keys.operator, STATUS(), QUESTION_TIMEOUT)
         if not isinstance(said, dict):
             return False
         view.answered(said)
@@ -159,7 +160,7 @@ class Watch:
 
     async def page(self, robot: str, begin: int) -> ToldPage:
         """Entries of the journal from a position on, some. Raises BusError where nobody answers."""
-        question = {"ask": "journal", "from": begin}
+        question = JOURNAL(**{"from": begin})
         said = await self.exchanges.ask(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
         said = said if isinstance(said, dict) else {}
         entries, epoch = said.get("entries"), said.get("epoch")

@@ -7,6 +7,7 @@ from threading import Event
 from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.app.reaching import Reached, reach_exhibition, runs_here
 from lumen.errors import LumenError
+from lumen.language.operator_requests import STATUS
 
 ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
 """How often a running exhibition is asked for its states, and how long it may take to answer [s]."""
@@ -48,7 +49,7 @@ class RunningExhibitions:
                 self._reached[root] = reach_exhibition(str(root), None)
             found = self._reached[root]
             key = operator_key(found.robot)
-            status = next(ask(found.bus, key, {"ask": "status"}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
+            status = next(ask(found.bus, key, STATUS(), OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
             return tuple(map(str, status["configuration"]))
         except (LumenError, KeyError, TypeError, StopIteration):
             self._lose(root)

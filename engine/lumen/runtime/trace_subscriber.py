@@ -9,6 +9,7 @@ from lumen.errors import BusError
 from lumen.language.approvals import Autonomy
 from lumen.language.commands import BodyCommand, Command, Publish, Start
 from lumen.language.events import Event
+from lumen.language.operator_requests import APPROVE, AUTONOMY, PRESS
 from lumen.language.projects import Project
 from lumen.language.routing_keys import OPERATOR_REQUEST, key_of_robot
 from lumen.ports import Bus, Message
@@ -65,15 +66,15 @@ class TraceSubscriber:
 
     def press(self, label: str, by: str) -> str:
         """Ask the brain to press a button; it tells nobody here whether it could."""
-        return self._wish({"ask": "press", "button": label, "by": by})
+        return self._wish(PRESS(button=label, by=by))
 
     def approve(self, by: str, *, go: bool) -> str:
         """Have what waits longest decided."""
-        return self._wish({"ask": "approve", "id": "", "go": go, "by": by})
+        return self._wish(APPROVE(id="", go=go, by=by))
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
         """Have marked transitions wait for GO, or not."""
-        self._wish({"ask": "autonomy", "level": level, "by": by})
+        self._wish(AUTONOMY(level=level, by=by))
 
     def _wish(self, request: dict[str, Any]) -> str:
         try:

@@ -16,6 +16,7 @@ from lumen.app.narrator import Narrator
 from lumen.app.now import NowView, PresentMoment, moment
 from lumen.app.parts.part import Part
 from lumen.app.raised_events import RaisedEvents, person_in, refusal
+from lumen.app.request_checks import RequestChecks
 from lumen.app.status import LastReload, status_of
 from lumen.app.step_memory import StepMemory
 from lumen.errors import BusError, LumenError
@@ -24,26 +25,39 @@ from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.modules import EARS
+from lumen.language.operator_requests import (
+    APPROVE,
+    AUTONOMY,
+    EVENT,
+    FORK,
+    GOTO,
+    JOURNAL,
+    MARK,
+    MODEL,
+    NOTE,
+    NOW,
+    PRESS,
+    STATUS,
+    WHY,
+    WHY_NOT,
+)
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
 from lumen.robots.robot_routes import TEXT_ROUTE, key_of
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
 
-GOTO = "operator.goto"
+DIRECT_ENTRY = "operator.goto"
 """The event of a step that an operator wanted."""
 EARS_LOST = f"{EARS}.lost"
 MAX_PENDING_REQUESTS = 100
 NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last 10 minutes"
 MAX_NOTE = 300
 """Characters of a mark, or a note."""
-REQUESTS = (
-    '`{"ask": "status"}`, `{"ask": "now"}`, `{"ask": "event", "event": …}`, `{"ask": "press", "button": …}`,'
-    ' `{"ask": "approve", "id": …, "go": true}`, `{"ask": "autonomy", "level": "ask"}`,'
-    ' `{"ask": "model", "on": false}`,'
-    ' `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, `{"ask": "fork", "position": …}`,'
-    ' or `{"ask": "why", "what": …}`'
-)
+MAX_STATE = 200
+"""Characters of the name of a state."""
+Answer = Callable[[Message, float], dict[str, Any]]
+"""Answers a valid request at a time [s]."""
 
 
 class OperatorPart(Part, Observer):
@@ -98,6 +112,16 @@ class OperatorPart(Part, Observer):
         behavior.forgetting.append(lambda _: runtime.approvals.forget())
         self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, record)
         self._raising = RaisedEvents(behavior.loop, self._reply)
+        self._requests = RequestChecks()
+        self._answers: Mapping[str, Answer] = {
+            STATUS.ask: lambda _message, _now: self.status(),
+            MARK.ask: self._mark,
+            NOTE.ask: self._noted,
+            APPROVE.ask: lambda m, _: self._decisions.approve(m.body["id"], person_in(m), go=m.body["go"]),
+            AUTONOMY.ask: lambda m, _: self._decisions.autonomy(m.body["level"], person_in(m)),
+            MODEL.ask: lambda m, _: self.model.switch(person_in(m), on=m.body["on"]),
+            GOTO.ask: self._goto,
+        }
         behavior.loop.observers += [self.steps, self._doings, self._raising, self]
 
     def begin(self, now: float) -> None:
@@ -121,22 +145,23 @@ class OperatorPart(Part, Observer):
         self._raising.look()
         while self._came:
             message = self._came.popleft()
-            match message.body:
-                case {"ask": "journal"}:
-                    self._pages.ask(message)
-                case {"ask": "why" | "why-not"}:
-                    self._answering.ask(message)
-                case {"ask": "now"}:
-                    self._pages.answer(message, partial(self._view.tell, self._moment()))
-                case {"ask": "fork"}:
-                    from lumen.app.forking import forked  # with all that judges files
+            if not (request := self._requests.valid(message.body)):
+                self._reply(message, refusal(self._requests.fault(message.body)))
+            elif request in (EVENT, PRESS):
+                self._raising.happen(message, now)
+            elif request in (WHY, WHY_NOT):
+                self._answering.ask(message)
+            elif request is FORK:
+                from lumen.app.forking import forked  # with all that judges files
 
-                    running = self._behavior.loop.runtime.project
-                    self._answering.answer(message, partial(forked, self._journal, running, message.body))
-                case {"ask": "event" | "press"}:
-                    self._raising.happen(message, now)
-                case _:
-                    self._reply(message, self._answer(message, now))
+                running = self._behavior.loop.runtime.project
+                self._answering.answer(message, partial(forked, self._journal, running, message.body))
+            elif request is JOURNAL:
+                self._pages.ask(message)
+            elif request is NOW:
+                self._pages.answer(message, partial(self._view.tell, self._moment()))
+            else:
+                self._reply(message, self._answers[request.ask](message, now))
 
     def close(self) -> None:
         self._undo()
@@ -190,39 +215,26 @@ class OperatorPart(Part, Observer):
         with suppress(BusError):  # who asked is gone
             self._bus.reply(message, answer)
 
-    def _answer(self, message: Message, now: float) -> dict[str, Any]:
-        by = person_in(message) if isinstance(message.body, dict) else ""
-        match body := message.body:
-            case {"ask": "status"}:
-                return self.status()
-            case {"ask": "mark"}:
-                kept = self.marking()
-                self._note(body, by, "mark")
-                return {"verdict": "done", "text": kept or f"in the journal; {NOTHING_RECORDED}"}
-            case {"ask": "note", "text": str()}:
-                self._note(body, by, "note")
-                return {"verdict": "done"}
-            case {"ask": "approve", "id": str(id), "go": bool(go)}:
-                return self._decisions.approve(id, by, go=go)
-            case {"ask": "autonomy", "level": "ask" | "alone" as level}:
-                return self._decisions.autonomy(level, by)
-            case {"ask": "model", "on": bool(on)}:
-                return self.model.switch(by, on=on)
-            case {"ask": "goto", "state": str(state)}:
-                return self._goto(state[:200], by, now, only=body.get("only") == "check")
-            case _:
-                return refusal(f"the request is not valid: send {REQUESTS}")
+    def _mark(self, message: Message, _: float) -> dict[str, Any]:
+        kept = self.marking()
+        self._note(message, "mark")
+        return {"verdict": "done", "text": kept or f"in the journal; {NOTHING_RECORDED}"}
 
-    def _note(self, body: Mapping[str, Any], by: str, what: str) -> None:
+    def _noted(self, message: Message, _: float) -> dict[str, Any]:
+        self._note(message, "note")
+        return {"verdict": "done"}
+
+    def _note(self, message: Message, what: str) -> None:
         """Keep the words of a person or a program in the journal."""
-        text = body.get("text")
+        text = message.body.get("text")
         words = text[:MAX_NOTE] if isinstance(text, str) else ""
-        self._behavior.loop.runtime.note(**{what: words, "by": by})
+        self._behavior.loop.runtime.note(**{what: words, "by": person_in(message)})
 
-    def _goto(self, state: str, by: str, now: float, *, only: bool) -> dict[str, Any]:
-        """Enter a state; with `only` say what that would leave and enter."""
+    def _goto(self, message: Message, now: float) -> dict[str, Any]:
+        """Enter a state; with `only: check` say what that would leave and enter."""
+        state, by, only = message.body["state"][:MAX_STATE], person_in(message), message.body.get("only") == "check"
         loop = self._behavior.loop
-        event = Event(GOTO, {"by": by, "state": state}, now, cause=Cause("person", sender=by))
+        event = Event(DIRECT_ENTRY, {"by": by, "state": state}, now, cause=Cause("person", sender=by))
         try:
             step = entered_directly(loop.project.machine, loop.runtime.snapshot, state, event)
         except LumenError as error:

@@ -1,5 +1,6 @@
 """What on the bus is worth keeping what led to it."""
 
+from lumen.language import operator_requests
 from lumen.language.routing_keys import CONFIG_STATUS, INTERNAL_ALIASES, OPERATOR_REQUEST, key_of_robot
 from lumen.ports import Message
 
@@ -14,7 +15,7 @@ def happening(message: Message, robot: str) -> str:
     A fall, an error that the behaviour hears of, files that are refused or taken back, and a mark.
     """
     match message.body:
-        case {"ask": "mark", **rest} if message.key in _keys(OPERATOR_REQUEST, robot):
+        case {"ask": operator_requests.MARK.ask, **rest} if message.key in _keys(OPERATOR_REQUEST, robot):
             text = str(rest.get("text") or "")[:MAX_TEXT]
             return f"{MARK} {text}".strip()
         case {"verdict": str(verdict)} if message.key in _keys(CONFIG_STATUS, robot):

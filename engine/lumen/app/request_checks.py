@@ -1,0 +1,30 @@
+"""Whether a message is a request of an operator, by the table of requests; if not, what would be right."""
+
+from typing import Any
+
+from lumen.buses.checking import SchemaCheck
+from lumen.language.operator_requests import REQUESTS, UNLISTED, OperatorRequest
+
+
+class RequestChecks:
+    """Checks bodies against the schemas of all requests; a schema is compiled when its first request comes."""
+
+    def __init__(self) -> None:
+        self._rows = {row.ask: (row, SchemaCheck(row.schema)) for row in REQUESTS}
+
+    def valid(self, body: Any) -> OperatorRequest | None:
+        """Return the request that this is; None if it is none, or one of its fields is missing or wrong."""
+        row, check = self._found(body)
+        return row if check and check.fits(body) else None
+
+    def fault(self, body: Any) -> str:
+        """Return why a body that is not `valid` is refused."""
+        row, _ = self._found(body)
+        if row and row.fault:
+            return row.fault
+        *shown, last = [each.shown for each in REQUESTS if each not in UNLISTED]
+        return f"the request is not valid: send {', '.join(shown)}, or {last}"
+
+    def _found(self, body: Any) -> tuple[OperatorRequest | None, SchemaCheck | None]:
+        ask = body.get("ask") if isinstance(body, dict) else None
+        return self._rows.get(ask, (None, None)) if isinstance(ask, str) else (None, None)
