@@ -30,6 +30,9 @@ FROZEN = ROOT / "tests/golden/projects"
 PROJECTS = {"tour": FROZEN / "tour", "museum": FROZEN / "museum", "talk": ROOT / "tests/lint/hearing"}
 """Copies that stay as they are, so that an edit of the shipped tour changes no row."""
 
+TORN = b"Was sagte dem Webstuhl, was er weben soll?"
+"""A text of the frozen museum that lacks its quotes, which lint reports since then."""
+
 
 class Row(NamedTuple):
     """A changed project; `file` and `line` are where the finding belongs, `says` words of which it has one."""
@@ -45,7 +48,7 @@ class Row(NamedTuple):
 @cache
 def shipped(project: str) -> Mapping[str, bytes]:
     """The files of a project as it is."""
-    return read_files(PROJECTS[project])
+    return {file: content.replace(TORN, b'"' + TORN + b'"') for file, content in read_files(PROJECTS[project]).items()}
 
 
 def rows(folder: str) -> Iterator[Row]:

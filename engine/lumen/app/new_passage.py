@@ -9,6 +9,7 @@ import yaml
 
 from lumen.errors import UsageError
 from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.language_tags import is_language_tag
 
 MAX_TEXT = 1_000
 """Characters of a question, or of an answer."""
@@ -16,7 +17,6 @@ MAX_NAME = 40
 MAX_SAME = 100
 """Files whose names begin in the same way."""
 HEADER = "# yaml-language-server: $schema=../schemas/knowledge.schema.json\n\n"
-_LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 
 
 def write_passage(root: Path, question: str, answer: str, language: str) -> Path:
@@ -45,7 +45,7 @@ def write_passage(root: Path, question: str, answer: str, language: str) -> Path
 
 def check_language(language: str) -> None:
     """Raise UsageError if that can't be the name of a language."""
-    if not _LANGUAGE.fullmatch(language):
+    if not is_language_tag(language):
         raise UsageError("`language` must be a code such as `en`")
 
 

@@ -2,13 +2,13 @@
 
 import argparse
 import json
-import re
 from pathlib import Path
 
 from lumen.cli.fixing import write
 from lumen.cli.tables import table
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import did_you_mean, has_errors
+from lumen.language.language_tags import is_language_tag
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import read_files
 from lumen.loading.own_project import own_project
@@ -17,7 +17,6 @@ from lumen.rules import check_files
 from lumen.rules.new_language import with_language
 from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, switched_to, untranslated
 
-CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 VERBS = {
     "list": "list the languages of the project, and how much is missing in each",
     "add LANG": f"add an entry in this language to each text and phrase, with {TO_DO}and the words to translate",
@@ -76,7 +75,7 @@ def _add(options: argparse.Namespace, root: Path, files: dict[str, bytes], found
         raise UsageError(
             f"the project already has `{language}`: `lumen language check {language}` lists what is missing"
         )
-    if not CODE.fullmatch(language):
+    if not is_language_tag(language):
         raise UsageError(f"`{language}` is not a language code: write two or three lowercase letters, such as `de`")
     if source not in spoken:
         raise UsageError(f"the project has no language `{source}`: {did_you_mean(source, spoken, 'it has')}")

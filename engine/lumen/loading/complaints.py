@@ -1,6 +1,5 @@
 """Errors of a JSON Schema validator in a student's words."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -169,8 +168,6 @@ def _bad_key(error: Error, path: NodePath) -> Complaint:
     hint = describe(error.schema) or "use letters, digits and `_`"
     if odd := other_sign(error.instance):
         hint = f"write `{typed(error.instance).strip()}`: {odd}"
-    if path[-1:] in (("say",), ("value",)) and re.search(r"\w \w", error.instance):
-        hint = "if this is part of a text, put quotes around the whole text: a comma ends a text inside braces"
     if code := _LANGUAGES.get(error.instance.lower(), ""):
         hint = f"write the language as a code: `{code}`"
     return Complaint(WRONG_KEY, here, f"`{error.instance}` is not a valid key in {node(path)}", hint, path, here, True)

@@ -10,13 +10,14 @@ from lumen.errors import LumenError
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
-from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_TYPE, Complaint, complaints
+from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.loading.document import TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.misindented import KeyNames, key_names, misindented
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
+from lumen.loading.torn_texts import quoting, whole_translation
 from lumen.loading.yaml_nodes import read_text
 
 MAX_PRUNING_ROUNDS = 20
@@ -151,8 +152,11 @@ def _judge(
                 hint = "indent the lines that belong under it further than its key"
             elif complaint.code == WRONG_TYPE and (comment := _comment(report, complaint.path)):
                 hint = f'`#` begins a comment: put quotes around it: "{comment}"'
-            cause = _cause(complaint, report)
-            report(complaint.code, complaint.path, complaint.message, hint=hint, key=complaint.key, cause=cause)
+            torn = complaint.code in (WRONG_KEY, WRONG_TYPE) and whole_translation(report.document, complaint.path)
+            cause, hint = _cause(complaint, report), quoting(torn) if torn else hint
+            report(
+                complaint.code, complaint.path, complaint.message, hint, key=complaint.key or bool(torn), cause=cause
+            )
         spoken.add(complaint.path)
         if complaint.doomed is None:
             said.add(complaint.path)

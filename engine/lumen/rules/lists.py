@@ -7,8 +7,10 @@ from typing import Any
 from lumen.interpreters.expressions.lists import by_language, is_text_by_language
 from lumen.interpreters.expressions.value_types import schema_of
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.language_tags import is_language_tag
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.torn_texts import whole_text
 from lumen.rules.word_tables import WordTables, word_tables
 
 UNEVEN_LIST = Code("uneven-list", "references", ERROR, "an entry of a list has different keys from the others")
@@ -26,13 +28,34 @@ def check(draft: ProjectDraft) -> None:
 def listed_texts(
     tables: Iterable[WordTables], languages: Collection[str]
 ) -> Iterator[tuple[DocumentReport, NodePath, Mapping[str, Any]]]:
-    """The texts and phrases in entries that stand there by language, as one knows by any of these languages."""
+    """Yield each text or list of phrases in an entry that is given by language: it has one of these languages."""
     for table in tables:
         for name, entries in table.lists.items():
             for i, entry in enumerate(entries):
                 for key, value in entry.items():
-                    if by_language(value) and not value.keys().isdisjoint(languages):
-                        yield table.report, ("lists", name, i, key), value
+                    path = ("lists", name, i, key)
+                    if not isinstance(value, Mapping) or value.keys().isdisjoint(languages):
+                        continue
+                    if by_language(value) or is_torn(table.report, path, value, entries):
+                        yield table.report, path, value
+
+
+def is_torn(report: DocumentReport, path: NodePath, value: Mapping[str, Any], entries: Entries) -> bool:
+    """Whether a map is a text by language whose other keys are parts of its texts, and no map of data.
+
+    Without a colon such a key is certain. With one it counts if it can be no name, or if other entries have a text by
+    language in this place, and none has a map with the same key.
+    """
+    name = str(path[-1])
+    others = [entry[name] for entry in entries if name in entry and entry[name] is not value]
+    alike = any(by_language(other) and len(other) > 1 for other in others)
+    known = {key for other in others if isinstance(other, Mapping) for key in other}
+    for key in (key for key in value if not is_language_tag(key)):
+        certain = whole_text(report.document, (*path, key))
+        likely = key not in known and (alike or not str(key).isidentifier())
+        if not certain and not (likely and whole_text(report.document, (*path, key), by_language=True)):
+            return False
+    return True
 
 
 def entry_schema(entries: Entries) -> dict[str, Any]:

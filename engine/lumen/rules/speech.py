@@ -10,17 +10,20 @@ from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
+from lumen.language.language_tags import is_language_tag
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.language.sayings import SAYINGS_FOLDER
 from lumen.loading.common_words import COMMON_FILE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.settings import said_at
+from lumen.loading.torn_texts import quoting, whole_text
 from lumen.loading.words import ANYHOW
-from lumen.rules.lists import listed_texts
+from lumen.rules.lists import is_torn, listed_texts
 from lumen.rules.lookups import value_at
 from lumen.rules.naming import heard_rows, looked_up
-from lumen.rules.translation import begun, language_entries, switched_to
+from lumen.rules.torn_texts import TORN_TEXT
+from lumen.rules.translation import begun, is_empty, language_entries, switched_to
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import WordTables, is_taken, word_tables
 
@@ -162,6 +165,10 @@ class _Speech:
     def behavior(self, machine: MachineDefinition, report: DocumentReport) -> None:
         for button in (button for state in machine.states.values() for button in state.buttons):
             self.texts(report, (*button.where, "label"), button.label)
+        for key, value in _mapping_at(report, ("context",)).items():
+            where = ("context", key)
+            if isinstance(value, Mapping) and set(value) & set(self.languages) and is_torn(report, where, value, ()):
+                self.split(report, where, value)
         for site in action_sites(machine):
             match site.step.action:
                 case SayText(texts):
@@ -173,15 +180,18 @@ class _Speech:
         report = tables.report
         for name, phrases in tables.phrases.items():
             self.each(report, ("phrases", name), phrases)
+            self.empty(report, ("phrases", name))
         for table, rows in tables.answers.items():
             if table not in self.heard:
                 report.memoize(("late answers", report.document.file, table), rows, partial(_late, report, table, rows))
             for i, row in enumerate(rows):
                 self.each(report, ("answers", table, i, "phrases"), row.phrases)
+                self.empty(report, ("answers", table, i, "phrases"))
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):
                     self.texts(report, ("answers", table, i, "value"), row.value)
         for report, path, texts in listed_texts([tables], self.languages):
-            self.texts(report, path, texts)
+            parts = self.split(report, path, texts)
+            self.texts(report, path, {language: text for language, text in texts.items() if language not in parts})
 
     def phrases(self, tables: WordTables) -> None:
         """Phrases that are listened for in fewer languages than the project speaks; each language is told once."""
@@ -214,7 +224,8 @@ class _Speech:
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
         """What is said in several languages should be said in all."""
         self.each(report, path, texts)
-        said = {*texts, *_written(report, path)}
+        self.empty(report, path)
+        said = {language for language in texts if not _is_rest(report, (*path, language))} | _written(report, path)
         astray = {language for language in self.languages if (*path[:-1], language) in report.pruned}
         if any(language not in self.languages for language in said - {"", "any"}):
             return  # that one stands for it
@@ -223,6 +234,23 @@ class _Speech:
             message = f"this text is missing in {_listed(missing)}"
             report(MISSING_LANGUAGE, path, message, f"add `{missing[0]}:` with the text", key=True)
 
+    def split(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> set[str]:
+        """The keys that are parts of texts which a comma splits; each text is reported once."""
+        wholes = {key: whole_text(report.document, (*path, key), by_language=True) for key in texts}
+        for key, whole in wholes.items():
+            if whole:
+                message = f"`{key}` is not part of the text: it is read as a key"
+                cause = f"{report.document.file} {path} {whole}"
+                report(TORN_TEXT, (*path, key), message, quoting(whole), key=True, cause=cause)
+        return {key for key, whole in wholes.items() if whole}
+
+    def empty(self, report: DocumentReport, path: NodePath) -> None:
+        """Translations without a word: nothing is said or heard in their languages."""
+        for language, text in _mapping_at(report, path).items():
+            if language in self.languages and is_empty(text) and not report.broken((*path, language)):
+                message = f"this text is empty in `{language}`"
+                report(MISSING_LANGUAGE, (*path, language), message, f"write the text in `{language}`", key=True)
+
     def each(self, report: DocumentReport, path: NodePath, languages: Iterable[str]) -> None:
         for language in languages:
             if language:
@@ -230,16 +258,31 @@ class _Speech:
 
     def known(self, report: DocumentReport, path: NodePath, language: str, *, key: bool = False) -> None:
         if language not in self.languages and language not in self.lost:
-            hint = did_you_mean(language, self.languages, "it speaks")
+            hint, cause = did_you_mean(language, self.languages, "it speaks"), f"language {language}"
             message = f"the project does not speak `{language}`"
-            report(UNKNOWN_LANGUAGE, path, message, hint, key=key, cause=f"language {language}")
+            if key and (whole := whole_text(report.document, path, by_language=not language.isidentifier())):
+                hint, cause = quoting(whole), f"{path[:-1]} {whole}"
+            elif key and not is_language_tag(language):
+                hint += f"; if `{language}` is part of a text, put quotes around the whole text"
+            report(UNKNOWN_LANGUAGE, path, message, hint, key=key, cause=cause)
 
 
 def _written(report: DocumentReport, path: NodePath) -> set[str]:
     """The languages of a text as the file has them, those of broken texts too."""
-    node = value_at(report, path)
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
-    return gone.union(node if isinstance(node, dict) else ()) - {"gestures", ANYHOW}
+    found = gone.union(_mapping_at(report, path)) - {"gestures", ANYHOW}
+    return {language for language in found if not _is_rest(report, (*path, language))}
+
+
+def _mapping_at(report: DocumentReport, path: NodePath) -> Mapping[str, Any]:
+    node = value_at(report, path)
+    return node if isinstance(node, dict) else {}
+
+
+def _is_rest(report: DocumentReport, path: NodePath) -> bool:
+    """Whether a key of a text by language is no language but a part of a text."""
+    name = str(path[-1])
+    return bool(whole_text(report.document, path)) or not (is_language_tag(name) or name.isidentifier() or not name)
 
 
 def _is_missed(draft: ProjectDraft, language: str) -> bool:

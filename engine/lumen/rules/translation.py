@@ -70,9 +70,9 @@ def untranslated(entries: Sequence[LanguageEntry], language: str) -> Iterator[Un
     """Where something is missing in that language."""
     for report, path, by_language in entries:
         there = by_language.get(language)
-        if there is not None and not _is_begun(there):
+        if not is_empty(there) and not _is_begun(there):
             continue
-        at = (*path, language) if there is not None else path
+        at = (*path, language) if language in by_language else path
         other = next((value for name, value in by_language.items() if name != language), there)
         yield Untranslated(report.document.place(at, key=True), "; ".join(_texts(other)))
 
@@ -82,6 +82,12 @@ def begun(entries: Sequence[LanguageEntry], language: str) -> Iterator[tuple[Doc
     for report, path, by_language in entries:
         if _is_begun(by_language.get(language)):
             yield report, (*path, language)
+
+
+def is_empty(value: Any) -> bool:
+    """Whether nothing is said or heard in a language: it has no text, or one of its texts has no words."""
+    texts = value if isinstance(value, list) else [value]
+    return not texts or any(text is None or (isinstance(text, str) and not text.strip()) for text in texts)
 
 
 def _places(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:

@@ -1,13 +1,11 @@
 """What the language does with lists: parts of them, what is drawn from them, and texts in several languages in them."""
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 from lumen.interpreters.expressions.kinds import LIST, NUMBER, FaultError, WrongKindError
 from lumen.interpreters.expressions.scope import Scope
-
-_LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
+from lumen.language.language_tags import is_language_tag
 
 
 def take(values: Any, count: Any) -> list[Any]:
@@ -47,7 +45,7 @@ def in_language(scope: Scope, value: Any) -> Any:
 
 def by_language(value: Any) -> bool:
     """Whether a value is a map whose keys are languages."""
-    return isinstance(value, Mapping) and bool(value) and all(_LANGUAGE.fullmatch(str(key)) for key in value)
+    return isinstance(value, Mapping) and bool(value) and all(map(is_language_tag, value))
 
 
 def is_text_by_language(value: Any) -> bool:

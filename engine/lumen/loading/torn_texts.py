@@ -1,0 +1,73 @@
+"""Texts in braces that a comma splits: YAML reads their rest as a key, as in `{en: Oh, step back}`."""
+
+import json
+from typing import Any
+
+from lumen.language.diagnostics import NodePath
+from lumen.language.language_tags import is_language_tag
+from lumen.language.text_lines import lines_of
+from lumen.loading.document import Document
+
+
+def whole_text(document: Document, path: NodePath, *, by_language: bool = False) -> str:
+    """Return the entry whose text continues in the key at `path`, quoted: `en: "Oh, step back"`; "" if there is none.
+
+    The rest of a text is a key without a colon, behind an entry that is a text. If a colon is in the rest, it is a key
+    with a text; that counts only in a map `by_language`, for keys that are no language.
+    """
+    around = _node(document, path[:-1])
+    if not path or not isinstance(around, dict) or path[-1] not in around:
+        return ""
+    keys = list(around)
+    rests = [_is_rest(document, (*path[:-1], key), around[key], by_language) for key in keys]
+    at = keys.index(path[-1])
+    first = next((i for i in range(at, -1, -1) if not rests[i]), at)
+    if first == at or not isinstance(around[keys[first]], str):
+        return ""
+    last = next((i for i in range(at, len(keys)) if not rests[i]), len(keys))
+    parts = (key if around[key] is None else f"{key}: {around[key]}" for key in keys[first + 1 : last])
+    return f"{keys[first]}: {json.dumps(', '.join([around[keys[first]], *parts]), ensure_ascii=False)}"
+
+
+def whole_translation(document: Document, path: NodePath) -> str:
+    """Return `whole_text` if the text is one of several languages, and not the target of an event or a sentence.
+
+    In `say`, a part with a colon in it counts if it can't be a name: `german:` is one.
+    """
+    whole = whole_text(document, path, by_language=path[-2:-1] == ("say",) and not str(path[-1]).isidentifier())
+    key = whole.partition(":")[0]
+    return whole if (key == "any" or is_language_tag(key)) and path[-2] not in ("on", "hears") else ""
+
+
+def quoting(whole: str) -> str:
+    """The hint for a text that a comma splits; `whole` is what `whole_text` returns."""
+    return f"a comma ends a text inside braces: put quotes around the whole text: {whole}"
+
+
+def _is_rest(document: Document, path: NodePath, value: Any, by_language: bool) -> bool:
+    if value is None:
+        return _follows(document, path) != ":"
+    return by_language and isinstance(value, str) and not is_language_tag(path[-1]) and _in_braces(document, path[:-1])
+
+
+def _follows(document: Document, path: NodePath) -> str:
+    """The sign that follows a key in the file."""
+    if path not in document.spans:
+        return ":"
+    place = document.place(path, key=True)
+    return lines_of(document.text)[place.end_line - 1][place.end_column - 1 :].lstrip()[:1]
+
+
+def _in_braces(document: Document, path: NodePath) -> bool:
+    place = document.place(path)
+    return lines_of(document.text)[place.line - 1][place.column - 1 :].startswith("{")
+
+
+def _node(document: Document, path: NodePath) -> Any:
+    node = document.data
+    for step in path:
+        try:
+            node = node[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return node
