@@ -1,5 +1,6 @@
 """What a story can say and expect, and how it is told where that is not so."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -68,6 +69,25 @@ def test_what_does_not_hold_is_told_with_its_place(
     assert "state    open  (knock)" in told
     assert "robot    “Hello, Ani!”" in told
     assert "1 story, 1 failed" in told
+
+
+def test_what_was_missing_when_the_rest_held_is_told(story: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    project = story(f"{KNOCK}  - expect: {{place: organ, said: Hallo, within: 60s}}\n")
+    door = project / "behaviors" / "door.yaml"
+    walk = "do: [{walk: {to: organ}}, {say: 'Hello, {{ context.name }}!'}, {walk: {to: start}}, {say: Bye}]"
+    door.write_text(re.sub(r"do: .*", walk, door.read_text("utf-8")).replace("20s: closed", "2min: closed"), "utf-8")
+    main_file = project / "lumen.yaml"
+    places = "places: {start: {x: 0, y: 0}, organ: {x: 0.2, y: 0.2}}\n"
+    main_file.write_text(re.sub(r"(?m)^places:.*\n(?:[ #].*\n)*", "", main_file.read_text("utf-8")) + places, "utf-8")
+    assert main(["test", str(project), "knocking"]) == 1
+    assert "expected within 60 s to hear “Hallo”, but it said “Hello, Ani!”\n" in capsys.readouterr().out
+
+
+def test_of_several_texts_the_nearest_is_told(story: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    again = "  - wait: 21s\n  - event: {name: knock, data: {who: Budi}}\n"
+    project = story(f"{KNOCK}{again}  - expect: {{said: Helo Ani}}\n")
+    assert main(["test", str(project), "knocking"]) == 1
+    assert "it said “Hello, Ani!”; “Hello, Budi!”; the nearest is “Hello, Ani!”\n" in capsys.readouterr().out
 
 
 def test_a_state_that_must_never_be_is_told_with_the_step_it_came_in(

@@ -111,7 +111,7 @@ class StoryPlayer(Observer):
         self._exhibition, self._hall, self._walker = exhibition, hall, walker
         self._tell = tell
         self._witness = StoryObservations()
-        self._missed: UnmetExpectation | None = None
+        self._missed: tuple[UnmetExpectation, ...] = ()
         self._begun = self._since = 0.0
         self._awaited: int | None = None
         machine = exhibition.project.behaviors[story.behavior or exhibition.project.behavior]
@@ -193,7 +193,7 @@ class StoryPlayer(Observer):
                 return self._since + seconds
             case AnswerQuestion() if not self._witness.asked:
                 return self._since + QUESTION_WITHIN
-            case Expect() as expected if self._witness.lacks(expected):
+            case Expect() as expected if self._witness.unmet(expected):
                 return self._since + expected.within
             case AwaitTime() if self._awaited is not None:
                 return now + (self._awaited - self._moment(now)) / MICROSECONDS
@@ -266,21 +266,26 @@ class StoryPlayer(Observer):
         return story_moment(self.story, self._exhibition.project.timezone, now - self._begun)
 
     def _expect(self, expected: Expect, now: float) -> bool:
-        lacking = self._witness.lacks(expected)
+        lacking = self._witness.unmet(expected)
         if not lacking:
             self._witness.forget()
-            self._missed = None
+            self._missed = ()
             return True
-        if self._witness.states.issuperset(expected.states):
+        if not self._missed or _distance(lacking) <= _distance(self._missed):
             self._missed = lacking
         if now >= self._since + expected.within:
-            lacking = self._missed or lacking
-            self.fail(lacking._replace(expected=f"{lacking.expected} within {expected.within:g} s"))
+            nearest = self._missed[0]
+            self.fail(nearest._replace(expected=f"{nearest.expected} within {expected.within:g} s"))
         return False
 
     def fail(self, lack: UnmetExpectation) -> None:
         """End the story at the step it stands at; where it has failed already, that counts."""
         position = min(self.position, len(self.story.steps) - 1)
         self.failed = self.failed or StoryFailure(
-            self.story.name, position + 1, self.story.steps[position].where, *lack
+            self.story.name, position + 1, self.story.steps[position].where, lack.expected, lack.was
         )
+
+
+def _distance(lacking: tuple[UnmetExpectation, ...]) -> tuple[bool, int]:
+    """How far the exhibition was from an expectation: in another state first, then by how much was missing."""
+    return any(lack.state for lack in lacking), len(lacking)

@@ -1,7 +1,9 @@
 """What has been seen while a story plays, and what of an expectation does not hold."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from difflib import SequenceMatcher
+from functools import partial
 from typing import Any, NamedTuple
 
 from lumen.language.events import FALLEN, Event
@@ -14,6 +16,8 @@ class UnmetExpectation(NamedTuple):
 
     expected: str
     was: str
+    state: bool = False
+    """Whether the state was another one."""
 
 
 @dataclass
@@ -31,23 +35,25 @@ class StoryObservations:
     playing: dict[str, str] = field(default_factory=dict)
     asked: str = ""
 
-    def lacks(self, expected: Expect) -> UnmetExpectation | None:
-        """The first thing of `expected` that does not hold."""
-        if missing := [s for s in expected.states if s not in self.states]:
-            return UnmetExpectation(f"state `{missing[0]}`", f"the active states are {listed(self.states)}")
-        if expected.place is not None and expected.place != self.place:
-            return UnmetExpectation(f"the robot to be at `{expected.place}`", f"it is {_at(self.place)}")
-        return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
+    def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:
+        """Everything of `expected` that does not hold now."""
+        return tuple(self._unmet(expected))
 
-    def _unheard(self, expected: Expect) -> UnmetExpectation | None:
+    def _unmet(self, expected: Expect) -> Iterator[UnmetExpectation]:
+        if missing := [s for s in expected.states if s not in self.states]:
+            yield UnmetExpectation(f"state `{missing[0]}`", f"the active states are {listed(self.states)}", state=True)
+        if expected.place is not None and expected.place != self.place:
+            yield UnmetExpectation(f"the robot to be at `{expected.place}`", f"it is {_at(self.place)}")
         part, whole = expected.said, expected.said_exactly
         if part is not None and not any(part.lower() in text.lower() for text in self.said):
-            return UnmetExpectation(f"to hear “{part}”", f"it said {_texts(self.said)}")
+            yield UnmetExpectation(f"to hear “{part}”", f"it said {_texts(self.said, part)}")
         if whole is not None and whole not in self.said:
-            return UnmetExpectation(f"to hear exactly “{whole}”", f"it said {_texts(self.said)}")
+            yield UnmetExpectation(f"to hear exactly “{whole}”", f"it said {_texts(self.said, whole)}")
         if expected.played is not None and expected.played not in self.played:
-            return UnmetExpectation(f"the motion `{expected.played}`", f"it played {listed(self.played)}")
-        return None
+            yield UnmetExpectation(f"the motion `{expected.played}`", f"it played {listed(self.played)}")
+        for lack in (self._unsent(expected), self._unlike(expected.context)):
+            if lack:
+                yield lack
 
     def _unsent(self, expected: Expect) -> UnmetExpectation | None:
         route, body = expected.published, expected.body
@@ -116,5 +122,13 @@ def _at(place: str) -> str:
     return f"at `{place}`" if place else "at none of the project's places"
 
 
-def _texts(texts: list[str]) -> str:
-    return "; ".join(f"“{t}”" for t in texts) or "nothing"
+def _texts(texts: list[str], wanted: str) -> str:
+    """Return what was said, and of several texts the one that is most like the wanted one."""
+    shown = "; ".join(f"“{t}”" for t in texts) or "nothing"
+    return f"{shown}; the nearest is “{max(texts, key=partial(_likeness, wanted))}”" if len(texts) > 1 else shown
+
+
+def _likeness(wanted: str, text: str) -> int:
+    """The number of letters that a text has in common with the wanted one, in the same order."""
+    blocks = SequenceMatcher(None, wanted.lower(), text.lower(), autojunk=False).get_matching_blocks()
+    return sum(block.size for block in blocks if block.size > 2)
