@@ -265,9 +265,18 @@ def colons(text: str, index: int) -> Iterator[Slip]:
         yield line.quoted(*found.span("value"), _odd_beginning(found["value"]))
 
 
+_TRANSLATION = re.compile(
+    r"""(?<=[{,])\s*(?:[a-z]{2}|any): +"""
+    r"""(?P<value>[^"'\[\]{},: ][^"'\[\]{},:]*(?<! [a-z]{2})(?<! any): [^"'\[\]{},]*[^"'\[\]{}, ])"""
+)
+"""A text of a language with a colon in it, behind a word that is no language itself."""
+
+
 def flows(text: str, index: int) -> Iterator[Slip]:
     """What is missing in brackets: commas, colons, and quotes around texts with a colon in them."""
     line = _Line(text, index)
+    for found in re.finditer(_TRANSLATION, text):  # before the comma: these words are no keys
+        yield line.quoted(*found.span("value"), COLON_IN_TEXT)
     for found in re.finditer(rf"(?<=[\w\"'\]}}.])(?P<slip> +)(?={KEY}: )", text):
         yield line.slip(found.start(), 1, NO_COMMA, found.start(), found.start(), ",")
     for found in re.finditer(rf"{KEY}: +(?P<value>[^\"'\[\]{{}},:]+: [^\"'\[\]{{}},]*[^\"'\[\]{{}}, ])", text):
