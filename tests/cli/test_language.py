@@ -146,6 +146,17 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
     assert main(["language", "list", "--project", str(hall)]) == 0
 
 
+def test_check_lists_a_text_that_is_the_same_in_all_languages(hall: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["language", "add", "de", "--project", str(hall)]) == 0
+    file = hall / "behaviors/hello.yaml"
+    file.write_text(file.read_text("utf-8").replace("TODO ", "").replace('say: "{{', 'say: "Here: {{'), "utf-8")
+    capsys.readouterr()
+    assert main(["language", "check", "de", "--project", str(hall)]) == 0
+    told = capsys.readouterr().out
+    assert "de: all 3 are there" in told
+    assert re.search(r"behaviors/hello.yaml:\d+:14 is said in all languages: write one text for each language", told)
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

@@ -15,7 +15,15 @@ from lumen.loading.own_project import own_project
 from lumen.loading.project import draft
 from lumen.rules import check_files
 from lumen.rules.new_language import with_language
-from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, switched_to, untranslated
+from lumen.rules.translation import (
+    TO_DO,
+    LanguageEntry,
+    Untranslated,
+    language_entries,
+    plain_texts,
+    switched_to,
+    untranslated,
+)
 
 VERBS = {
     "list": "list the languages of the project, and how much is missing in each",
@@ -59,6 +67,9 @@ def run(options: argparse.Namespace) -> int:
         print(table(["language", "texts and phrases", "missing"], rows))
     else:
         _tell(entries, missing)
+        same = [report.document.place(path) for report, path in plain_texts(found)] if len(spoken) > 1 else []
+        for place in same:
+            print(f"{place} is said in all languages: write one text for each language, or leave it if it fits all")
         for language in sorted({*missing} - {*spoken[:1]} - switched_to(found)):
             hint = f"add the action `language: {language}` for visitors who ask for it"
             print(f"{language}: no action switches the robot to this language: {hint}")
