@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import lumen
-from lumen.language.diagnostics import Severity
+from lumen.language.diagnostics import Severity, did_you_mean
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import page
 from tests.scanning import matching
@@ -72,3 +72,9 @@ def test_every_code_says_how_bad_it_is_and_what_it_means(code) -> None:
     assert code.summary
     assert not code.summary.endswith(".")
     assert page(code).what
+
+
+def test_the_hint_of_a_name_says_what_to_do_if_there_are_none() -> None:
+    assert did_you_mean("door", [], "available:") == (
+        "there are none yet: define one of this name, or delete the name here"
+    )

@@ -232,6 +232,8 @@ def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str
     shown = ", ".join(f"`{n}`" for n in names[:8]) + (", …" if len(names) > 8 else "")
     if near:
         return mean(word, near) + (f" {what} {shown}" if what and len(names) > 1 else "")
+    if not names and what.endswith(":"):
+        return "there are none yet: define one of this name, or delete the name here"
     if not names:
         return f"{what} {'none' if what.endswith('are') else 'nothing'}" if what else ""
     return f"{what or 'choose one of'} {shown}"

@@ -9,7 +9,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.project_folders import GESTURES_FOLDER
 from lumen.rules.effects import NO_EFFECT
 from lumen.rules.lookups import first
-from lumen.rules.motions import TOO_FAST
+from lumen.rules.motions import TOO_FAST, more_time
 
 
 def check(draft: ProjectDraft) -> None:
@@ -39,5 +39,5 @@ def _speeds(library: GestureLibrary, report: DocumentReport, body: Body) -> None
             message = (
                 f"`{gesture.name}` would move `{joint}` at {excesses[joint]:.1f} times the speed limit of a gesture"
             )
-            hint = f"give its longest movement {100 * (excesses[joint] - 1):.0f} % more time, or a smaller angle"
+            hint = f"give its longest movement {more_time(excesses[joint])}, or a smaller angle"
             report(TOO_FAST, gesture.where, message, hint, key=True)

@@ -69,16 +69,24 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], unit: str, bod
     if others:
         names = ", ".join(f"`{name}`" for name in list(dict.fromkeys(e.joint for e in others))[:3])
         message += f"; also too fast: {names}{' and others' if len(others) > 3 else ''}"
-    percent = ceil(100 * (excess.value / excess.limit - 1))
+    longer = more_time(excess.value / excess.limit)
     cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
     report(
         TOO_FAST,
         excess.key.where,
         message,
-        f"give it {percent} % more time",
+        f"give it {longer}",
         cause=cause,
         root=f"the speed of `{excess.joint}` in models/",
     )
+
+
+def more_time(factor: float) -> str:
+    """How much longer a movement must take that is so many times too fast, in words: rounded up to two digits."""
+    if factor >= 2:
+        digits = 10.0 ** (len(str(int(factor))) - 2)
+        return f"{ceil(factor / digits) * digits:g} times as much time"
+    return f"{ceil(100 * (factor - 1))} % more time"
 
 
 def _too_far(report: DocumentReport, excess: Excess, unit: str, body: Body) -> None:
