@@ -42,7 +42,7 @@ def test_one_process_of_voice_and_memory_serves_both(
         [answer] = asked.wait(1)
         assert [visitor["name"] for visitor in answer["visitors"]] == ["Friend of ben"], "each has its own visitors"
         hall.end(process, signal.SIGTERM)
-        assert "ana: voice: 1 messages" in told.read_text("utf-8")
+        assert "ana: voice: 1 message" in told.read_text("utf-8")
     finally:
         bus.close()
         hall.close()

@@ -7,6 +7,7 @@ from lumen.app.ignoring import IgnoredEvents
 from lumen.interpreters.statechart import Step, finished
 from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say, Start, Tell
+from lumen.language.counts import counted
 from lumen.language.events import CUE, HELD, RECORDED, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import (
@@ -58,7 +59,8 @@ class Narrator(Observer):
 
     def counted(self) -> str:
         """What happened altogether."""
-        return f"{len(self.states)} states, {self.said} texts, motions: {', '.join(self.played) or 'none'}"
+        counts = f"{counted(len(self.states), 'state')}, {counted(self.said, 'text')}"
+        return f"{counts}, motions: {', '.join(self.played) or 'none'}"
 
     def stepped(self, step: Step) -> None:
         for prefix, machine, part in flattened_steps(self._machine(), step):

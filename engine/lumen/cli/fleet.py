@@ -23,6 +23,7 @@ from lumen.cli.fleet_text import fleet_lines, log_lines
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
 from lumen.interpreters.changes import changes, risk, summary
+from lumen.language.counts import counted
 from lumen.loading.project_folders import FLEET_FILE
 from lumen.loading.units import seconds
 from lumen.rules import check_files
@@ -178,7 +179,10 @@ def _serve(options: argparse.Namespace, root: Path) -> int:
         raise
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: served.end())
-    print(f"the centre of {len(served.centre.fleet.robots)} robots, on {bus_name(_address(options, root))}", flush=True)
+    print(
+        f"the centre of {counted(len(served.centre.fleet.robots), 'robot')}, on {bus_name(_address(options, root))}",
+        flush=True,
+    )
     try:
         served.run()
     finally:

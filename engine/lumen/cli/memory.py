@@ -13,6 +13,7 @@ from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.app.one_robot import one_robot
 from lumen.cli.reach import configure_robot_name, reach
 from lumen.errors import BusUnreachableError, UsageError
+from lumen.language.counts import counted
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
 from lumen.loading.files import read_files
@@ -147,7 +148,8 @@ def _told(found: Forgetting) -> dict[str, object]:
 
 
 def _lines(name: str, folder: Path, found: Forgetting) -> Iterator[str]:
-    counts = f"{found.visitors} visitors, {found.entries} entries, {found.pictures} pictures"
+    visitors, pictures = counted(found.visitors, "visitor"), counted(found.pictures, "picture")
+    counts = f"{visitors}, {counted(found.entries, 'entry', 'entries')}, {pictures}"
     yield f"forgot {name}: {counts}" if found.deleted else f"{folder} has nothing about {name}"
     for title, places in (("deleted", found.deleted), ("STILL THERE", found.left), ("not here", found.elsewhere)):
         yield from (f"  {title}: {where}: {what}" for where, what in places)

@@ -22,6 +22,7 @@ from lumen.errors import BusError, UsageError
 from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import renamed, writable
 from lumen.formats.recordings.rewriting import recover
+from lumen.language.counts import counted
 from lumen.language.operator_requests import MARK, STATUS
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
@@ -79,9 +80,8 @@ def _recover(options: argparse.Namespace) -> int:
     path = options.recover
     remove_drafts(path)
     count = recover(path)
-    said = (
-        f"{path} is complete: nothing to recover" if count is None else f"{path} is complete again: {count:,} messages"
-    )
+    again = f"{path} is complete again: {counted(count or 0, 'message')}"
+    said = f"{path} is complete: nothing to recover" if count is None else again
     _say(options, said, file=str(path), messages=count)
     return 0
 
@@ -121,7 +121,7 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
     finally:
         recorder.close()
     lost = f"; {recorder.dropped:,} messages were lost: the disk was too slow" if recorder.dropped else ""
-    said = tape.trouble or f"recorded {tape.path}: {tape.messages:,} messages, {tape.bytes / 1e6:.1f} MB{lost}"
+    said = tape.trouble or f"recorded {tape.path}: {counted(tape.messages, 'message')}, {tape.bytes / 1e6:.1f} MB{lost}"
     _say(options, said, file=str(tape.path), messages=tape.messages, bytes=tape.bytes, dropped=recorder.dropped)
     return 1 if tape.trouble else 0
 

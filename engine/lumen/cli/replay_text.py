@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from datetime import datetime
 
 from lumen.app.replaying.replay_report import ReplayReport
+from lumen.language.counts import counted
 
 SHOWN = 10
 """How many differences are shown."""
@@ -27,7 +28,8 @@ def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
     if len(report.differ) > SHOWN:
         yield f"  and {len(report.differ) - SHOWN} more"
     if report.lost:
-        yield f"  missing from the journal: {report.lost:,} entries, because the disk was full or too slow"
+        lost = counted(report.lost, "entry", "entries")
+        yield f"  missing from the journal: {lost}, because the disk was full or too slow"
     for why, count in report.unknown.items():
         yield f"  not compared: {count:,} {why if other else f'entries: {why}'}"
 

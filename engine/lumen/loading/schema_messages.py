@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from lumen.interpreters.json_schema import occurs
+from lumen.language.counts import counted
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint, meant_duration
 from lumen.language.lookalikes import other_sign, typed
@@ -95,9 +96,9 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
         case "minLength" | "minProperties" if not value:
             return f"{name} is empty", hint or "write a value, or delete the key"
         case "minItems":
-            return f"{name} has {_count(len(value))}, but should have at least {bound}", hint
+            return f"{name} has {counted(len(value), 'item')}, but should have at least {bound}", hint
         case "maxProperties":
-            return f"{name} has {len(value)} keys, but should have at most {bound}", hint
+            return f"{name} has {counted(len(value), 'key')}, but should have at most {bound}", hint
         case "items" | "maxItems":
             return f"{name} has too many items", hint
         case "uniqueItems":
@@ -251,10 +252,6 @@ def _unit(unit: str) -> str:
 def _either(types: list[str]) -> str:
     words = [TYPE_NAMES[t] for t in types if t != "null"] or [TYPE_NAMES["null"]]
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + f" or {words[-1]}"
-
-
-def _count(number: int) -> str:
-    return "1 item" if number == 1 else f"{number} items"
 
 
 def _short(value: Any) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from math import degrees
 from pathlib import PurePosixPath
 
+from lumen.language.counts import counted
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.common_words import COMMON, COMMON_FILE
 from lumen.loading.draft import ProjectDraft
@@ -101,7 +102,7 @@ def _state(draft: ProjectDraft, use: NameUse) -> str:
     state = machine.states.get(use.name) if machine else None
     if state is None:
         return ""
-    inner = f", with {len(state.children)} states" if state.children else ""
+    inner = f", with {counted(len(state.children), 'state')}" if state.children else ""
     alias = f", id `{state.alias}`" if state.alias and state.alias != state.path else ""
     return f"{state.kind} state at `{state.path}`{alias}{inner}"
 

@@ -20,6 +20,7 @@ from lumen.interpreters.fleet.orders import DesiredState
 from lumen.interpreters.fleet.presence import presence_from
 from lumen.interpreters.fleet.rollout import step
 from lumen.interpreters.fleet.state import CentreState, HeardPresence
+from lumen.language.counts import counted
 from lumen.language.fleet import Fleet
 from lumen.ports import Bus, Message
 
@@ -174,4 +175,4 @@ def _said(state: CentreState) -> str:
         return "the centre continues"
     at = f"step {rollout.at + 1} of {len(rollout.plan.steps)} ({rollout.plan.steps[rollout.at]})"
     reason = f": {rollout.reason}" if rollout.reason else ""
-    return f"bundle {rollout.bundle[:12]}: {rollout.state}, {at}, {len(rollout.assigned)} robots{reason}"
+    return f"bundle {rollout.bundle[:12]}: {rollout.state}, {at}, {counted(len(rollout.assigned), 'robot')}{reason}"

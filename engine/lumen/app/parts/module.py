@@ -7,6 +7,7 @@ from pathlib import Path
 from lumen.app.claiming import presence_of
 from lumen.app.parts.module_factory import make_module
 from lumen.app.parts.part import Part
+from lumen.language.counts import counted
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
@@ -69,7 +70,9 @@ class ModulePart(Part):
     def summary(self) -> Iterator[str]:
         for robot, module in self._modules.items():
             what = self.name if len(self._modules) == 1 else f"{self.name} of {robot}"
-            yield f"{what}: {module.handled} messages" + (f", {module.refused} dropped" if module.refused else "")
+            yield f"{what}: {counted(module.handled, 'message')}" + (
+                f", {module.refused} dropped" if module.refused else ""
+            )
 
     def close(self) -> None:
         for module in self._modules.values():

@@ -19,6 +19,7 @@ from lumen.extras import MissingExtraError
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import Recorded, RecordedNotes
 from lumen.formats.recordings.recording_file import demand_recording, renamed, writable
+from lumen.language.counts import counted
 from lumen.language.projects import Project
 from lumen.runtime.home import home_of
 
@@ -74,7 +75,7 @@ class RecordingPart(Part):
 
     def summary(self) -> Iterator[str]:
         if self._file:
-            yield self._file.trouble or f"recorded: {self._file.path}, {self._file.messages:,} messages so far"
+            yield self._file.trouble or f"recorded: {self._file.path}, {counted(self._file.messages, 'message')} so far"
 
     def close(self) -> None:
         if self.recorder:

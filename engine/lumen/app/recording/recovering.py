@@ -10,6 +10,7 @@ from lumen.errors import LumenError, RecordingError
 from lumen.formats.recordings.reading import whole
 from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.rewriting import recover, rewrite
+from lumen.language.counts import counted
 from lumen.upkeep.threads import WatchedThread
 
 Explaining = Callable[[Sequence[Path]], Iterable[Recorded]]
@@ -42,7 +43,7 @@ class RecordingRescue:
             path = self._cut.pop()
             with _telling(self._tell, path):
                 remove_drafts(path)
-                self._tell(f"{path} was cut off and has been repaired: {recover(path) or 0:,} messages")
+                self._tell(f"{path} was cut off and has been repaired: {counted(recover(path) or 0, 'message')}")
         pieces, self._pieces = self._pieces, []
         if pieces:
             path = kept_as(self._folder, pieces[-1].stat().st_mtime, "crashed")
@@ -52,7 +53,8 @@ class RecordingRescue:
                 for piece in pieces:
                     piece.unlink(missing_ok=True)
                 if count:
-                    self._tell(f"the last minutes of the run that ended unexpectedly are in {path}: {count:,} messages")
+                    said = f"the last minutes of the run that ended unexpectedly are in {path}"
+                    self._tell(f"{said}: {counted(count, 'message')}")
                 else:
                     path.unlink(missing_ok=True)
 
