@@ -60,11 +60,11 @@ def test_it_is_printed_for_people_and_programs(
     assert set(json.loads(capsys.readouterr().out)) == KEYS
     assert main(["status", str(copy)]) == 0
     text = capsys.readouterr().out
-    assert f"stopped   by {person()}: it does not move until `lumen resume`" in text
+    assert f"stopped   by {person()}: to let it move again, hold its head, or run `lumen resume`" in text
     assert "visitor   no name known, spoken to in en" in text
     assert main(["goto", "offer", str(copy), "--yes"]) == 0
     said = capsys.readouterr().out
-    assert said.endswith(f"{person()} stopped the robot: it moves only after `lumen resume`\n")
+    assert said.endswith(f"{person()} stopped the robot: to let it move again, hold its head, or run `lumen resume`\n")
 
 
 @pytest.mark.network

@@ -28,7 +28,11 @@ def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
     monkeypatch.setattr("sys.stdin", Terminal("no\n"))
     assert main(["resume", str(copy)]) == 1
     since = f"{hold.stopped.since.astimezone():%Y-%m-%d %H:%M:%S}"
-    assert f"{person()} stopped the robot at {since}.\n" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert (
+        f"{person()} stopped the robot at {since}.\nIt may stand up at once, and Lumen can't see who is near." in said
+    )
+    assert "`--yes` skips this question" in said
     assert "stopped" in exhibition.configuration
     monkeypatch.setattr("sys.stdin", io.StringIO())
     assert main(["resume", str(copy)]) == 2

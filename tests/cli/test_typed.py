@@ -6,8 +6,11 @@ from unittest.mock import Mock
 
 import pytest
 
+from lumen.cli.person import person
 from lumen.cli.typed import MAX_LINE_CHARACTERS, MAX_WAITING_LINES, TypedVisitorPart
 from lumen.cli.typed_commands import TypedCommands
+from lumen.errors import BusError
+from lumen.language.routing_keys import default_key
 from tests.tables import for_each
 from tests.waiting import until
 
@@ -73,7 +76,7 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
     ("line", "says"),
     [
         ("/tuch head", "no command `/tuch`: did you mean `touch`?"),
-        ("/", "there are `go`, `help`, `press`, `stay`, `touch`"),
+        ("/", "there are `go`, `help`, `press`, `resume`, `stay`, `stop`, `touch`"),
         ("/go", "True by the operator"),
         ("/stay", "False by the operator"),
         ("/press", "write the button's label, as in `/press Next exhibit`"),
@@ -85,6 +88,8 @@ def test_a_hand_stays_as_long_as_was_typed() -> None:
         ),
         ("/touch chest", "the robot has no place `chest` to touch"),
         ("/help", "/touch head       touch the robot's head; also left bumper"),
+        ("/help", "/stop             make the robot rest at once"),
+        ("/help", "/resume           let a stopped robot move again"),
     ],
 )
 def test_what_can_be_typed_is_said(line: str, says: str) -> None:
@@ -94,3 +99,22 @@ def test_what_can_be_typed_is_said(line: str, says: str) -> None:
     TypedCommands(visitor, narrator, exhibition).do(line, 0.0)
     assert says in narrator.note.call_args.args[0]
     assert visitor.felt == []
+
+
+def test_stop_and_resume_go_the_way_of_lumen_stop_in_the_name_of_the_person_who_typed() -> None:
+    visitor: Any = Hall()
+    exhibition = Mock(project=SimpleNamespace(routes={}, robot="NAO"))
+    commands = TypedCommands(visitor, Mock(), exhibition)
+    commands.do("/stop", 0.0)
+    commands.do("/resume", 0.0)
+    sent = [(call.args[0], call.args[1]["method"]) for call in exhibition.bus.publish.call_args_list]
+    assert sent == [(default_key("stop", "NAO"), "rest"), (default_key("stop", "NAO"), "resume")]
+    assert exhibition.bus.publish.call_args.args[1]["parameter"] == {"by": person()}
+
+
+def test_a_stop_that_the_bus_refuses_is_reported() -> None:
+    visitor: Any = Hall()
+    narrator, exhibition = Mock(), Mock(project=SimpleNamespace(routes={}, robot="NAO"))
+    exhibition.bus.publish.side_effect = BusError("the broker is away")
+    TypedCommands(visitor, narrator, exhibition).do("/stop", 0.0)
+    narrator.note.assert_called_once_with("the robot did not get this command: the broker is away")

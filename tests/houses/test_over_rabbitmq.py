@@ -99,7 +99,10 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     code, said = hall.call("status", "--robot-name", "ana")
     assert code == 2
     assert "ana       does not run: it ended unexpectedly at " in said
-    assert f"stopped   by {by}: it stays stopped after a restart, until `lumen resume`" in said
+    assert (
+        f"stopped   by {by}; it stays stopped after a restart. To let it move, hold its head, or run `lumen resume`"
+        in said
+    )
     process, told = hall.begin()
     until(hall.both)
     assert hall.status()["ana"]["stopped_by"] == by

@@ -11,6 +11,7 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import UsageError
+from lumen.language.events import HELD
 from lumen.language.operator_requests import GOTO
 
 
@@ -43,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
         return 1
     print(f"in {', '.join(way['entered'])}")
     if by := way.get("stopped_by"):
-        print(f"{by} stopped the robot: it moves only after `lumen resume`")
+        print(f"{by} stopped the robot: to let it move again, {HELD}")
     return 0
 
 

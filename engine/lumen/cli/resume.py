@@ -51,8 +51,9 @@ def _here(since: object) -> str:
 
 
 def _sure(stopped: Any, robot: str) -> bool:
-    """Whether whoever is asked says yes; who stopped it is said before."""
+    """Print who stopped it and why a person is asked; return whether that person confirms."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
     print(f"{by} stopped {robot} at {_here(since)}." if by else f"{robot[0].upper()}{robot[1:]} is not stopped.")
     otherwise = "resume asks for confirmation, but this is not a terminal: add --yes if there is room around the robot"
-    return agrees("It may stand up at once. Is there room around it?", otherwise)
+    print("It may stand up at once, and Lumen can't see who is near. `--yes` skips this question.")
+    return agrees("Is there room around it?", otherwise)

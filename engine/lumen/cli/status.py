@@ -13,6 +13,7 @@ from lumen.app.recovery.last_run import last_run
 from lumen.cli.printing import clock_time
 from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
+from lumen.language.events import HELD
 from lumen.language.operator_requests import STATUS
 from lumen.loading.running_project import running_project
 
@@ -89,7 +90,7 @@ def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     else:
         yield name, "does not run"
     if status["stopped"]:
-        yield "stopped", f"by {status['stopped_by']}: it stays stopped after a restart, until `lumen resume`"
+        yield "stopped", f"by {status['stopped_by']}; it stays stopped after a restart. To let it move, {HELD}"
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
@@ -104,7 +105,7 @@ def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     for timer in status["timers"]:
         yield "timer", f"{timer['event']}: due {_ahead(timer['due'], now)}"
     if status["stopped"]:
-        yield "stopped", f"by {status['stopped_by']}: it does not move until `lumen resume`"
+        yield "stopped", f"by {status['stopped_by']}: to let it move again, {HELD}"
     if status["realtime"] < 1.0:
         yield "time", f"it runs at {status['realtime']:.2f} × real time"
     if reload := status["last_reload"]:

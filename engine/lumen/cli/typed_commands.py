@@ -1,18 +1,22 @@
-"""What a visitor who is typed does besides speaking, and an operator: `/touch head 3s`, `/press Next`."""
+"""Typed commands of a visitor and of an operator: `/touch head 3s`, `/press Next`, `/stop`."""
 
 from collections.abc import Callable
+from typing import Any
 
 from lumen.app.narrator import Narrator
-from lumen.errors import UsageError
+from lumen.app.resting import rest_body, resume_body
+from lumen.cli.person import person
+from lumen.errors import BusError, UsageError
 from lumen.language.causes import OPERATOR
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.durations import seconds
 from lumen.language.stories import Approve, Press, TouchSensor
+from lumen.robots.robot_routes import STOP_ROUTE, publish_on
 from lumen.runtime.story import StoryEnvironment
 from lumen.runtime.visitor import VisitorActor
 
 TAP = 0.5
-"""How long a hand stays where nothing is said [s]."""
+"""The time for which a hand stays if none is typed [s]."""
 PLACES = {
     "head": "FrontTactil",
     "chest": "ChestButton",
@@ -28,6 +32,8 @@ Type what the visitor says. A line that begins with / is a command:
   /touch head 3s    keep the hand there for 3 s (default: {tap})
   /press Next       as the operator, press a button, by its label in any language
   /go, /stay        as the operator, approve or refuse what waits for approval
+  /stop             make the robot rest at once, as `lumen stop` does; this is not an emergency stop
+  /resume           let a stopped robot move again, as `lumen resume` does; /touch head 3s does the same
   /help             show this list"""
 
 
@@ -42,6 +48,8 @@ class TypedCommands:
             "press": self._press,
             "go": lambda _words, _now: self._approve(go=True),
             "stay": lambda _words, _now: self._approve(go=False),
+            "stop": lambda _words, _now: self._send(rest_body(person())),
+            "resume": lambda _words, _now: self._send(resume_body(person())),
             "help": self._help,
         }
 
@@ -84,6 +92,13 @@ class TypedCommands:
         if reason := self._exhibition.approve(OPERATOR, go=go):
             raise UsageError(reason)
         self._narrator.visitor_action(Approve(go))
+
+    def _send(self, body: dict[str, Any]) -> None:
+        """Send the robot a command on the way of its own that `lumen stop` uses."""
+        try:
+            publish_on(self._exhibition.bus, self._exhibition.project, STOP_ROUTE, body)
+        except BusError as error:
+            raise UsageError(f"the robot did not get this command: {error}") from error
 
     def _help(self, _words: list[str], _now: float) -> None:
         others = [place for place in self._places() if place != "head"]

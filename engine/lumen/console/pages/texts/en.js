@@ -19,7 +19,7 @@ export default {
   "locked": "Sign in to use this console", "locked.more": "Anyone can press Rest. For everything else, sign in with a PIN.",
   "sign.in": "Sign in", "sign.out": "Sign out", "sign.other": "Sign in as another person", "pin": "PIN", "pin.wrong": "No role has this PIN.", "your.name": "Your name (for the journal)",
   "resume": "Resume", "resume.ask": "May {name} move again?", "resume.by": "Stopped by: {by}", "resume.room": "Look first: is there room around the robot, and is no visitor too close?",
-  "stopped": "The robot rests.", "stopped.by": "Stopped by {by}. The robot does not move until a person presses Resume.",
+  "stopped": "The robot rests.", "stopped.by": "Stopped by {by}. To let it move again, press Resume, or hold its head for two seconds. Rest is no emergency stop: stay beside the robot.",
   "waits": "The robot waits for you.", "waits.more": "The behaviour continues when you press Resume or do what the robot asks for.",
   "tile.away": "does not answer", "tile.lost": "the robot is not connected", "tile.stopped": "rests, stopped by {by}", "tile.well": "runs",
   "told.sending": "sending …", "told.sent": "sent, no answer yet", "told.finished": "done, after {seconds} s", "told.failed": "refused",

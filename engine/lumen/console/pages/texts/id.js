@@ -18,7 +18,7 @@ export default {
   "locked": "Masuk untuk memakai konsol ini", "locked.more": "Siapa saja dapat menekan Istirahat. Untuk yang lain, masuk dengan PIN.",
   "sign.in": "Masuk", "sign.out": "Keluar", "sign.other": "Masuk sebagai orang lain", "pin": "PIN", "pin.wrong": "PIN ini tidak dikenal.", "your.name": "Nama Anda (untuk jurnal)",
   "resume": "Lanjutkan", "resume.ask": "Bolehkah {name} bergerak lagi?", "resume.by": "Dihentikan oleh: {by}", "resume.room": "Lihat dulu: apakah ada ruang di sekitar robot, dan tidak ada pengunjung yang terlalu dekat?",
-  "stopped": "Robot beristirahat.", "stopped.by": "Dihentikan oleh {by}. Robot tidak bergerak sampai ada yang menekan Lanjutkan.",
+  "stopped": "Robot beristirahat.", "stopped.by": "Dihentikan oleh {by}. Agar robot bergerak lagi, tekan Lanjutkan atau pegang kepalanya selama dua detik. Istirahat bukan penghenti darurat: tetaplah di dekat robot.",
   "waits": "Robot menunggu Anda.", "waits.more": "Perilaku berlanjut setelah Anda menekan Lanjutkan atau melakukan yang diminta robot.",
   "tile.away": "tidak menjawab", "tile.lost": "robot hilang", "tile.stopped": "istirahat, dihentikan oleh {by}", "tile.well": "berjalan",
   "told.sending": "mengirim …", "told.sent": "terkirim, belum ada jawaban", "told.finished": "selesai, setelah {seconds} detik", "told.failed": "ditolak",
