@@ -16,6 +16,7 @@ from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
+from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say, Start, Wake
 from lumen.language.events import HELD, Event
 from lumen.ports import Message, Perform
@@ -330,3 +331,43 @@ def test_the_console_shows_a_refusal() -> None:
     assert text_of(entry) == f"refused: Ada stopped the robot: {HELD}"
     assert text_of(entry, OTHERS["id"]).startswith("ditolak: Ada")
     assert text_of({**entry, "data": {"reason": "the robot fell"}}) == "error.command.c1: the robot fell"
+
+
+STOPPED = """\
+initial: a
+on: {stop: .s}
+states:
+  a: {do: [{wake: true}, {wait: 5s}], onDone: a, onError: failed}
+  failed: {}
+  s: {}
+"""
+
+
+@pytest.mark.network
+def test_a_stop_comes_before_what_it_cancels_and_is_no_trouble(tmp_path: Path) -> None:
+    root = exhibition(tmp_path, STOPPED, WAIT)
+    steps = list[Step]()
+    with lumen.open(root, robot="recording") as show:
+        show.observe(steps.append)
+        show.stop()
+        show.run(0.5)
+        assert "s" in show.configuration
+    assert not any("failed" in step.entered for step in steps)
+
+
+@pytest.mark.network
+def test_a_run_that_a_person_stopped_says_so_at_its_end(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    root, start = exhibition(tmp_path, STOPPED, WAIT), Exhibition.start
+
+    def stopped(show: Exhibition) -> None:
+        start(show)
+        show.node.brain.rest("ada on stand")
+
+    monkeypatch.setattr(Exhibition, "start", stopped)
+    assert run(root, "--for", "1s") == 0
+    told = capsys.readouterr().out
+    assert "\nStopped by ada on stand: 0:01 of simulated time" in told
+    assert "All well" not in told
+    assert "error.do" not in told

@@ -26,7 +26,7 @@ from lumen.language.stories import (
 from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 from lumen.runtime.performer import LEFT_OUT
-from lumen.runtime.troubles import RunTrouble
+from lumen.runtime.troubles import RunTrouble, wanted
 
 MAX_TROUBLES = 100
 """The number of troubles of a run that are kept for its end; later ones are dropped."""
@@ -65,7 +65,7 @@ class Narrator(Observer):
     def stepped(self, step: Step) -> None:
         for prefix, machine, part in flattened_steps(self._machine(), step):
             for error in part.raised:
-                if error.name.startswith("error."):
+                if error.name.startswith("error.") and not wanted(reason_of(error)):
                     self.line("trouble", f"{error.name}: {reason_of(error)}".rstrip(": "))
             entered = [prefix + name for name in innermost(machine, part.entered)]
             if entered:

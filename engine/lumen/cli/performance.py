@@ -60,6 +60,8 @@ class Performance:
         how = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
         how = INTERRUPTED if exhibition.node.interrupted and how != FAILED else how
         ended = "The story failed" if failure else "Ended before the story was over" if early else "All well"
+        if (stopped := exhibition.node.robot.server.hold.stopped) and not player:
+            ended = f"Stopped by {stopped.by}"
         ended = "Ended with trouble" if troubles else ended
         real = isinstance(self._setup.clock, RealClock)
         pace = "" if real else f" in {self._took:.0f} s ({self._lived / max(self._took, 0.01):.1f} × real time)"

@@ -32,8 +32,8 @@ from lumen.runtime.wall_clock_watch import WallClockWatch
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0
 NOTHING_WAITS = "nothing is waiting for approval"
-CAUSES = ("brain.lost", "robot.lost")
-"""What comes before the failures that it causes."""
+CAUSES = ("stop", "brain.lost", "robot.lost")
+"""Events that the behaviour gets before the failures that they cause: a stop cancels what the robot does."""
 
 
 class Observer:

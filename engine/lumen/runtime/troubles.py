@@ -39,7 +39,7 @@ def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrou
         ]
         failed = [("an action failed", reason) for name, reason in errors if name == "error.execution"]
         for text, reason in ended or failed:  # an action of a `do` raises both
-            if not _wanted(reason):
+            if not wanted(reason):
                 yield RunTrouble("do", text + (f": {reason}" if reason else ""))
 
 
@@ -48,7 +48,8 @@ def _reason(error: Event) -> str:
     return "" if reason is None else str(reason)
 
 
-def _wanted(reason: str) -> bool:
+def wanted(reason: str) -> bool:
+    """Return whether a command failed because it was cancelled, or because a person keeps the robot still."""
     return reason == "cancelled" or reason.endswith(HELD)
 
 
