@@ -206,6 +206,25 @@ def test_who_lets_it_go_alone_is_asked_no_more(viewer: Viewer, hall: Hosted) -> 
     viewer.shows("ask me: done", ".told")
 
 
+def test_refused_files_are_not_said_to_be_the_ones_that_run(viewer: Viewer, hall: Hosted, console: str) -> None:
+    """The changes are listed if they are known, as those with a story that fails."""
+    story, behavior = hall.root / "behaviors" / "stories" / "fails.yaml", hall.root / "behaviors" / "mine.yaml"
+    viewer.driver.get(console + "robot/NAO/files")
+    viewer.shows("The saved files are the ones that run.", ".changes")
+    try:
+        story.parent.mkdir()
+        story.write_text("title: Fails\nsteps: [{wait: 1s}, {expect: {state: stage}}]\n")
+        viewer.shows("story `fails` added", ".changes")
+        viewer.shows("refused", ".saved")
+        story.unlink()
+        behavior.write_text(MINE.replace("target: stage", "target: stagge"))
+        viewer.shows("Not known: the saved files were not compared with those that run.", ".changes")
+    finally:
+        story.unlink(missing_ok=True)
+        behavior.write_text(MINE)
+    viewer.shows("The saved files are the ones that run.", ".changes")
+
+
 @pytest.mark.parametrize("page", ["", "/day", "/files", "/see"])
 def test_every_button_of_a_page_is_reached_by_the_keyboard(
     viewer: Viewer, hall: Hosted, console: str, page: str

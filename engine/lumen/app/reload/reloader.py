@@ -253,10 +253,8 @@ class Reloader:
             queue.hold(staged)
 
     def _verdict(self, verdict: str, who: str, validation: Validation, reason: str = "") -> ReloadReport:
-        revision = self._queue.revision
-        return ReloadReport(
-            verdict, who, self._running.hash, validation.hash, revision, validation=validation, reason=reason
-        )
+        hashes, revision = (self._running.hash, validation.hash), self._queue.revision
+        return ReloadReport(verdict, who, *hashes, revision, validation.changes, validation, reason=reason)
 
     def _answer(self, verdict: str, reason: str) -> ReloadReport:
         hash = self._running.hash

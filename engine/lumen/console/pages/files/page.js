@@ -14,10 +14,13 @@ function Findings({ findings }) {
       <p lang="en"><b>${one.message}</b></p>${one.hint && html`<p lang="en">${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
 }
 
-function Changes({ report, refused }) {
+/** The text for a report without changes: files with errors, or that nobody watches, were not compared with those that run. */
+const noChanges = (report, mode) => (mode === "off" || report.verdict === "refused" ? "files.unread" : "files.nothing");
+
+function Changes({ report, mode }) {
   const changes = report.changes ?? [];
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`}>
-    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(refused ? "files.unread" : "files.nothing")}</p>`}
+    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(noChanges(report, mode))}</p>`}
     ${report.restart?.length > 0 && html`<ul class="diff" lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
 }
 
@@ -58,5 +61,5 @@ export default function FilesPage({ name }) {
         ${" "}<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} /> ${verdict === "refused" && t("files.goes.on")}</p>
       ${files.last?.lines?.length > 0 && html`<${InEnglish} /><ul class="lines" lang="en">${files.last.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
       <p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
-    <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report.changes ? report : files} refused=${verdict === "refused"} /><${Replay} replay=${files.replay} /></div>`;
+    <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report} mode=${files.mode} /><${Replay} replay=${files.replay} /></div>`;
 }
