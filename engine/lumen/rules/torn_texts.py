@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator
 from functools import partial
-from itertools import pairwise
 
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.text_lines import lines_of
@@ -16,6 +15,7 @@ TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is split by a
 
 _CUT = re.compile(r" +#(?=[^\s#!:-])")
 _HAS_CUT = re.compile(r"[^\s#] +#[^\s#!:-]")
+_NUMBERS = {2: "two", 3: "three", 4: "four"}
 _ENDED = (".", "!", "?", "…", ":", '"', "'", ")")
 
 
@@ -60,16 +60,17 @@ def _torn(report: DocumentReport) -> None:
         if "phrases" in path:  # a full stop there says that a phrase must be a whole clause
             continue
         if len(texts) > 1 and any(text.endswith((".", "!", "?")) for text in texts):
-            for i in _parts(texts):
-                place = report.document.place((*path, i))
-                following = report.document.place((*path, i + 1))
-                plain = all(lines[p.line - 1][p.column - 1] not in "\"'" for p in (place, following))
-                if plain and place.line == following.line:
-                    whole = f"{texts[i]}, {texts[i + 1]}"
-                    message = f"these are two texts: `{texts[i]}` and `{texts[i + 1]}`"
-                    shown = whole if len(whole) <= 60 else f"{whole[:59]}…"
-                    report(TORN_TEXT, (*path, i), message, f'put quotes around a text with a comma in it: "{shown}"')
-                    break
+            places = [report.document.place((*path, i)) for i in range(len(texts))]
+            # the line of each plain text; a text in quotes, which is whole, gets a number of its own
+            plain = [p.line if lines[p.line - 1][p.column - 1] not in "\"'" else -i for i, p in enumerate(places)]
+            for first, last in _parts(texts, plain):
+                *before, end = [f"`{text}`" for text in texts[first:last]]
+                number = _NUMBERS.get(last - first, f"{last - first}")
+                message = f"these are {number} texts: {', '.join(before)} and {end}"
+                whole = ", ".join(texts[first:last])
+                shown = whole if len(whole) <= 60 else f"{whole[:59]}…"
+                report(TORN_TEXT, (*path, first), message, f'put quotes around a text with a comma in it: "{shown}"')
+                break
 
 
 def _mapped(report: DocumentReport) -> None:
@@ -86,8 +87,19 @@ def _mapped(report: DocumentReport) -> None:
                 report(TORN_TEXT, path, message, f'put quotes around a text with a colon in it: "{key}: {rest}"')
 
 
-def _parts(texts: list[str]) -> Iterator[int]:
-    """The indices of texts that do not end, where the next one begins in small letters."""
-    for i, (one, other) in enumerate(pairwise(texts)):
-        if not one.endswith(_ENDED) and other[:1].islower() and one[:1].isupper():
-            yield i
+def _parts(texts: list[str], lines: list[int]) -> Iterator[tuple[int, int]]:
+    """Yield where the parts of each torn text begin and end, in texts that begin in these lines.
+
+    Each part but the last has no end, and each but the first begins with a small letter in the same line.
+    """
+    first = 0
+    for i in range(1, len(texts) + 1):
+        if i < len(texts) and lines[i - 1] == lines[i] and _continues(texts[i - 1], texts[i]):
+            continue
+        if i - first > 1 and texts[first][:1].isupper():
+            yield first, i
+        first = i
+
+
+def _continues(one: str, other: str) -> bool:
+    return not one.endswith(_ENDED) and other[:1].islower()
