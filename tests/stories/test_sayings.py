@@ -35,6 +35,7 @@ guide:
       en:
         - dance
         - What time is it?
+        - Don't dance
     tour_of: {en: [{say: exhibit four, n: 3}]}
 """
 
@@ -49,11 +50,13 @@ def test_one_that_does_not_hold_is_named_with_its_place(tmp_path: Path, capsys: 
     root = guide_in(tmp_path, bad=BAD)
     assert main(["test", str(root)]) == 1
     assert capsys.readouterr().out.splitlines()[1:] == [
-        "sayings: 1 of 4 (25 %)",
+        "sayings: 1 of 5 (20 %)",
         "  behaviors/sayings/bad.yaml:3:17: “Sing!” in `choice`: `else` matches it, but `sing` should; the guard"
         " `context.tries > 2` of `sing` is false with the initial values of the context",
         "  behaviors/sayings/bad.yaml:7:11: “What time is it?” in `choice`: `else` matches it, but `dance` should",
-        "  behaviors/sayings/bad.yaml:8:20: “exhibit four” in `choice`: `n` is `4`, but should be `3`",
+        "  behaviors/sayings/bad.yaml:8:11: “Don't dance” in `choice`: `not dance|sing` matches it, but `dance` should;"
+        " if `not dance|sing` is right, move this line under `not dance|sing`",
+        "  behaviors/sayings/bad.yaml:9:20: “exhibit four” in `choice`: `n` is `4`, but should be `3`",
     ]
 
 
@@ -91,7 +94,11 @@ def test_sayings_come_after_the_stories_unless_those_fail_first(
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("ok ")
     assert lines[2] == "sayings: 10 of 10 (100 %)"
-    assert lines[4].startswith("1 story, 0 failed: ")
+    assert lines[4].startswith("1 story and 10 sayings, 0 failed: ")
+    saying = root / "behaviors" / "sayings" / "good.yaml"
+    saying.write_text(GOOD.replace("Where is the exit?", "Please dance"), "utf-8")
+    assert main(["test", str(root), "good"]) == 1
+    assert capsys.readouterr().out.splitlines()[-1].startswith("1 story and 10 sayings, 1 failed: ")
     story.write_text("steps: [{says: I'm Budi}, {expect: {state: bye, within: 1s}}]\n", "utf-8")
     assert main(["test", str(root), "-x"]) == 1
     assert "sayings" not in capsys.readouterr().out
@@ -108,7 +115,7 @@ def test_programs_get_all_of_them(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert (sing["passed"], sing["took"], sing["wrong"][:9]) == (False, "else", "`else` ma")
     assert main(["test", str(root), "--format", "junit"]) == 1
     (suite,) = ET.fromstring(capsys.readouterr().out)
-    assert (suite.get("name"), suite.get("tests"), suite.get("failures")) == ("sayings", "4", "3")
+    assert (suite.get("name"), suite.get("tests"), suite.get("failures")) == ("sayings", "5", "4")
 
 
 @for_each(

@@ -1,11 +1,14 @@
 """What the tour's tables hold: both languages everywhere, and for each question an answer of its own."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 import yaml
 
-from lumen.interpreters.explaining.sentences import explained
+import lumen
+from lumen.interpreters.explaining.sayings import tried
+from lumen.interpreters.explaining.sentences import explained, first_context
 from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.interpreters.talk.speech import NEGATIONS_AFTER, TABLES
 from lumen.language.actions import If, Parallel, PlacedAction, SayText
@@ -144,3 +147,52 @@ def test_every_state_of_a_conversation_ends_by_itself(tour: MachineDefinition) -
     for state in leaves(tour, "guide.talking"):
         around = [s for s in tour.states.values() if f"{state.path}.".startswith(f"{s.path}.")]
         assert any(t.delay for s in around for t in s.transitions), state.name
+
+
+@for_each(
+    ("text", "language", "row"),
+    [
+        ("Do you have a battery?", "en", "else"),
+        ("What is electrical engineering?", "en", "else"),
+        ("how much do you cost", "en", "else"),
+        ("Kamu terbuat dari apa?", "id", "else"),
+        ("Siapa yang bikin kamu?", "id", "else"),
+        ("Umur kamu berapa?", "id", "else"),
+        ("Lumen artinya apa?", "id", "else"),
+        ("Toilet di mana ya?", "id", "else"),
+        ("Who taught you to dance?", "en", "asked dance|sing|photo"),
+        ("How do you take photos?", "en", "asked dance|sing|photo"),
+        ("Siapa yang ngajarin kamu nari?", "id", "asked dance|sing|photo"),
+        ("When does the exhibition close?", "en", "explanations"),
+        ("Acara ini sampai jam berapa?", "id", "explanations"),
+    ],
+)
+def test_questions_that_staff_may_answer_one_day(tour: MachineDefinition, text: str, language: str, row: str) -> None:
+    """They are no sayings of the shipped project: those would forbid the answer."""
+    state = next(state.path for state in tour.states.values() if state.alias == "offer")
+    found = explained(tour, state, text, first_context(tour), language)
+    assert found.taken
+    assert found.taken.key == row
+
+
+TOILET = """
+    - phrases:
+        en: [toilet, toilets, restroom]
+        id: [toilet, wc, kamar kecil]
+      value:
+        en: ["The toilets are beside the entrance."]
+        id: ["Toilet ada di samping pintu masuk."]
+    - phrases:
+        en: [when does the exhibition close, opening hours, battery, how much do you cost, who taught you to dance]
+        id: [sampai jam berapa, terbuat dari apa, siapa yang bikin kamu, umur kamu berapa, lumen artinya apa]
+      value:
+        en: ["At five."]
+        id: ["Jam lima."]
+"""
+
+
+def test_an_answer_that_staff_add_contradicts_no_saying(copy: Path) -> None:
+    words = copy / "behaviors" / "words" / "faq.yaml"
+    words.write_text(words.read_text("utf-8") + TOILET, "utf-8")
+    project = lumen.load(copy)
+    assert [one.wrong for one in tried(project.sayings.values(), project.behaviors) if one.wrong] == []

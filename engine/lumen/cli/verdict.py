@@ -45,6 +45,11 @@ class Verdict:
         return [one for one in self.sayings if one.tried.wrong]
 
     @property
+    def all_failed(self) -> int:
+        """The number of stories and sayings that failed."""
+        return self.failed + len(self.misheard)
+
+    @property
     def uncovered(self) -> bool:
         """Whether less is covered than wanted."""
         return self.coverage is not None and self.coverage.percent < self.wanted

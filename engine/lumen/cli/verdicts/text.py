@@ -38,7 +38,7 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
 
 
 def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
-    """The lines after the stories: coverage, exploration, questions, sayings, and the sum."""
+    """The lines after the stories: coverage, exploration, questions, sayings, and the sum of stories and sayings."""
     if verdict.coverage:
         yield from _coverage(verdict, verdict.coverage, coloured)
     if verdict.explored:
@@ -49,8 +49,10 @@ def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
         yield from _sayings(verdict, coloured)
     if verdict.rehearsals:
         lived = sum(r.time for r in verdict.rehearsals)
-        sum_of = f"{count(len(verdict.rehearsals), 'story', 'stories')}, {verdict.failed} failed"
-        colour = "red" if verdict.failed else "green"
+        tried = [count(len(verdict.rehearsals), "story", "stories")]
+        tried += [count(len(verdict.sayings), "saying", "sayings")] if verdict.sayings else []
+        sum_of = f"{' and '.join(tried)}, {verdict.all_failed} failed"
+        colour = "green" if verdict.well else "red"
         time = f"{clock_time(lived)} of simulated time in {verdict.took:.1f} s"
         yield f"\n{paint(sum_of, 'bold', colour, on=coloured)}: {time}"
 

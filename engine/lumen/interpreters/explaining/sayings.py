@@ -41,7 +41,9 @@ def _wrong(saying: Saying, found: ExplainedSentence) -> str:
     taken = found.taken
     if taken is None or taken.key != saying.row:
         what = f"`{taken.key}` matches it" if taken else "no row matches it"
-        return f"{what}, but `{saying.row}` should{_by_guard(saying, found)}"
+        understood = taken is not None and taken.transition.hears and taken.transition.hears.way != "else"
+        mend = f"; if `{taken.key}` is right, move this line under `{taken.key}`" if taken and understood else ""
+        return f"{what}, but `{saying.row}` should{_by_guard(saying, found)}{mend}"
     missed = [
         f"`{slot}` is {_shown(taken.caught.get(slot))}, but should be `{value}`"
         for slot, value in saying.slots.items()
