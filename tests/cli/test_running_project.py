@@ -2,16 +2,18 @@
 
 import threading
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from lumen.cli.main import main
-from lumen.errors import UsageError
+from lumen.errors import LumenError, UsageError
 from lumen.loading import running_project as module
 from lumen.loading.packaged import PACKAGE, shipped_root
 from lumen.loading.running_project import copy_of_shipped, project_to_run, running_project
 from lumen.runtime.home import STATE_FOLDER, home_of
+from tests.tables import for_each
 
 
 @pytest.fixture
@@ -56,6 +58,25 @@ def test_a_run_in_an_empty_folder_writes_into_the_state_folder_only(
     assert f"a copy of Lumen's own exhibition, {root}." in line
     assert str(journal) in line
     assert main(["replay"]) == 0  # the other commands find it
+
+
+@pytest.mark.process
+@for_each(
+    "words",
+    [
+        "export mermaid", "hear hello --state idle", "graph", "play none", "plot none",
+        "replay --list", "story", "memory visitors",
+        "status", "why", "stop", "goto idle --yes", "topic list", "reload", "model off",
+    ],
+)  # fmt: skip
+def test_every_command_without_a_project_is_about_the_copy_that_run_plays(
+    words: str, state: Path, small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = project_to_run()
+    with suppress(SystemExit, LumenError):
+        main(words.split())
+    said = capsys.readouterr().err
+    assert said.count(f"There is no lumen.yaml here or above: this is the copy that `lumen run` plays, {copy}.\n") == 1
 
 
 def test_a_project_that_is_here_or_named_is_not_copied(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:

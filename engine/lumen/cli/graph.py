@@ -7,6 +7,7 @@ from pathlib import Path
 
 import lumen
 from lumen.cli.formats import configure_format, print_object
+from lumen.cli.projects import shown_project
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
 from lumen.formats.diagrams import dot_text, neighbourhood, overview, region, svg
@@ -43,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    project = lumen.load(options.project)
+    project = lumen.load(shown_project(options.project))
     name = options.behavior or project.behavior
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")

@@ -7,6 +7,7 @@ from typing import Any
 
 import lumen
 from lumen.cli.formats import configure_format, print_object
+from lumen.cli.projects import shown_project
 from lumen.cli.tables import table
 from lumen.errors import UsageError
 from lumen.interpreters.explaining.sayings import caught_text, path_of
@@ -51,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 if a row takes the sentence in one of the states, 1 if none does."""
-    project = lumen.load(options.project)
+    project = lumen.load(shown_project(options.project))
     machine = _machine(project, options.behavior)
     language = options.language or project.languages[0]
     if language not in project.languages:

@@ -11,14 +11,15 @@ from lumen.app.asking import OPERATOR_ANSWERS, ask
 from lumen.app.forgetting.files import forget_in
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.app.one_robot import one_robot
-from lumen.cli.reach import configure_robot_name, reach
+from lumen.app.reaching import reach_exhibition
+from lumen.cli.projects import shown_project
+from lumen.cli.reach import configure_robot_name
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.counts import counted
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
 from lumen.loading.files import read_files
 from lumen.loading.project import draft, main_settings
-from lumen.loading.running_project import running_project
 from lumen.loading.settings import Settings
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
@@ -52,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    root = running_project(options.project)
+    root = shown_project(options.project)
     folder = home_of(root, one_robot(root, options.robot_name))
     if options.what == "forget":
         return _forget(options, root, folder)
@@ -101,7 +102,7 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
 def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> bool:
     """Have the exhibition that runs forget them, too, and whoever stands there; whether it runs on a broker."""
     try:
-        reached = reach(options)
+        reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:
         url = options.bus or os.environ.get("LUMEN_BUS") or (settings.bus if settings else "")
         if url and not url.startswith("memory:"):

@@ -6,14 +6,14 @@ from pathlib import Path
 import lumen
 from lumen.errors import LumenError
 from lumen.loading.files import composed
-from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
+from lumen.loading.running_project import running_project
 
 
 def names_of(placeholder: str) -> Sequence[str]:
-    """What the project here, or the shipped one, has for the placeholder of an argument; none where nobody knows."""
+    """Return what the project that a command would show has for the placeholder of an argument; none if unknown."""
     found = PLACEHOLDERS.get(placeholder)
-    return sorted(found(find_project())) if found else ()
+    return sorted(found(running_project())) if found else ()
 
 
 def _files(folder: str) -> Callable[[Path], Iterable[str]]:

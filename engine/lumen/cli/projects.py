@@ -1,14 +1,19 @@
-"""Which project a verb that only shows something is about: the shipped one where there is no other, and it says so."""
+"""Which project a command is about that shows something, or that asks a run: the same one for all of them."""
 
 import sys
 from pathlib import Path
 
-from lumen.loading.packaged import find_project, project_above
+from lumen.loading.packaged import shipped_root
+from lumen.loading.running_project import is_substituted, running_project
 
 
 def shown_project(path: str | None) -> Path:
-    """The folder of a project; on standard error a word where it is the shipped one because there is no other."""
-    root = find_project(path)
-    if path is None and project_above(Path.cwd()) is None:
-        print(f"There is no lumen.yaml here or above: this is the shipped project, {root}.", file=sys.stderr)
+    """Return the folder of a project; without one here or above, the copy that `lumen run` plays, else the shipped one.
+
+    In the latter two cases print a line on standard error. Raises UsageError if there is no such folder.
+    """
+    root = running_project(path)
+    if is_substituted(path):
+        which = "this is the shipped project" if root == shipped_root() else "this is the copy that `lumen run` plays"
+        print(f"There is no lumen.yaml here or above: {which}, {root}.", file=sys.stderr)
     return root

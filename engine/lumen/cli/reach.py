@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Callable
 
 from lumen.app.reaching import Reached, reach_exhibition, robots_meant
+from lumen.cli.projects import shown_project
 
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:
@@ -35,4 +36,5 @@ def names_meant(options: argparse.Namespace) -> list[str]:
 
 def reach(options: argparse.Namespace) -> Reached:
     """The bus of the exhibition that is meant. Raises BusError, saying what to do, where none is found."""
+    shown_project(options.project)
     return reach_exhibition(options.project, options.bus, getattr(options, "robot_name", ""))

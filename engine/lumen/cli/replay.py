@@ -18,13 +18,13 @@ from lumen.app.versions import version
 from lumen.app.workers.workers import workers_of
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
+from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.transcript import Transcript
 from lumen.cli.workers_option import configure_workers
 from lumen.interpreters.replay.entries import RecordedEntry
 from lumen.loading.chosen_robot import as_robot
-from lumen.loading.running_project import running_project
 
 SMALL = 1_000_000
 """A journal of fewer bytes is replayed before other processes have begun."""
@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """1 where anything differs."""
-    root = running_project(options.project)
+    root = shown_project(options.project)
     robot = one_robot(root, options.robot_name)
     if options.list:
         return _list(root, robot)

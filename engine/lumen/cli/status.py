@@ -11,6 +11,7 @@ from lumen.app.one_robot import one_robot, robots_of
 from lumen.app.reaching import reach_exhibition
 from lumen.app.recovery.last_run import last_run
 from lumen.cli.printing import clock_time
+from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
 from lumen.language.events import HELD
@@ -36,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 where one runs and says how it is; of the others of its house it is said what is known here."""
-    root = running_project(options.project)
+    root = shown_project(options.project)
     names = [options.robot_name] if options.robot_name else list(robots_of(root, None)) or [""]
     answers = [_status(options, name, AMONG_OTHERS if names[1:] else FIRST_ANSWER_TIMEOUT) for name in names]
     found = [

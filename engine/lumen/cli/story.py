@@ -11,10 +11,10 @@ from lumen.app.storytelling.chosen_visit import chosen_visit
 from lumen.app.storytelling.story_text import story_text
 from lumen.app.storytelling.visit_story import renaming, visit_story
 from lumen.cli.formats import configure_format, print_object
+from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.cli.writing import write_file, write_result
 from lumen.errors import UsageError
-from lumen.loading.running_project import running_project
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     if output and output.exists() and not options.force:
         raise UsageError(f"{output} already exists: name another file, or add --force")
     names = dict(_name(pair) for pair in options.name)
-    root = running_project(options.project)
+    root = shown_project(options.project)
     robot = one_robot(root, options.robot_name)
     project = lumen.load(root, robot=robot)
     root = Path(project.root)
