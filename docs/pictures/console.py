@@ -97,6 +97,11 @@ class Camera:
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme})
         self.driver.get(PAGE + path)
         time.sleep(3)
+        wait(lambda: "Loading" not in self.shown(), "a loaded page")
+
+    def shown(self) -> str:
+        """The text of the page."""
+        return str(self.driver.find_element(By.TAG_NAME, "body").text)
 
     def press(self, selector: str) -> None:
         self.driver.find_element(By.CSS_SELECTOR, selector).click()
@@ -154,7 +159,7 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     folder = project(stack)
     stack.enter_context(running(folder, "run", "--robot", "recording", "--speed", "1"))
     stack.enter_context(running(folder, "console", "--port", str(PORT)))
-    visit("Budi", "Splendid, thank you")
+    visit("Budi", "fine")
     hear("dance")
     until("dance")
     camera.look("")
@@ -162,7 +167,7 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     camera.press(".entry:nth-child(2) button")
     camera.take("why")
     tour = folder / "behaviors/tour.yaml"
-    tour.write_text(tour.read_text("utf-8").replace("onDone: any_question", "onDone: any_qestion"), "utf-8")
+    tour.write_text(tour.read_text("utf-8").replace('stop: "#any_question"', 'stop: "#any_qestion"'), "utf-8")
     wait(lambda: (robot().get("files", {}).get("last") or {}).get("verdict") == "refused", "files that are refused")
     camera.look("robot/NAO/files")
     camera.take("files")
@@ -170,6 +175,7 @@ def take_tour(stack: ExitStack, camera: Camera) -> None:
     camera.take("day")
     camera.look("", PHONE, dark=True)
     camera.press(".rest")
+    wait(lambda: "Rests, after" in camera.shown(), "an answer to Rest")
     camera.take("phone")
     command("resume")
     until("watching")
