@@ -16,7 +16,6 @@ from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
 from lumen.language.events import HELD
 from lumen.language.operator_requests import STATUS
-from lumen.loading.running_project import running_project
 
 AMONG_OTHERS = 5.0
 """How long the answer of one robot of several may take [s]."""
