@@ -79,7 +79,7 @@ def test_a_wrapped_bus_has_the_abilities_of_the_bus_within(ability: type) -> Non
     assert found is bus or ability is KnowsListeners  # which the wrapper asks about aliases, too
 
 
-@pytest.mark.parametrize("ability", set(ABILITIES) - {KnowsListeners})
+@pytest.mark.parametrize("ability", [ability for ability in ABILITIES if ability is not KnowsListeners])
 def test_a_wrapped_bus_has_no_other_ability(ability: type) -> None:
     assert wrapped(PlainBus()).ability(ability) is None
 
