@@ -56,7 +56,7 @@ def files(folder: Path, web: Web) -> Path:
 class NearBus(MemoryBus):
     """A shared bus in memory whose broker a test can make unreachable or short of a resource."""
 
-    away, blocked = False, ""
+    host, away, blocked = "near", False, ""
 
     def close(self) -> None:
         """It ends with the test."""

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+import lumen
 from lumen.app import claiming, exhibition, node
 from lumen.app.alerts import disk
 from lumen.app.parts import alerting
+from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
 from lumen.language.alerts import KINDS
@@ -242,6 +244,51 @@ def test_a_start_that_is_refused(hall: Hall, only: tuple[str, ...], capsys: pyte
     capsys.readouterr()
 
 
+def two_robots(hall: Hall) -> None:
+    main_file = hall.folder / "lumen.yaml"
+    robots = "robots: {ana: {model: tiny, at: {y: -0.4}}, ben: {model: tiny, at: {y: 0.4}}}"
+    main_file.write_text(main_file.read_text().replace("robot: {name: TINY, model: tiny}", robots))
+
+
+def test_a_start_of_several_robots_that_is_refused(hall: Hall, capsys: pytest.CaptureFixture[str]) -> None:
+    two_robots(hall)
+    tour = hall.folder / "behaviors/tour.yaml"
+    tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
+    assert main(["run", str(hall.folder), "--robot", "recording", "--speed", "max"]) == 1
+    [body] = hall.web.told("start")
+    assert body["robot"] == "ana, ben"
+    assert body["text"].endswith("its files have errors, the first at behaviors/tour.yaml:8:13: unknown-state")
+    capsys.readouterr()
+
+
+def test_one_robot_of_several_that_an_error_ends(
+    hall: Hall, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    two_robots(hall)
+    usual = node.Node.tick
+
+    def tick(one: node.Node) -> float:
+        if one.project.robot == "ana" and one.now > 0.5:
+            raise BusUnreachableError("the broker closed the connection")
+        return usual(one)
+
+    monkeypatch.setattr(node.Node, "tick", tick)
+    assert main(["run", str(hall.folder), "--robot", "recording", "--speed", "max", "--for", "1s"]) == 1
+    said = capsys.readouterr().out
+    assert "Ended with trouble: 0:01" in said
+    assert "  ana: the broker closed the connection" in said
+    [body] = hall.web.told("start")
+    assert (body["robot"], body["parts"]) == ("ana", ["robot", "brain"])
+    assert body["text"].endswith("it could not start or continue: the broker closed the connection")
+    resumed = {}
+    for name in ("ana", "ben"):
+        directory = RunDirectory(hall.folder, name)
+        resumed[name] = bool(directory.records.keeper and directory.records.keeper.kept())
+        assert directory.records.died(lumen.load(hall.folder, robot=name).hash) == 0
+        directory.close(forget=False)
+    assert resumed == {"ana": True, "ben": False}, "ana continues from where it was"
+
+
 @pytest.mark.slow
 def test_a_start_without_a_broker_and_with_a_main_file_that_can_not_be_read(
     hall: Hall, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -278,7 +325,7 @@ def test_a_story_is_no_trouble_and_nobody_is_told_of_what_was_typed_wrong(
         raise BusUnreachableError("no broker")
 
     assert main(["run", str(hall.folder), "--only", "robbot"]) == 2
-    monkeypatch.setattr("lumen.cli.run.startup_project", fail)
+    monkeypatch.setattr("lumen.app.recovery.starting.startup_project", fail)
     assert main(["run", str(hall.folder), "--story", "x"]) == 2
     assert hall.web.bodies == []
     capsys.readouterr()

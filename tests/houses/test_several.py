@@ -15,7 +15,7 @@ from lumen.app.one_robot import one_robot, robots_of
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.cli.main import main
-from lumen.errors import RobotModelError, UsageError
+from lumen.errors import LumenError, RobotModelError, UsageError
 from lumen.interpreters.statechart import Step
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
@@ -83,14 +83,14 @@ def test_a_lost_robot_ends_alone(two: Path, monkeypatch: pytest.MonkeyPatch) -> 
     def lose() -> float:
         raise RobotModelError("it is gone")
 
-    lost: list[tuple[str, str]] = []
+    lost: list[tuple[str, LumenError]] = []
     with opened(two, story=None) as shows:
-        house = House({name: show.node for name, show in shows.items()}, lambda name, why: lost.append((name, why)))
+        house = House({name: show.node for name, show in shows.items()}, lambda name, error: lost.append((name, error)))
         house.start()
         house.run(0.5)
         monkeypatch.setattr(shows["ana"].node, "tick", lose)
         house.run(0.5)
-        assert lost == [("ana", "it is gone")]
+        assert [(name, str(error)) for name, error in lost] == [("ana", "it is gone")]
         assert house.going == ("ben",)
         assert shows["ben"].now == pytest.approx(1.0)
 

@@ -1,35 +1,33 @@
 """Several robots of a house in one process: their nodes, ticked in turn."""
 
-import sys
 import time
 from collections.abc import Callable, Mapping
 from math import inf
 
 from lumen.app.claiming import CLAIM_INTERVAL
-from lumen.app.node import ROUNDING, Node
+from lumen.app.living import live
+from lumen.app.node import Node
 from lumen.errors import LumenError
-from lumen.runtime.watcher import SWITCH_INTERVAL
-from lumen.upkeep.garbage import GcScheduler
 
 
 class House:
     """Nodes by the names of their robots; each has its own time, keys, journal, files and stop.
 
     They live tick by tick, in the order given: where their worlds have one clock in common, they are in step. One that
-    is over is closed, and the others go on; so do they where a robot is lost, which `tell` hears of (name, why). With
-    `together` the house is over as soon as one of them is, as when a story has ended.
+    is over is closed, and the others go on. So do they if an error ends one of them, which `lost` is called with at once
+    (its name, the error). With `together` the house is over as soon as one of them is, as when a story has ended.
     """
 
     def __init__(
         self,
         nodes: Mapping[str, Node],
-        tell: Callable[[str, str], None] = lambda _robot, _why: None,
+        lost: Callable[[str, LumenError], None] = lambda _robot, _error: None,
         *,
         together: bool = False,
     ) -> None:
         self.nodes = dict(nodes)
-        self._going, self._tell, self._together = dict(nodes), tell, together
-        self._now = 0.0
+        self._going, self._lost, self._together = dict(nodes), lost, together
+        self.now = 0.0
         self._napping = False
         for node in nodes.values():
             node.wake = self._wake
@@ -62,29 +60,18 @@ class House:
             try:
                 now = node.tick()
             except LumenError as error:
-                self._tell(name, str(error))
+                self._lost(name, error)
                 self._end(name)
                 continue
             if name == next(iter(self._going)):
-                self._now = now
+                self.now = now
             if node.over:
                 self._end(name)
-        return self._now
+        return self.now
 
     def run(self, seconds: float | None = None) -> float:
         """Live for so long [s], or until it is over; how long it lived [s]."""
-        scheduler, usual = GcScheduler(), sys.getswitchinterval()
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        began = self._now
-        try:
-            while not self.over and (seconds is None or self._now - began < seconds - ROUNDING):
-                self.nap(inf if seconds is None else began + seconds - self._now)
-                self.tick()
-                scheduler()
-        finally:
-            sys.setswitchinterval(usual)
-            scheduler.close()
-        return self._now - began
+        return live(self, seconds)
 
     def close(self) -> None:
         """End all that go on."""
@@ -110,6 +97,6 @@ class House:
         try:
             self._going[name].close()
         except LumenError as error:
-            self._tell(name, str(error))
+            self._lost(name, error)
         finally:
             del self._going[name]

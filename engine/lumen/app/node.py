@@ -1,12 +1,12 @@
 """One process of an exhibition: its parts in one loop, among the processes that have the others, if there are any."""
 
-import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from math import ceil, inf
 
 from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals, refuse_silence
+from lumen.app.living import ROUNDING, live
 from lumen.app.narrator import Narrator
 from lumen.app.pace import PaceWatch
 from lumen.app.parts.part import Part
@@ -21,12 +21,8 @@ from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_ROUTE
-from lumen.runtime.watcher import SWITCH_INTERVAL
-from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
-ROUNDING = 1e-6
-"""How far the sum of many ticks may be off [s]."""
 NAP = 0.2
 """How long it sleeps at most where nothing is due [s]: what nobody wakes it for waits no longer than that."""
 
@@ -126,18 +122,7 @@ class Node:
 
     def run(self, period: float | None = None) -> float:
         """Tick until it is over, or has lived for the period [s]; how long it lived [s]."""
-        began = self.now
-        scheduler, usual = GcScheduler(), sys.getswitchinterval()
-        self.closing.append(scheduler.close)
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        try:
-            while not self.over and (period is None or self.now - began < period - ROUNDING):
-                self.nap(inf if period is None else began + period - self.now)
-                self.tick()
-                scheduler()
-        finally:
-            sys.setswitchinterval(usual)
-        return self.now - began
+        return live(self, period)
 
     def tick(self) -> float:
         """Wait for the next tick and live through it; its time [s]."""

@@ -6,7 +6,6 @@ import signal
 import time
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
@@ -14,8 +13,7 @@ from lumen.app.house_setup import set_up_house
 from lumen.app.node import Node
 from lumen.app.parts.console import ConsolePart
 from lumen.app.processes.assembling import ProcessOptions, assemble
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
+from lumen.app.recovery.starting import WHOLE, Start
 from lumen.app.setup import Setup
 from lumen.bus import connect
 from lumen.buses.validated import validated
@@ -24,18 +22,16 @@ from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
-from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
-from lumen.errors import UsageError
+from lumen.errors import LumenError, UsageError
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from lumen.runtime.story import StoryPlayer
 
-WHOLE = (ROBOT_PART, BRAIN)
 ALONE = ("model", "robot_url", "video", "record", "sound")
 """Options that are about one robot."""
 
@@ -43,13 +39,10 @@ ALONE = ("model", "robot_url", "video", "record", "sound")
 class HouseRun:
     """The robots of a house as a terminal runs them; `parts` are those of each that this process is, all without."""
 
-    def __init__(self, options: argparse.Namespace, root: Path, robots: Sequence[str], parts: Sequence[str]) -> None:
-        _check(options, parts)
-        self._options, self._parts = options, parts
-        guest = bool(parts) and BRAIN not in parts
-        self.directories = {name: RunDirectory(root, name, guest=guest) for name in robots}
-        start = partial(startup_project, root, last_good=options.last_good, warn=complain)
-        self.projects = {name: start(directory) for name, directory in self.directories.items()}
+    def __init__(self, options: argparse.Namespace, start: Start, parts: Sequence[str]) -> None:
+        self._options, self._start, self._parts = options, start, parts
+        self.directories, self.projects = start.directories, start.projects
+        robots = tuple(self.projects)
         first = self.projects[robots[0]]
         self.story = chosen_story(first, options.story)
         self.stories: dict[str, Story | None] = dict.fromkeys(robots) | {robots[0]: self.story}
@@ -59,6 +52,7 @@ class HouseRun:
             raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
         self._setups = self._set_up()
         self._player: StoryPlayer | None = None
+        self._lost: dict[str, LumenError] = {}
         self._clocks = {name: self._clock(name) for name in robots}
         self.transcripts = {name: self._transcript(name) for name in robots}
         make = self._process if parts else self._whole
@@ -71,9 +65,7 @@ class HouseRun:
             for node in self.nodes.values():
                 node.close()
             raise
-        self.house = House(
-            self.nodes, lambda name, why: self.transcripts[name].line("trouble", why), together=self.story is not None
-        )
+        self.house = House(self.nodes, self._lose, together=self.story is not None)
         for transcript in self.transcripts.values():
             transcript.unread = lambda: self.house.interrupt(2, leave=True)
 
@@ -97,6 +89,7 @@ class HouseRun:
         failure = self._player.failure if self._player else ""
         told = {name: node.troubles for name, node in self.nodes.items() if not self.stories[name]}
         troubles = [f"{name}: {trouble}" for name, troubles in told.items() for trouble in troubles]
+        troubles += [f"{name}: {error}" for name, error in self._lost.items()]
         with_trouble = "Ended with trouble" if troubles else "Ended"
         print(f"\n{'The story failed' if failed else with_trouble}: {clock_time(lived)}.")
         lines = [*RunVerdict.listed(troubles)]
@@ -104,7 +97,7 @@ class HouseRun:
         for line in [*([failure] if failure else []), *lines]:
             print(f"  {line}")
         for name, directory in self.directories.items():
-            if not self._parts or BRAIN in self._parts:
+            if name not in self._lost and (not self._parts or BRAIN in self._parts):
                 directory.ended(self.nodes[name].project)
                 directory.close(forget=not self.nodes[name].leaving)
         ended = FAILED if failure else INTERRUPTED if early else EARLY if failed else TROUBLED if troubles else WELL
@@ -153,12 +146,14 @@ class HouseRun:
             self._setups.get(name), self.stories[name], alerts,
         )  # fmt: skip
 
-    def close(self) -> None:
-        for directory in self.directories.values():
-            directory.close(forget=False)
+    def _lose(self, name: str, error: LumenError) -> None:
+        """An error ended one robot; the others go on."""
+        self._lost[name] = error
+        self.transcripts[name].line("trouble", str(error))
+        self._start.failures.report(error, [name])
 
 
-def _check(options: argparse.Namespace, parts: Sequence[str]) -> None:
+def check_house(options: argparse.Namespace, parts: Sequence[str]) -> None:
     """Raises UsageError for what is about one robot, or does not go with processes."""
     for name in ALONE:
         if getattr(options, name, None):

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
-from lumen.app.fleet.installing import finish as finish_installing
 from lumen.app.loudspeaker import Loudspeaker, Sounds
 from lumen.app.node import Node
 from lumen.app.one_robot import robots_of
@@ -17,9 +16,8 @@ from lumen.app.parts.console import ConsolePart
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.processes.assembling import ProcessOptions, assemble
 from lumen.app.processes.choosing import parts_of
-from lumen.app.recovery.failing import failures_told
 from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
+from lumen.app.recovery.starting import WHOLE, Start, started
 from lumen.app.reload.reloader import MODES
 from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
 from lumen.app.stories import home_of
@@ -38,7 +36,7 @@ from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
-from lumen.errors import BusError, BusUnreachableError, ModuleError, RobotError, UsageError
+from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.running_project import is_substituted, project_to_run
@@ -48,10 +46,6 @@ from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from lumen.upkeep.heap import give_back
-
-WHOLE = (ROBOT_PART, BRAIN)
-"""The parts that an exhibition in one process has in any case."""
-
 
 PRIORITY = -10
 """Of an exhibition in real time, as `nice` counts: that takes root, or a right such as systemd's `LimitNICE=-10`."""
@@ -125,38 +119,28 @@ def run(options: argparse.Namespace) -> int:
         )
     parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)
     if len(robots) > 1:
-        return _house(options, root, robots, parts)
-    run_directory = RunDirectory(root, next(iter(robots), ""), guest=bool(parts) and "brain" not in parts)
-    told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, complain)
-    try:
-        with told, one_object(options.format) as say, nullcontext() if options.speed == "max" else _going_first():
-            verdict = _run(options, root, run_directory, parts)
-            say(verdict.to_json(str(root.absolute()), options.story))
-            return verdict.code
-    except (BusError, RobotError, ModuleError):
-        run_directory.records.annul()
-        raise
-    finally:
-        run_directory.close(forget=False)
+        from lumen.cli.house_run import check_house  # nobody else needs it
 
-
-def _house(options: argparse.Namespace, root: Path, robots: Sequence[str], parts: tuple[str, ...]) -> int:
-    """Run several robots in this process."""
-    from lumen.cli.house_run import HouseRun  # nobody else needs it
-
-    with one_object(options.format) as say, nullcontext() if options.speed == "max" else _going_first():
-        house = HouseRun(options, root, robots, parts)
-        try:
-            verdict = house.run()
-        finally:
-            house.close()
+        check_house(options, parts)
+    with (
+        one_object(options.format) as say,
+        nullcontext() if options.speed == "max" else _going_first(),
+        started(root, robots, parts, last_good=options.last_good, alerted=not options.story, tell=complain) as start,
+    ):
+        verdict = _house(options, start, parts) if len(robots) > 1 else _run(options, start, parts)
         say(verdict.to_json(str(root.absolute()), options.story))
         return verdict.code
 
 
-def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> RunVerdict:
-    finish_installing(root)
-    project = startup_project(root, run_directory, last_good=options.last_good, warn=complain)
+def _house(options: argparse.Namespace, start: Start, parts: tuple[str, ...]) -> RunVerdict:
+    """Run several robots in this process."""
+    from lumen.cli.house_run import HouseRun  # nobody else needs it
+
+    return HouseRun(options, start, parts).run()
+
+
+def _run(options: argparse.Namespace, start: Start, parts: tuple[str, ...]) -> RunVerdict:
+    (project,), (run_directory,) = start.projects.values(), start.directories.values()
     story = chosen_story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"the story `{story.name}` has faults of the robot (`robot:`): play it with --robot recording")

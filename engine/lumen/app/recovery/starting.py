@@ -1,0 +1,136 @@
+"""The beginning and the end of a run, of one robot or of several: homes, files, and whom an error is reported to."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumen.app.alerts.alert import Origin
+from lumen.app.alerts.desk import AlertDesk
+from lumen.app.fleet.installing import finish as finish_installing
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.recovery.startup import startup_project
+from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
+from lumen.language.alerts import Alerts
+from lumen.language.diagnostics import Severity
+from lumen.language.projects import Project
+from lumen.loading.project import main_settings
+from lumen.loading.settings import Settings
+from lumen.runtime.presence import BRAIN, ROBOT_PART
+
+WHOLE = (ROBOT_PART, BRAIN)
+"""The parts that an exhibition in one process has in any case."""
+OUTSIDE = (BusError, RobotError, ModuleError)
+"""Errors of the world: the files are not to blame, so the next start does not count them as a crash."""
+
+
+class Failures:
+    """Reports errors that end a run, or one robot of it, to the people in `alerts`; `close` waits until they have it.
+
+    A UsageError is for the person who typed it. `tell` is called with what could not be sent, and why. Without
+    `wanted` nobody is told: what a story plays is no trouble.
+    """
+
+    def __init__(
+        self,
+        root: Path,
+        directories: Mapping[str, RunDirectory],
+        parts: Sequence[str],
+        tell: Callable[[str], None],
+        *,
+        wanted: bool,
+    ) -> None:
+        self._root, self._directories, self._parts, self._tell = root, directories, parts, tell
+        self._wanted = wanted
+        self._desks: list[AlertDesk] = []
+
+    def report(self, error: Exception, robots: Sequence[str]) -> None:
+        """Report an error that ended these robots, and let their next start go on after an error of the world."""
+        if self._wanted and not isinstance(error, UsageError | BrokenPipeError):  # the latter: nobody reads the output
+            try:
+                self._report(error, robots)
+            except Exception as other:
+                self._tell(f"no alert could be sent: {other!r}")
+        if isinstance(error, OUTSIDE):
+            for robot in robots:
+                self._directories[robot].records.annul()
+
+    def close(self) -> None:
+        for desk in self._desks:
+            desk.close()
+
+    def _report(self, error: Exception, robots: Sequence[str]) -> None:
+        directory = self._directories[robots[0]]
+        settings = main_settings(self._root, directory.robot)
+        name = (settings and settings.name) or self._root.name
+        robot = ", ".join(filter(None, robots)) or (settings.robot if settings else "NAO")
+        origin = Origin(name, robot, tuple(self._parts))
+        desk = AlertDesk(_alerts(settings, directory), origin, self._root, self._tell)
+        self._desks.append(desk)
+        if isinstance(error, LumenError):
+            desk("start", f"it could not start or continue: {_why(error)}")
+        else:  # the message of a fault of ours may contain anything
+            desk("crashed", f"it ended because of a fault in Lumen ({type(error).__name__})")
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """The homes and the projects of the robots of a run, by name; the name is empty if the project has one robot."""
+
+    root: Path
+    directories: Mapping[str, RunDirectory]
+    projects: Mapping[str, Project]
+    failures: Failures
+
+
+@contextmanager
+def started(
+    root: Path,
+    robots: Sequence[str],
+    parts: Sequence[str],
+    *,
+    last_good: bool,
+    alerted: bool,
+    tell: Callable[[str], None],
+) -> Iterator[Start]:
+    """Take the homes of these robots, finish an interrupted installation, read the files; give the homes back at the end.
+
+    An error on the way, or while the run lasts, is reported to the people in `alerts` if `alerted`, and raised again.
+    """
+    guest = bool(parts) and BRAIN not in parts
+    names = tuple(robots) or ("",)
+    with ExitStack() as stack:
+        directories: dict[str, RunDirectory] = {}
+        for name in names:
+            directories[name] = RunDirectory(root, name, guest=guest)
+            stack.callback(directories[name].close, forget=False)
+        failures = Failures(root, directories, parts or WHOLE, tell, wanted=alerted)
+        stack.callback(failures.close)
+        try:
+            finish_installing(root)
+            projects = {
+                name: startup_project(root, directory, last_good=last_good, warn=tell)
+                for name, directory in directories.items()
+            }
+            yield Start(root, directories, projects, failures)
+        except Exception as error:
+            failures.report(error, names)
+            raise
+
+
+def _why(error: LumenError) -> str:
+    """Return the place and the code of the first error in files, and nothing that the files contain."""
+    if not isinstance(error, ProjectError):
+        return str(error)
+    found = [diagnostic for diagnostic in error.diagnostics if diagnostic.severity is Severity.ERROR]
+    return (
+        f"its files have errors, the first at {found[0].place}: {found[0].code}" if found else "its files have errors"
+    )
+
+
+def _alerts(settings: Settings | None, directory: RunDirectory) -> Alerts:
+    """Return whom to tell: as the files say, else the last good ones."""
+    if settings and settings.alerts.to:
+        return settings.alerts
+    good = directory.last_good()
+    return good.alerts if good else Alerts()
