@@ -153,7 +153,7 @@ def test_check_lists_a_text_that_is_the_same_in_all_languages(hall: Path, capsys
     capsys.readouterr()
     assert main(["language", "check", "de", "--project", str(hall)]) == 0
     told = capsys.readouterr().out
-    assert "de: all 3 are there" in told
+    assert "de: all 3 are present" in told
     assert re.search(r"behaviors/hello.yaml:\d+:14 is said in all languages: write one text for each language", told)
 
 

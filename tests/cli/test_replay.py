@@ -63,7 +63,7 @@ def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str
     assert replayed(played, capsys, file, "--until", "00:00")[0] == 0
     for words, says in (
         (["tomorrow"], "is neither a file nor a day"),
-        ([date.today().isoformat()], "nothing of"),
+        ([date.today().isoformat()], "there is no journal of"),
         (["nothing.journal"], "no file nothing.journal"),
         (["--all"], "nothing is in"),
         (["--until", "25:00"], "is not a time of day"),

@@ -120,7 +120,7 @@ def test_runs_that_begin_at_once_share_one_copy(state: Path, small: Path) -> Non
 
 def test_a_state_folder_that_cannot_be_written_is_a_usage_error(state: Path, small: Path) -> None:
     state.write_text("a file", "utf-8")
-    with pytest.raises(UsageError, match=r"set XDG_STATE_HOME to a folder that can be written.*`lumen new DIR`"):
+    with pytest.raises(UsageError, match=r"set XDG_STATE_HOME to a writable folder.*`lumen new DIR`"):
         project_to_run()
 
 

@@ -106,7 +106,7 @@ def test_a_question_without_an_answer_says_what_to_do(greeted: Exhibition, quest
 
 
 def test_what_is_no_question_is_refused(greeted: Exhibition) -> None:
-    for body in ({"what": 7}, {"at": 7}, {"at": "soon"}, {"at": "1970-01-01T00:00:00Z"}, {"what": "x" * 10_000}):
+    for body in ({"at": "soon"}, {"at": "1970-01-01T00:00:00Z"}, {"what": "x" * 10_000}):
         assert reply(greeted.history(), {"ask": "why", **body}, NOWHERE)["verdict"] == "refused"
 
 

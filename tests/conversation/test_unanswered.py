@@ -79,6 +79,6 @@ def test_what_is_none_is_refused(tmp_path: Path, question: str, answer: str, lan
 def test_a_folder_that_is_a_link_is_not_written(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "knowledge").symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(UsageError, match="a link"):
+    with pytest.raises(UsageError, match="a symbolic link"):
         write_passage(tmp_path, "x", "x", "en")
     assert list((tmp_path / "elsewhere").iterdir()) == []

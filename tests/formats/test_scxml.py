@@ -147,7 +147,7 @@ LISTS = '<datamodel><data id="l" expr="[3]"/><data id="t" expr="\'a\'"/><data id
 def test_lists_are_concatenated_and_nothing_else_is(expression: str, value: str | None) -> None:
     data, said = read(f'{LISTS}<state id="a"><onentry>\n<assign location="n" expr="{expression}"/></onentry></state>')
     assert data["states"]["a"] == ({} if value is None else {"entry": [{"assign": {"n": value}}]})
-    assert said == ([] if value else ["3: `<assign>`: `.concat()` of a value that is not a list"])
+    assert said == ([] if value else ["3: `<assign>`: `.concat()` is called on a value that is not a list"])
 
 
 def test_assignments_to_a_part() -> None:

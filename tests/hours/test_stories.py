@@ -72,11 +72,11 @@ def test_the_clock_hangs_where_the_project_says(copy: Path, zone: str, seen: str
 def test_what_has_passed_for_good_fails_the_story(copy: Path) -> None:
     run = played(copy, "", '  - at: "2026-05-31 10:00"\n')
     assert run.failed
-    assert "is past" in run.failed.was
+    assert "is in the past" in run.failed.was
 
 
 def test_a_story_begins_once(copy: Path) -> None:
-    with pytest.raises(ProjectError, match="names 2 times of day"):
+    with pytest.raises(ProjectError, match="contains 2 times of day"):
         played(copy, 'at: "10:00, 11:00"', "  - wait: 1s\n")
 
 

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.answering import reply
 from lumen.app.asking import operator_key
 from lumen.app.exhibition import Exhibition
 from lumen.app.journal_pages import MAX_PAGE_BYTES, journal_page
@@ -205,7 +204,14 @@ def test_a_running_exhibition_is_asked(copy: Path) -> None:
             assert page["entries"][0]["position"] == first
             assert page["entries"] == journal_page(journal, first)["entries"][: len(page["entries"])]
         for wrong in ("soon", True, 0.5, None):
-            assert reply([], {"ask": "journal", "from": wrong}, journal)["verdict"] == "refused"
+            exhibition.node.bus.publish(
+                operator_key("NAO"), {"ask": "journal", "from": wrong}, reply_to="lumen.test.answer"
+            )
+        exhibition.run(0.02)
+        until(lambda: len(answers.bodies) == 6)
+        assert {page["reason"] for page in answers.bodies[2:]} == {
+            "`from` must be a whole number: the position of an entry"
+        }
 
 
 @pytest.mark.slow

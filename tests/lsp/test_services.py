@@ -186,10 +186,10 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
     ("file", "text", "name", "edits", "moved"),
     [
         (TOUR, "target: how_are|_you", "mood", 46, None),
-        (TOUR, "whenever: In('fall|en')", "lying", 8, None),
+        (TOUR, "whenever: In('fall|en')", "lying", 9, None),
         (TOUR, "context.name_|tries <", "tries", 18, None),
-        (TOUR, "heard(event.data.result, 'dan|ce')", "tarian", 8, None),
-        (TOUR, "lookup(event.data.result, 'f|aq')", "queries", 6, None),
+        (TOUR, "heard(event.data.result, 'dan|ce')", "tarian", 7, None),
+        (TOUR, "lookup(event.data.result, 'f|aq')", "queries", 7, None),
         (TOUR, "words: [common, visitors, f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
         (VISITOR, "played: dan|ce", "horse", 4, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),

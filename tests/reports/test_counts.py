@@ -22,4 +22,4 @@ def test_a_count_has_its_noun(row: tuple[tuple[int, str], str]) -> None:
 
 def test_a_message_counts_one_key_in_the_singular() -> None:
     [fault] = faults({"one": 1}, {"type": "object", "maxProperties": 0})
-    assert "has 1 key, it" in fault.message
+    assert "has 1 key, but" in fault.message

@@ -80,7 +80,7 @@ def test_what_was_missing_when_the_rest_held_is_told(story: Write, capsys: pytes
     places = "places: {start: {x: 0, y: 0}, organ: {x: 0.2, y: 0.2}}\n"
     main_file.write_text(re.sub(r"(?m)^places:.*\n(?:[ #].*\n)*", "", main_file.read_text("utf-8")) + places, "utf-8")
     assert main(["test", str(project), "knocking"]) == 1
-    assert "expected within 60 s to hear “Hallo”, but it said “Hello, Ani!”\n" in capsys.readouterr().out
+    assert "expected to hear “Hallo” within 60 s, but it said “Hello, Ani!”\n" in capsys.readouterr().out
 
 
 def test_of_several_texts_the_nearest_is_told(story: Write, capsys: pytest.CaptureFixture[str]) -> None:

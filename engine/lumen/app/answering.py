@@ -121,7 +121,7 @@ def _made(make: AnswerMaker) -> Any:
 def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:
     """What is sent back: the answer, or a verdict that says why there is none."""
     if body["ask"] == JOURNAL.ask:
-        return journal_page(journal, body.get("from", 0))
+        return journal_page(journal, int(body.get("from", 0)))
     try:
         return answer(steps, body["ask"], body.get("what", "")[:MAX_QUESTION], body.get("at"))
     except TooLongAgoError as error:

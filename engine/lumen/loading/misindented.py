@@ -84,7 +84,7 @@ def misindented(
     complained = {row for complaint in found for row in _rows(complaint, document, lines)}
     solved: dict[Complaint, str] = {}
     tried: set[LineMove] = set()
-    tries = min(MAX_TRIES, MAX_CHARACTERS // len(document.text))
+    tries = min(MAX_TRIES, MAX_CHARACTERS // max(1, len(document.text)))
     sought = 0
     for complaint in found:
         if len(tried) >= tries or sought >= MAX_COMPLAINTS:

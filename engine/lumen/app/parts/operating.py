@@ -56,7 +56,7 @@ MAX_NOTE = 300
 """Characters of a mark, or a note."""
 MAX_STATE = 200
 """Characters of the name of a state."""
-Answer = Callable[[Message, float], dict[str, Any]]
+Responder = Callable[[Message, float], dict[str, Any]]
 """Answers a valid request at a time [s]."""
 
 
@@ -113,7 +113,7 @@ class OperatorPart(Part, Observer):
         self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, record)
         self._raising = RaisedEvents(behavior.loop, self._reply)
         self._requests = RequestChecks()
-        self._answers: Mapping[str, Answer] = {
+        self._answers: Mapping[str, Responder] = {
             STATUS.ask: lambda _message, _now: self.status(),
             MARK.ask: self._mark,
             NOTE.ask: self._noted,
