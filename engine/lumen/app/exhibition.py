@@ -76,10 +76,29 @@ class Exhibition:
         url = bus if isinstance(bus, str) else "memory://"
         shared = not url.startswith("memory:")
         opened = validated(connect(bus, sender=EXHIBITION) if isinstance(bus, str) else bus, project)
-        self.node = WholeNode(project, setup, opened, story, narrator, language=language, shared=shared)
-        behavior, directory = self.node.behavior, run_directory
-        self.reloader: Reloader | None = None
+        directory, fresh = run_directory, fresh or story is not None
         records = directory.records if directory else RunRecords(None)
+        lasts = directory is not None and directory.home is not None and story is None
+
+        def recover() -> Resumption | FreshStart:
+            assert directory
+            found = directory.begin_run(behavior, url, self.reloader, fresh=fresh)
+            self._operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
+            return watch.recovered(found) if watch else found
+
+        self.node = WholeNode(
+            project,
+            setup,
+            opened,
+            story,
+            narrator,
+            language=language,
+            shared=shared,
+            recover=recover if directory else FreshStart,
+            record=records.write if lasts else lambda _: None,
+        )
+        behavior = self.node.behavior
+        self.reloader: Reloader | None = None
         self.node.add(ForgettingPart(project, opened, behavior.forget, records.forget))
         journal = record_inputs(behavior, records, story=story, rehearsed=story is not None or directory is None)
         self.node.closing.append(records.close_inputs)
@@ -102,42 +121,36 @@ class Exhibition:
             reloaded=lambda: self.reloader.last_reload if self.reloader else None,
             record=directory.records.write if directory else lambda _: None,
             keep=records.keep_decisions,
+            marking=lambda: recording.marking() if recording else "",
         )
         self.node.add(self._operator)
+        recording: RecordingPart | None = None
         if directory:
             tell = partial(self.node.narrator.line, "recording")
             ring = directory.home is not None and story is None
             recording = RecordingPart(project, opened, tell, record, ring=ring, patient=story is not None)
-            records.recorder, self._operator.marking = recording.recorder, recording.marking
             self.node.parts.insert(0, recording)
-        watch = self._alert(alerts, opened, records) if alerts else None
+
+        def kept() -> str:
+            return records.trouble or (recording.trouble if recording else "")
+
+        watch = self._alert(alerts, opened, kept) if alerts else None
         if directory:
-            fresh = fresh or story is not None
-
-            def recover() -> Resumption | FreshStart:
-                found = directory.begin_run(behavior, url, self.reloader, fresh=fresh)
-                self._operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
-                return watch.recovered(found) if watch else found
-
-            self.node.brain.recover = recover
             if story is None:
                 analyse(project.motions.values(), project.body)
                 self.node.parts.append(RecordsPart(directory.records, behavior))
                 if directory.home:
-                    self.node.robot.foreign.record = directory.records.write
                     keep_hold(self.node.robot.server.hold, directory.home.folder)
                     self._operator.model.keep(directory.home.folder)
             if shared:
                 log = DeduplicationLog(home_of(directory.root, project.one_of_several) / DEDUPLICATION_FILE)
                 self.node.robot.server.recall(log)
 
-    def _alert(self, desk: AlertDesk, bus: ValidatedBus, records: RunRecords) -> AlertPart:
+    def _alert(self, desk: AlertDesk, bus: ValidatedBus, kept: Callable[[], str]) -> AlertPart:
         """Have people told of what goes wrong."""
         root = Path(self.node.project.root)
         parts, presence = (ROBOT_PART, BRAIN), self.node.presence
-        watch = AlertPart(
-            desk, bus, home_of(root, self.node.project.one_of_several), parts, presence, lambda: records.trouble
-        )
+        watch = AlertPart(desk, bus, home_of(root, self.node.project.one_of_several), parts, presence, kept)
         self.node.loop.observers.append(watch)
         self.node.add(watch, *([RefusalPart(self.reloader, desk)] if self.reloader else []))
         return watch

@@ -2,20 +2,22 @@
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from math import inf
 
 from lumen.app.claiming import CLAIM_INTERVAL
 from lumen.app.living import live
 from lumen.app.node import Node
 from lumen.errors import LumenError
+from lumen.upkeep.garbage import GcScheduler
 
 
 class House:
     """Nodes by the names of their robots; each has its own time, keys, journal, files and stop.
 
     They live tick by tick, in the order given: where their worlds have one clock in common, they are in step. One that
-    is over is closed, and the others go on. So do they if an error ends one of them, which `lost` is called with at once
-    (its name, the error). With `together` the house is over as soon as one of them is, as when a story has ended.
+    is over is closed, and the others go on. So do they if an error ends one of them: `lost` is called at once, with its
+    name and the error. With `together` the house is over as soon as one of them is, as when a story has ended.
     """
 
     def __init__(
@@ -71,7 +73,8 @@ class House:
 
     def run(self, seconds: float | None = None) -> float:
         """Live for so long [s], or until it is over; how long it lived [s]."""
-        return live(self, seconds)
+        with closing(GcScheduler()) as garbage:
+            return live(self, seconds, garbage)
 
     def close(self) -> None:
         """End all that go on."""

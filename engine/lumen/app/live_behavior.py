@@ -23,12 +23,19 @@ class LiveBehavior:
     """A project's behaviour in its `loop`, on a robot, a bus and a clock.
 
     A story says which behaviour it is about, in which language and at what time of day it begins, and remembering
-    what. `adopt` lets everything around the loop go by another bundle; it may raise BusError. Where it is `published`,
-    the bus is told of each step. `forgetting` are called with whom to forget, besides.
+    what. `adopt` switches everything around the loop to another bundle; it may raise BusError. If it is `published`,
+    each step goes to the bus. `forgetting` are called with whom to forget, besides.
     """
 
     def __init__(
-        self, project: Project, setup: Setup, bus: Bus, story: Story | None = None, *, published: bool = True
+        self,
+        project: Project,
+        setup: Setup,
+        bus: Bus,
+        story: Story | None = None,
+        *,
+        published: bool = True,
+        adopt: Callable[[Project], None] = lambda _: None,
     ) -> None:
         self._story, self._local_timezone = story, "" if story else local_timezone()
         self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking)
@@ -42,7 +49,7 @@ class LiveBehavior:
             lambda: self.loop.step,
             lambda: self.loop.runtime.approvals.waiting,
         )
-        self.adopt: Callable[[Project], None] = lambda _: None
+        self._adopt = adopt
         self.forgetting: list[Callable[[PersonName], None]] = []
         if published:
             self.loop.observers.append(self.trace)
@@ -94,10 +101,10 @@ class LiveBehavior:
         """
         old, new = self.project, staged(project, self._story)
         try:
-            self.adopt(new)
+            self._adopt(new)
             self.loop.switch(new, plan, kind)
         except Exception:
-            self.adopt(old)
+            self._adopt(old)
             raise
         if self.trace in self.loop.observers and (plan.entered or plan.exited):
             self.trace.migrated(plan)

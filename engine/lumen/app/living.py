@@ -1,11 +1,11 @@
 """The loop of a process: tick by tick, asleep while nothing is due, until it is over."""
 
 import sys
+from collections.abc import Callable
 from math import inf
 from typing import Protocol
 
 from lumen.runtime.watcher import SWITCH_INTERVAL
-from lumen.upkeep.garbage import GcScheduler
 
 ROUNDING = 1e-6
 """How far the sum of many ticks may be off [s]."""
@@ -29,17 +29,18 @@ class Living(Protocol):
     def tick(self) -> float: ...
 
 
-def live(one: Living, period: float | None) -> float:
-    """Tick until it is over, or has lived for the period [s]; return how long it lived [s]."""
-    began = one.now
-    collecting, usual = GcScheduler(), sys.getswitchinterval()
+def live(one: Living, period: float | None, tidy: Callable[[], None]) -> float:
+    """Tick until it is over, or has lived for the period [s]; return how long it lived [s].
+
+    `tidy` is called after each tick, when there is the most time until the next.
+    """
+    began, usual = one.now, sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL)
     try:
         while not one.over and (period is None or one.now - began < period - ROUNDING):
             one.nap(inf if period is None else began + period - one.now)
             one.tick()
-            collecting()
+            tidy()
     finally:
         sys.setswitchinterval(usual)
-        collecting.close()
     return one.now - began

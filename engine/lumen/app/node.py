@@ -21,6 +21,7 @@ from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_ROUTE
+from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 NAP = 0.2
@@ -122,7 +123,9 @@ class Node:
 
     def run(self, period: float | None = None) -> float:
         """Tick until it is over, or has lived for the period [s]; how long it lived [s]."""
-        return live(self, period)
+        garbage = GcScheduler()
+        self.closing.append(garbage.close)
+        return live(self, period, garbage)
 
     def tick(self) -> float:
         """Wait for the next tick and live through it; its time [s]."""
@@ -195,13 +198,12 @@ class Node:
         if (rest := self.rest()) < inf:
             self.pass_over(ceil(rest / TICK_PERIOD - ROUNDING) - 1)
 
-    def use(self, project: Project, but: Part | None = None) -> None:
-        """Let the bus and all parts go by another bundle, but the one that has it already."""
+    def use(self, project: Project) -> None:
+        """Switch the bus and every part to another bundle."""
         self._project = project
         self.bus.use(project)
         for part in self.parts:
-            if part is not but:
-                part.use(project)
+            part.use(project)
 
     def close(self) -> None:
         """End all parts, whatever one of them may raise; then the bus."""

@@ -1,5 +1,6 @@
 """All parts of an exhibition in one process: visitor, robot and brain."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from lumen.language.stories import Story
 from lumen.modules.audio_track import AudioTrack
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
+from lumen.runtime.resuming import FreshStart, Resumption
 from lumen.runtime.story import StoryPlayer
 
 
@@ -33,7 +35,8 @@ class WholeNode(Node):
 
     With a story, its visitor plays it; without one the visitor does what whoever holds this makes them do. There is no
     `visitor` where the robot is in no world of ours. A `silent` one publishes nothing of the behaviour, and of the
-    senses only what the behaviour hears of. On a `shared` bus others can see that it is there.
+    senses only what the behaviour hears of. On a `shared` bus others can see that it is there. `recover` decides how
+    the behaviour begins; `record` keeps in the journal what the robot is told over the bus.
     """
 
     def __init__(
@@ -47,15 +50,19 @@ class WholeNode(Node):
         language: str = "",
         silent: bool = False,
         shared: bool = False,
+        recover: Callable[[], Resumption | FreshStart] = FreshStart,
+        record: Callable[[Mapping[str, Any]], None] = lambda _: None,
     ) -> None:
-        self.behavior = LiveBehavior(project, setup, bus, story, published=not silent)
+        self.behavior = LiveBehavior(project, setup, bus, story, published=not silent, adopt=self.use)
         self.narrator = narrator or Narrator(setup.clock.now, lambda: self.project.machine)
         here = tuple(name for name, said in project.modules.items() if said.here)
         roles = (ROBOT_PART, BRAIN, MOTION, *here)
         presence = presence_of(project, bus, roles, self._said) if shared else None
         super().__init__(self.behavior.project, bus, setup.clock, self.narrator, presence=presence)
         self.setup, self.story = setup, story
-        self.robot = RobotPart(self.project, bus, setup, ForeignCommands(self.narrator), presence, silent=silent)
+        self.robot = RobotPart(
+            self.project, bus, setup, ForeignCommands(self.narrator, record=record), presence, silent=silent
+        )
         self.loop.observers.append(self.robot)
         self.visitor: VisitorPart | None = None
         if setup.hall:
@@ -64,10 +71,10 @@ class WholeNode(Node):
             self.parts.append(self.visitor)
         if self.player:
             self.loop.observers.append(self.player)
-        self.brain = BrainPart(self.behavior, self.narrator, presence, language, self.robot.server.hold)
+        hold = self.robot.server.hold
+        self.brain = BrainPart(self.behavior, self.narrator, presence, language, hold, recover)
         self.parts += [self.robot, self.brain]
         self.paced = self.behavior.trace.pace
-        self.behavior.adopt = lambda bundle: self.use(bundle, but=self.brain)
 
     def _said(self) -> dict[str, Any]:
         """What others hear of it besides that it is there."""

@@ -47,12 +47,11 @@ class AlertPart(Part, Observer):
         presence: Presence | None = None,
         kept: Callable[[], str] = lambda: "",
         clock: Callable[[], float] = time.monotonic,
+        stopped: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._desk, self._parts, self._presence = desk, parts, presence
-        self._broker, self._blockable = bus.ability(UsesBroker), bus.ability(BlockableBus)
-        self._kept, self._clock = kept, clock
+        self._desk, self._bus, self._parts, self._presence = desk, bus, parts, presence
+        self._kept, self._clock, self._person_stopped = kept, clock, stopped
         self._falls, self._disk = FallWatch(), DiskWatch(folder)
-        self.stopped: Callable[[], bool] = lambda: False
         self._now = 0.0
         self._away: float | None = None
         self._blocked = ""
@@ -119,11 +118,12 @@ class AlertPart(Part, Observer):
         """Robot and brain tell of the broker; the others need not all say the same."""
         if not {ROBOT_PART, BRAIN} & set(self._parts):
             return
-        blocked, before = self._blockable.blocked if self._blockable else "", self._blocked
+        broker, blockable = self._bus.ability(UsesBroker), self._bus.ability(BlockableBus)
+        blocked, before = blockable.blocked if blockable else "", self._blocked
         self._blocked = blocked
         if blocked and not before:
             self._desk("broker", f"the message broker is short of {blocked} and accepts no messages", "blocked")
-        if not (self._broker and self._broker.away):
+        if not (broker and broker.away):
             self._away = None
         elif self._away is None:
             self._away = self._clock()
@@ -147,7 +147,7 @@ class AlertPart(Part, Observer):
 
     def _look_for_stop(self) -> None:
         """A robot that is stopped without a brain, which else tells of it."""
-        before, self._stopped = self._stopped, self.stopped()
+        before, self._stopped = self._stopped, self._person_stopped()
         if self._stopped and before is False and self._presence and self._presence.find(BRAIN) is None:
             self._desk("stopped", "a person stopped it")
 

@@ -33,9 +33,10 @@ class BrainPart(Part):
         presence: Presence | None = None,
         language: str = "",
         hold: PersonHold | None = None,
+        recover: Callable[[], Resumption | FreshStart] = FreshStart,
     ) -> None:
         self.behavior, self._narrator, self._presence = behavior, narrator, presence
-        self.recover: Callable[[], Resumption | FreshStart] = FreshStart
+        self._recover = recover
         self._language, self._interrupted = language, False
         self._hold = hold
         if hold:
@@ -49,7 +50,7 @@ class BrainPart(Part):
         return self.behavior.project
 
     def begin(self, now: float) -> None:
-        found = self.recover()
+        found = self._recover()
         if isinstance(found, Resumption):
             self._resume(found)
             return

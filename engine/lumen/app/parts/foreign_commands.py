@@ -18,28 +18,32 @@ class ForeignCommands:
     `record` keeps an entry of the journal.
     """
 
-    def __init__(self, narrator: Narrator) -> None:
-        self._narrator = narrator
-        self.is_brains: Callable[[str], bool] = lambda _: False
-        self.record: Callable[[Mapping[str, Any]], None] = lambda _: None
+    def __init__(
+        self,
+        narrator: Narrator,
+        *,
+        is_brains: Callable[[str], bool] = lambda _: False,
+        record: Callable[[Mapping[str, Any]], None] = lambda _: None,
+    ) -> None:
+        self._narrator, self._is_brains, self._record = narrator, is_brains, record
 
     def given(self, command: RobotCommand, id: str) -> None:
         """The robot begins it."""
-        if isinstance(command, Aim) or self.is_brains(id):
+        if isinstance(command, Aim) or self._is_brains(id):
             return
         self._narrator.line(WHO, words(command))
-        self.record({"command": words(command), "id": id})
+        self._record({"command": words(command), "id": id})
 
     def refused(self, method: str, reason: str) -> None:
         """The robot does not."""
         self._narrator.line(WHO, f"refused: {method or 'a command'}, for {reason}")
-        self.record({"command": method, "refused": reason})
+        self._record({"command": method, "refused": reason})
 
     def noticed(self, event: Event) -> None:
         """A person stopped the robot, or let it move again."""
         by = event.data.get("by", "") if isinstance(event.data, dict) else ""
         self._narrator.line("operator", f"{event.name}, by {by}")
-        self.record({event.name: by})
+        self._record({event.name: by})
 
 
 def words(command: RobotCommand) -> str:

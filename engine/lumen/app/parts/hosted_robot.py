@@ -33,10 +33,15 @@ class HostedRobotPart(RobotPart):
     """
 
     def __init__(
-        self, project: Project, bus: ValidatedBus, setup: Setup, presence: Presence, narrator: Narrator
+        self,
+        project: Project,
+        bus: ValidatedBus,
+        setup: Setup,
+        presence: Presence,
+        narrator: Narrator,
+        noticed: Callable[[Event], None] = lambda _: None,
     ) -> None:
-        foreign = ForeignCommands(narrator)
-        foreign.is_brains = self._is_brains
+        foreign = ForeignCommands(narrator, is_brains=self._is_brains, record=lambda entry: self._journal.write(entry))
         self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given, foreign.refused, setup.hurry)
         super().__init__(project, bus, setup, foreign, presence, server=self._host.server)
         self._narrator, self._others, self._setup = narrator, presence, setup
@@ -44,7 +49,7 @@ class HostedRobotPart(RobotPart):
         self._guard: BrainGuard | None = None
         self._interrupted = False
         self.server.follow(self._is_brains)
-        self.noticed: Callable[[Event], None] = lambda _: None
+        self._noticed = noticed
         self._journal = Journal(None)
 
     @property
@@ -69,7 +74,6 @@ class HostedRobotPart(RobotPart):
     def begin(self, now: float) -> None:
         self.server.recall(DeduplicationLog(self._home / DEDUPLICATION_FILE))
         self._journal = Journal(self._home)
-        self.foreign.record = self._journal.write
         keep_hold(self.server.hold, self._home)
         self._guard = BrainGuard(self.robot, self._others, self._host.notice, self._say, time.monotonic)
 
@@ -77,7 +81,7 @@ class HostedRobotPart(RobotPart):
         self._look(now)
         self._follow(now)
         for event in self._host.tick(now):
-            self.noticed(event)
+            self._noticed(event)
             kind, separator, _ = event.name.partition(".command.")
             if BRAIN not in self._others.parts and (kind == "error" or not separator):
                 self._narrator.answered(event)

@@ -84,11 +84,12 @@ class OperatorPart(Part, Observer):
         reloaded: Callable[[], LastReload | None] = lambda: None,
         record: Callable[[Mapping[str, Any]], None] = lambda _: None,
         keep: Callable[[Mapping[str, Any]], None] = lambda _: None,
+        marking: Callable[[], str] = str,
         needs: Sequence[str] = (),
     ) -> None:
         self.needs, self._behavior, self._narrator = needs, behavior, narrator
         self._stopped, self._realtime, self._reloaded, self._record = stopped, realtime, reloaded, record
-        self.marking: Callable[[], str] = str
+        self._marking = marking
         self._since = 0.0
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
         self._bus = behavior.loop.bus
@@ -216,7 +217,7 @@ class OperatorPart(Part, Observer):
             self._bus.reply(message, answer)
 
     def _mark(self, message: Message, _: float) -> dict[str, Any]:
-        kept = self.marking()
+        kept = self._marking()
         self._note(message, "mark")
         return {"verdict": "done", "text": kept or f"in the journal; {NOTHING_RECORDED}"}
 

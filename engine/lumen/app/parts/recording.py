@@ -53,13 +53,18 @@ class RecordingPart(Part):
         self._file = self._begin(file) if file else None
         self._ring = self._ringing() if ring and project.record.ring else None
         tapes: list[RecordingTape] = [tape for tape in (self._file, self._ring) if tape]
-        self.recorder = (
+        self._recorder = (
             Recorder(bus.unchecked, project, tapes, camera=project.record.camera, patient=patient, extra=self._view)
             if tapes
             else None
         )
-        if self.recorder:
-            self.recorder.start()
+        if self._recorder:
+            self._recorder.start()
+
+    @property
+    def trouble(self) -> str:
+        """Why something can't be recorded; empty if everything can."""
+        return self._recorder.trouble if self._recorder else ""
 
     def marking(self) -> str:
         """What becomes of a mark; empty where nothing is recorded."""
@@ -70,17 +75,17 @@ class RecordingPart(Part):
 
     def use(self, project: Project) -> None:
         self._project = project
-        if self.recorder:
-            self.recorder.use(project)
+        if self._recorder:
+            self._recorder.use(project)
 
     def summary(self) -> Iterator[str]:
         if self._file:
             yield self._file.trouble or f"recorded: {self._file.path}, {counted(self._file.messages, 'message')} so far"
 
     def close(self) -> None:
-        if self.recorder:
-            self.recorder.close()
-            if dropped := self.recorder.dropped:
+        if self._recorder:
+            self._recorder.close()
+            if dropped := self._recorder.dropped:
                 self._tell(f"{dropped:,} messages were not recorded: the disk was too slow for them")
         if self._rescue:
             self._rescue.close()

@@ -22,7 +22,7 @@ from lumen.runtime.delegated_tracking import DelegatedTracking
 from lumen.runtime.home import Home
 from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
-from lumen.runtime.resuming import Resumption
+from lumen.runtime.resuming import FreshStart, Resumption
 from lumen.runtime.tracking import LocalTracking
 
 SESSION = "brain.json"
@@ -47,9 +47,17 @@ class RemoteBody:
         self.tracking = DelegatedTracking(own, project, bus, self.motion_module, self.robot.time)
         self._clock = clock
 
-    def behavior(self, project: Project, bus: ValidatedBus, story: Story | None, speed: float) -> LiveBehavior:
+    def behavior(
+        self,
+        project: Project,
+        bus: ValidatedBus,
+        story: Story | None,
+        speed: float,
+        adopt: Callable[[Project], None],
+    ) -> LiveBehavior:
         """The behaviour on this robot; whether it was away is a matter of real time, as for the robot."""
-        found = LiveBehavior(project, Setup(self.robot, self._clock, None, tracking=self.tracking), bus, story)
+        setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
+        found = LiveBehavior(project, setup, bus, story, adopt=adopt)
         found.loop.patience *= speed
         self._project = lambda: found.project
         return found
@@ -96,8 +104,9 @@ class RemoteBrainPart(BrainPart):
         home: Home | None,
         language: str = "",
         stopped: Callable[[], StoppedBy | None] = lambda: None,
+        recover: Callable[[], Resumption | FreshStart] = FreshStart,
     ) -> None:
-        super().__init__(behavior, narrator, presence, language)
+        super().__init__(behavior, narrator, presence, language, recover=recover)
         self.robot, self._tracking, self._others, self._home = body.robot, body.tracking, presence, home
         self.motion_module = body.motion_module
         hold = RemoteHold(stopped)

@@ -82,47 +82,52 @@ def assemble(
     if setup or BRAIN in names:
         analyse(project.motions.values(), project.body)
     folder, records = home_of(run_directory.root, project.one_of_several), run_directory.records
-    watch = AlertPart(alerts, bus, folder, names, presence, lambda: records.trouble) if alerts else None
+
+    def kept() -> str:
+        return records.trouble or recording.trouble
+
+    def stopped_here() -> bool:
+        return robot is not None and robot.stopped()
+
+    alone = {} if BRAIN in names else {"stopped": stopped_here}
+    watch = AlertPart(alerts, bus, folder, names, presence, kept, **alone) if alerts else None
     ring = run_directory.home is not None and story is None
     recording = RecordingPart(project, bus, partial(narrator.line, "recording"), record, ring=ring)
-    records.recorder = recording.recorder
     node.parts.append(recording)
     if watch:
         node.parts.append(watch)
     if setup:
-        robot = HostedRobotPart(project, bus, setup, presence, narrator)
+        noticed = watch.noticed if watch and BRAIN not in names else lambda _: None
+        robot = HostedRobotPart(project, bus, setup, presence, narrator, noticed)
         node.parts.append(robot)
         if BRAIN not in names:
             node.parts.append(ForgettingPart(project, bus, robot.forget))
-        if watch and BRAIN not in names:
-            robot.noticed, watch.stopped = watch.noticed, robot.stopped
     if MOTION in names:
         node.parts.append(MotionPart(project, bus, clock, presence, narrator))
     if BRAIN in names:
         node.parts.append(ModuleTroublesPart(project, bus, narrator.line))
         body = RemoteBody(staged(project, story), bus, clock, presence)
-        behavior = body.behavior(project, bus, story, options.speed)
+
+        def adopt(bundle: Project) -> None:
+            body.robot.use(bundle)
+            node.use(bundle)
+
+        behavior = body.behavior(project, bus, story, options.speed, adopt)
         reloader = run_directory.reloader(behavior, narrator, mode=options.reload)
 
         def stopped() -> StoppedBy | None:
             return robot.server.hold.stopped if robot else stopped_there(presence)
-
-        brain = RemoteBrainPart(behavior, body, narrator, presence, run_directory.home, options.language, stopped)
 
         def recover() -> Resumption | FreshStart:
             found = run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
             operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
             return watch.recovered(found) if watch else found
 
-        brain.recover = recover
+        home = run_directory.home
+        brain = RemoteBrainPart(behavior, body, narrator, presence, home, options.language, stopped, recover)
         journal = record_inputs(behavior, records, story=story, rehearsed=story is not None)
         node.closing.append(records.close_inputs)
 
-        def adopt(bundle: Project) -> None:
-            body.robot.use(bundle)
-            node.use(bundle, but=brain)
-
-        behavior.adopt = adopt
         if watch and alerts:
             behavior.loop.observers.append(watch)
             node.parts.append(RefusalPart(reloader, alerts))
@@ -135,9 +140,9 @@ def assemble(
             reloaded=lambda: reloader.last_reload,
             record=run_directory.records.write,
             keep=records.keep_decisions,
+            marking=recording.marking,
             needs=brain.needs,
         )
-        operator.marking = recording.marking
         if run_directory.home and story is None:
             operator.model.keep(run_directory.home.folder)
         tell = partial(narrator.line, "fleet")

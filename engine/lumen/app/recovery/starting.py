@@ -93,9 +93,10 @@ def started(
     alerted: bool,
     tell: Callable[[str], None],
 ) -> Iterator[Start]:
-    """Take the homes of these robots, finish an interrupted installation, read the files; give the homes back at the end.
+    """Take the homes of these robots, finish an interrupted installation, and read the files.
 
-    An error on the way, or while the run lasts, is reported to the people in `alerts` if `alerted`, and raised again.
+    The homes are given back at the end. An error on the way, or while the run lasts, is reported to the people in
+    `alerts` if `alerted`, and raised again.
     """
     guest = bool(parts) and BRAIN not in parts
     names = tuple(robots) or ("",)

@@ -8,7 +8,6 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
-from lumen.app.recording.recorder import Recorder
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import CrashCounter
@@ -43,16 +42,13 @@ class RunRecords:
         self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
         self.inputs: JournalWriter | None = None
-        self.recorder: Recorder | None = None
 
     @property
     def trouble(self) -> str:
-        """What can't be written of where the behaviour stands, what happened or is recorded, and why; else empty."""
+        """Why the snapshot of the behaviour or the journal can't be written; empty if both can."""
         if why := self.keeper.trouble if self.keeper else "":
             return f"the snapshot of the behaviour can't be written: {why}"
-        if why := self.inputs.trouble if self.inputs else "":
-            return why
-        return self.recorder.trouble if self.recorder else ""
+        return self.inputs.trouble if self.inputs else ""
 
     def write(self, entry: Mapping[str, Any]) -> None:
         self.journal.write(entry)
