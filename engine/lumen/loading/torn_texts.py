@@ -36,7 +36,7 @@ def whole_translation(document: Document, path: NodePath) -> str:
     """
     whole = whole_text(document, path, by_language=path[-2:-1] == ("say",) and not str(path[-1]).isidentifier())
     key = whole.partition(":")[0]
-    return whole if (key == "any" or is_language_tag(key)) and path[-2] not in ("on", "hears") else ""
+    return whole if (key == "any" or is_language_tag(key)) and path[-2:-1] not in (("on",), ("hears",)) else ""
 
 
 def quoting(whole: str) -> str:
