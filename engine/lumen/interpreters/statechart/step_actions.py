@@ -12,7 +12,7 @@ from lumen.interpreters.statechart.asking import compile_question
 from lumen.interpreters.statechart.blocks import alternatives
 from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.step_text import NotPlainError, Sight, StepText, template_needs
+from lumen.interpreters.statechart.step_text import VARIABLES, NotPlainError, Sight, StepText, template_needs
 from lumen.interpreters.statechart.values import MAX_TIMERS
 from lumen.language.actions import (
     Action,
@@ -211,13 +211,10 @@ class ActionText(StepText):
         counted = ", ".join(f"counters[{number}] + {count}" for number, count in enumerate(given))
         counters = f"new(Counters, ({counted}))" if any(given) else "counters"
         target = "names" if known.configuration is self.start else self.constant(known.configuration.names)
-        after = (
-            f"{target}, context, at, language, timers, doing, history, {counters}, generator, epoch, invoked, halted,"
-            " place, zone, output"
-        )
+        after = VARIABLES | {"configuration": target, "at": "at", "counters": counters}
         exited, entered, taken = map(self.several, (known.exited, known.entered, known.transitions))
         commands = "commands" if known.commanded else "()"
         raised = "".join(f"{variable}, " for variable in known.raised)
-        self.line(f"after = new(Snapshot, ({after}))")
+        self.line(f"after = new(Snapshot, ({', '.join(after.values())}))")
         self.line(f"return new(Step, (event, {exited}, {entered}, {commands}, after, {taken}, ({raised}), ()))")
         known.ended = True

@@ -10,6 +10,7 @@ from lumen.interpreters.expressions import compile_template, split_template
 from lumen.interpreters.expressions.inlining import inlined, scope_needs
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.step_code import WrittenStep, function_of
+from lumen.interpreters.statechart.values import Snapshot
 from lumen.language.actions import ComputedValue, Expression
 from lumen.language.machines import MachineDefinition
 
@@ -18,14 +19,13 @@ MAX_LINES = 200
 MAX_DEPTH = 40
 """Levels of one function: Python reads no more than a hundred."""
 
-_HEAD = """\
+VARIABLES = {name: name for name in Snapshot._fields} | {"configuration": "names", "at": "before"}
+"""The variable of a written step that holds each field of the snapshot before it."""
+_HEAD = f"""\
 def play(constants, snapshot, event):
-    (
-        names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted, place,
-        zone, output,
-    ) = snapshot
+    {", ".join(VARIABLES.values())} = snapshot
     at = event[2]
-    if event[3] != {sendid} or invoked:
+    if event[3] != {{sendid}} or invoked:
         return None
     if not at >= before:
         at = before
@@ -153,7 +153,7 @@ class StepText:
         machine = self.machine
         phrases, answers, lists = map(self.constant, (machine.phrases, machine.answers, machine.lists))
         self.line(
-            f"scope = new(Scope, (context, {event}, {view}, {active}, at, language, {phrases}, {answers}, epoch, zone,"
+            f"scope = new(Scope, (context, {event}, {view}, {active}, at, language, {phrases}, {answers}, epoch, timezone,"
             f" {lists}, no_draw, {self.constant(machine)}))"
         )
         self.scope = wanted
