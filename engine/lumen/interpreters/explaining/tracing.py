@@ -120,23 +120,22 @@ class TracedContext(ExecutionContext):
         self.trace = trace
         return self
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if self.trace is None:
-            super().__setattr__(name, value)
-            return
-        match name:
-            case "event":
-                self._settle()
-            case "transitions":
-                self._settle(value[len(self.transitions) :])
-            case "exited" | "entered" if self.last:
-                setattr(self.last, name, getattr(self.last, name) + value[len(getattr(self, name)) :])
-        super().__setattr__(name, value)
-        match name:
-            case "event":
-                self._decide(eventless=False)
-            case "configuration":
-                self._decide(eventless=True)
+    def take_internal(self) -> Event:
+        self._settle()
+        event = super().take_internal()
+        self._decide(eventless=False)
+        return event
+
+    def leave(self, transitions: tuple[Transition, ...], exited: tuple[str, ...], entered: tuple[str, ...]) -> None:
+        self._settle(transitions)
+        if self.last:
+            self.last.exited += exited
+            self.last.entered += entered
+        super().leave(transitions, exited, entered)
+
+    def reach(self, target: Configuration) -> None:
+        super().reach(target)
+        self._decide(eventless=True)
 
     def _settle(self, taken: tuple[Transition, ...] | None = None) -> None:
         """Note the decision on the event from outside, and what was taken; without that, nothing was."""

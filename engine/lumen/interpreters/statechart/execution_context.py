@@ -158,6 +158,22 @@ class ExecutionContext:
         )  # fmt: skip
         return _new(Step, made)
 
+    def take_internal(self) -> Event:
+        """Handle the next event of the internal queue from now on."""
+        event = self.internal_queue.popleft()  # type: ignore[union-attr]  # whoever calls this has looked
+        self.event, self.event_data, self.cached_scope = event, None, None
+        return event
+
+    def leave(self, transitions: tuple[Transition, ...], exited: tuple[str, ...], entered: tuple[str, ...]) -> None:
+        """Begin a microstep with these transitions; the names are those of the states that it exits and enters."""
+        self.transitions += transitions
+        self.exited += exited
+        self.entered += entered
+
+    def reach(self, target: Configuration) -> None:
+        """End a microstep: these states are active now."""
+        self.configuration, self.active = target, target.known
+
     def evaluate_in(self, node: StateNode) -> None:
         """Let `state` in expressions be this one."""
         if node is not self.node:

@@ -44,8 +44,8 @@ def _macrostep(context: ExecutionContext) -> None:
         if not context.internal_queue:
             return
         count_microstep(context)
-        context.event, context.event_data, context.cached_scope = context.internal_queue.popleft(), None, None
-        take_enabled(context, context.configuration.candidates(context.event.name))
+        event = context.take_internal()
+        take_enabled(context, context.configuration.candidates(event.name))
 
 
 def _begin(context: ExecutionContext) -> None:

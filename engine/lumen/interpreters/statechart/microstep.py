@@ -68,9 +68,7 @@ def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
     count_microstep(context)
     before = context.configuration
     taken, transitions, exits, between, entries, exited, entered, context.history, target = plan
-    context.transitions += transitions
-    context.exited += exited
-    context.entered += entered
+    context.leave(transitions, exited, entered)
     for node, context.active, _ in exits:
         _exit(context, node)
     context.active = between
@@ -80,8 +78,7 @@ def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
     restored = _restored(context, taken) if context.activities.halted else frozenset[str]()
     for node, context.active, done in entries:
         _enter(context, node, done, restored)
-    context.configuration = target
-    context.active = target.known
+    context.reach(target)
     if target.finished and not before.finished:
         _end(context)
 

@@ -153,8 +153,8 @@ class StepText:
         machine = self.machine
         phrases, answers, lists = map(self.constant, (machine.phrases, machine.answers, machine.lists))
         self.line(
-            f"scope = new(Scope, (context, {event}, {view}, {active}, at, language, {phrases}, {answers}, epoch, timezone,"
-            f" {lists}, no_draw, {self.constant(machine)}))"
+            f"scope = new(Scope, (context, {event}, {view}, {active}, at, language, {phrases}, {answers}, epoch,"
+            f" timezone, {lists}, no_draw, {self.constant(machine)}))"
         )
         self.scope = wanted
 
