@@ -325,7 +325,7 @@ def test_a_story_is_no_trouble_and_nobody_is_told_of_what_was_typed_wrong(
         raise BusUnreachableError("no broker")
 
     assert main(["run", str(hall.folder), "--only", "robbot"]) == 2
-    monkeypatch.setattr("lumen.app.recovery.starting.startup_project", fail)
+    monkeypatch.setattr("lumen.app.run_start.startup_project", fail)
     assert main(["run", str(hall.folder), "--story", "x"]) == 2
     assert hall.web.bodies == []
     capsys.readouterr()

@@ -13,7 +13,7 @@ from lumen.app.house_setup import set_up_house
 from lumen.app.node import Node
 from lumen.app.parts.console import ConsolePart
 from lumen.app.processes.assembling import ProcessOptions, assemble
-from lumen.app.recovery.starting import WHOLE, Start
+from lumen.app.run_start import WHOLE, Start
 from lumen.app.setup import Setup
 from lumen.bus import connect
 from lumen.buses.validated import validated

@@ -17,8 +17,8 @@ from lumen.app.parts.visitor import VisitorPart
 from lumen.app.processes.assembling import ProcessOptions, assemble
 from lumen.app.processes.choosing import parts_of
 from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.starting import WHOLE, Start, started
 from lumen.app.reload.reloader import MODES
+from lumen.app.run_start import WHOLE, Start, started
 from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
 from lumen.app.stories import home_of
 from lumen.bus import connect
