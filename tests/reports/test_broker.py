@@ -32,6 +32,7 @@ from lumen.errors import BusAddressError, BusUnreachableError
 from lumen.language.addresses import public
 from lumen.language.fleet import Fleet, FleetHouse
 from lumen.loading.files import read_files
+from lumen.ports import BlockableBus, UsesBroker
 from lumen.rules import check_files
 from tests import ROOT
 from tests.guarded import run_guarded
@@ -401,12 +402,15 @@ def test_a_broker_that_is_short_of_memory_is_reported_and_not_lost(
     with closing(bus):
         bus.subscribe("lumen.a", came)
         bus.publish("lumen.a", 1)
-        until(lambda: bus.blocked == "memory")
-        assert not bus.away
+        blockable, broker = bus.ability(BlockableBus), bus.ability(UsesBroker)
+        assert blockable
+        assert broker
+        until(lambda: blockable.blocked == "memory")
+        assert not broker.away
         bus.publish("lumen.a", 2)
         bus.publish("lumen.a", 3, ttl=0.01)
         rabbitmqctl(short, NO_ALARM)
-        until(lambda: not bus.blocked)
+        until(lambda: not blockable.blocked)
         assert came.wait(2) == [1, 2]
     told = [record.getMessage() for record in caplog.records]
     place = f"127.0.0.1:{short.port}"
