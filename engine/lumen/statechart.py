@@ -146,7 +146,7 @@ class Interpreter(Generic[C]):
         seed: int = 0,
         observe: Callable[[Step], None] = _unobserved,
     ) -> None:
-        need(machine, machines.MachineDefinition, "what an interpreter runs", "a Machine")
+        need(machine, machines.MachineDefinition, "the argument `machine`", "a Machine")
         if clock is not None and not isinstance(clock, Clock):
             raise UsageError(f"a clock needs `now` and `wait`, but {clock!r} does not have them")
         if not callable(observe):
@@ -206,7 +206,7 @@ class Interpreter(Generic[C]):
         """
         if timers not in ("deadline", "remaining", "restart"):
             raise UsageError(f"`timers` can't be `{timers}`: write `deadline`, `remaining` or `restart`")
-        need(machine, machines.MachineDefinition, "what an interpreter runs", "a Machine")
+        need(machine, machines.MachineDefinition, "the argument `machine`", "a Machine")
         thawed = deserialize(machine, snapshot)
         it = cls(machine, VirtualClock(thawed.at) if clock is None else clock, observe=observe)
         it._snapshot = retimed(thawed, it.clock.now(), timers)

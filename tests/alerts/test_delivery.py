@@ -20,7 +20,7 @@ from tests.alerts.servers import Post, Web
 from tests.certificates import certify
 from tests.waiting import until
 
-ALERT = Alert("fallen", "it fell and does not get up", "", 1_000.0, 400.0, 3)
+ALERT = Alert("fallen", "it fell and has not got up", "", 1_000.0, 400.0, 3)
 ORIGIN = Origin("Electrical Engineering Days", "NAO", ("robot", "brain"))
 Webs = Callable[..., Web]
 
@@ -42,7 +42,7 @@ def test_a_webhook_gets_json(web: Webs, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv("LUMEN_ALERT_TOKEN", "secret")
     send(Webhook(here.url))
     [body], [head] = here.bodies, here.heads
-    assert body["text"].startswith("NAO: it fell and does not get up (3 times since ")
+    assert body["text"].startswith("NAO: it fell and has not got up (3 times since ")
     assert (body["kind"], body["count"], body["exhibition"]) == ("fallen", 3, "Electrical Engineering Days")
     assert (body["at"], body["first"]) == ("1970-01-01T00:16:40+00:00", "1970-01-01T00:06:40+00:00")
     assert (body["robot"], body["parts"], body["host"]) == ("NAO", ["robot", "brain"], os.uname().nodename)
@@ -87,7 +87,7 @@ def test_a_mail() -> None:
     send(mail(post.port))
     until(lambda: post.mails)
     [text] = post.mails
-    assert "Subject: [Lumen] NAO: it fell and does not get up (3 times since" in text.replace("\r\n ", " ")
+    assert "Subject: [Lumen] NAO: it fell and has not got up (3 times since" in text.replace("\r\n ", " ")
     assert "To: day@example.org, night@example.org" in text
     body = text.partition("\r\n\r\n")[2]
     assert json.loads(body[body.index("{") :])["kind"] == "fallen"

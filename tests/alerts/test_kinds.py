@@ -42,7 +42,7 @@ def test_a_fall_that_it_can_not_get_up_from(hall: Hall) -> None:
 def test_a_fall_that_nobody_does_anything_about(hall: Hall) -> None:
     hall.whole(posture="hangs")
     hall.happen("fallen")
-    assert hall.told("fallen") == "it fell and does not get up"
+    assert hall.told("fallen") == "it fell and has not got up"
 
 
 def test_of_a_fall_that_it_gets_up_from_nobody_is_told(hall: Hall) -> None:
@@ -105,7 +105,7 @@ def test_a_start_on_the_last_good_files(hall: Hall) -> None:
     tour = hall.folder / "behaviors/tour.yaml"
     tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
     hall.whole(last_good=True)
-    assert hall.told("refused").endswith("unknown-state; the last good files run")
+    assert hall.told("refused").endswith("unknown-state; the last good files are active")
 
 
 def test_a_run_that_ended_without_notice(hall: Hall) -> None:

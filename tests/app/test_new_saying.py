@@ -137,7 +137,7 @@ def test_a_saved_one_is_tried_with_the_others(tmp_path: Path, capsys: pytest.Cap
         (Saying("giude", "choice", "dance", "en", "dance"), "no behaviour `giude`"),
         (Saying("guide", "choice", "dance", "fr", "danse"), "does not speak `fr`"),
         (Saying("guide", "choice", "dance", "", "dance"), "`language` must be a code such as `en`"),
-        (Saying("guide", "choice", "dance", "en", "?"), "`text` must be a text of 1 to 1000 characters"),
+        (Saying("guide", "choice", "dance", "en", "?"), "`text` must be a string of 1 to 1000 characters"),
     ],
 )
 def test_what_lint_would_refuse_is_not_written(tmp_path: Path, saying: Saying, message: str) -> None:

@@ -257,4 +257,4 @@ def test_closing_while_the_broker_is_away_ends_and_tells_what_is_unsent(caplog: 
     closing = threading.Thread(target=bus.close, daemon=True)
     closing.start()
     finished(closing)
-    assert "before 1 messages were sent" in caplog.text
+    assert "before 1 message could be sent" in caplog.text

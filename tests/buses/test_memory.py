@@ -117,7 +117,7 @@ def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixt
     assert seen.bodies == list(range(25, 100_025))
     assert [record.getMessage() for record in caplog.records] == [
         "messages on `lumen.a` are dropped: 100,000 messages are waiting for a subscriber already",
-        "24 more messages on `lumen.a` were dropped in 0 s: 100,000 messages are waiting for a subscriber already",
+        "more messages on `lumen.a` were dropped (24 in 0 s): 100,000 messages are waiting for a subscriber already",
     ]
     bus.publish("lumen.a", "after")
     assert seen.bodies[-1] == "after"

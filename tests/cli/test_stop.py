@@ -54,5 +54,5 @@ def test_where_no_robot_answers_it_says_what_is_left(
     bus.subscribe("lumen.config.command", lambda message: told.append(message.body))
     assert main(["stop", str(copy)]) == 2
     said = capsys.readouterr().err
-    assert "no robot answers on `avatar.NAO.stop`: it may still move. Press the button on its chest" in said
+    assert "the robot does not answer on `avatar.NAO.stop` and may still move: press the button on its chest" in said
     until(lambda: told == [{"command": "stop"}])

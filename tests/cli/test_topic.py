@@ -241,7 +241,7 @@ def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytes
     assert said.err.count("\n") == 1
     assert main([*words, "face", '{"x": 160, "y": 120}']) == 1
     assert (
-        "no process listens to `lumen.NAO.visual.face.detection`: check that the exhibition runs"
+        "no process listens to `lumen.NAO.visual.face.detection`: check that the exhibition is running"
         in capsys.readouterr().err
     )
 

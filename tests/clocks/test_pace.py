@@ -90,10 +90,10 @@ def test_slow_time_is_told_once_and_told_again_when_it_is_well() -> None:
             world.run(1.0)
             told.append(watch.tick())
     lines = [line for line in told if line]
-    assert lines[0].startswith("it runs at only 0.9")
+    assert lines[0].startswith("the exhibition is running at only 0.9")
     assert [" ".join(line.split()[:3]) for line in lines] == ["it runs at", "it runs in", "it runs at"]
     assert watch.worst == pytest.approx(0.5, abs=0.02)
-    assert watch.summary() == ["at its slowest, it ran at 0.50 × real time"]
+    assert watch.summary() == ["at its slowest, the exhibition ran at 0.50 × real time"]
     assert PaceWatch(SimulatedClock(lambda _: None)).summary() == []
 
 
@@ -106,9 +106,12 @@ def test_an_exhibition_that_is_slow_publishes_that(capsys: pytest.CaptureFixture
     exhibition.bus.subscribe("lumen.state", heard)
     exhibition.begin()
     exhibition.run(5.0)
-    assert "time     it runs at only 0.80 × real time: this machine is too slow" in capsys.readouterr().out
+    assert (
+        "time     the exhibition is running at only 0.80 × real time: this machine is too slow"
+        in capsys.readouterr().out
+    )
     assert [body["realtime"] for body in heard.bodies if "realtime" in body] == [0.8]
-    assert exhibition.summary()[-1] == "at its slowest, it ran at 0.80 × real time"
+    assert exhibition.summary()[-1] == "at its slowest, the exhibition ran at 0.80 × real time"
     exhibition.close()
 
 

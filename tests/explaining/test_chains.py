@@ -192,7 +192,7 @@ def test_a_do_that_has_not_come_so_far() -> None:
     near, far = why_not(play.steps, "two").reasons, why_not(play.steps, "three").reasons
     assert near[0].change == {"event": "done.command.d1"}
     assert far[0].note == "other actions come before it"
-    assert "is at step 1 of 3: it waits for d1" in far[0].text
+    assert "it is at step 1 of 3 and waits for d1" in far[0].text
 
 
 def test_a_chain_without_end_shows_both_ends() -> None:

@@ -98,7 +98,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     hall.end(process)
     code, said = hall.call("status", "--robot-name", "ana")
     assert code == 2
-    assert "ana       does not run: it ended unexpectedly at " in said
+    assert "ana       is not running: it ended unexpectedly at " in said
     assert (
         f"stopped   by {by}; it stays stopped after a restart. To let it move, hold its head, or run `lumen resume`"
         in said
@@ -108,7 +108,7 @@ def test_two_robots_of_one_process(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
     assert hall.status()["ana"]["stopped_by"] == by
     hall.end(process, signal.SIGTERM)
     assert told.read_text("utf-8").count("The last run ended unexpectedly") == 2
-    assert "ana       does not run: it was ended at " in hall.call("status", "--robot-name", "ana")[1]
+    assert "ana       is not running: it was ended at " in hall.call("status", "--robot-name", "ana")[1]
     said = hall.call("run", "--robot", "recording", "--for", "0.1s")[1]
     assert said.count("The last run was ended") == 2
     assert "unexpectedly" not in said

@@ -90,7 +90,7 @@ def test_what_is_staged_is_tried_for_one_visitor_and_waits_again(manual: Live) -
     assert manual.show.loop.project.hash == tried
     leave(manual)
     manual.until(lambda: manual.show.loop.project.hash == before)
-    assert "the visit for which they were tried is over" in manual.transcript
+    assert "the visit for which these files were tried is over" in manual.transcript
     assert manual.ask("status")["staged"]
     assert manual.ask("apply")["verdict"] == "applied"
     assert manual.show.loop.project.hash == tried
@@ -106,7 +106,7 @@ def test_what_is_staged_can_be_refused(manual: Live) -> None:
     manual.edit(SORRY, PARDON)
     manual.until_told("staged: ")
     answer = manual.ask("refuse")
-    assert (answer["verdict"], answer["reason"]) == ("refused", "a person refused them")
+    assert (answer["verdict"], answer["reason"]) == ("refused", "a person refused these files")
     assert manual.show.loop.project is before
     assert not manual.ask("status")["staged"]
     assert "nothing staged" in manual.ask("apply")["reason"]

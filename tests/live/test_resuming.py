@@ -259,5 +259,5 @@ def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.Capture
 def test_a_second_run_of_a_project_leaves_the_first_alone(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running(copy):
         assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s", "--fresh"]) == 0
-        assert "This project already runs in another process" in capsys.readouterr().out
+        assert "This project is already running in another process" in capsys.readouterr().out
         assert main(["stop", str(copy)]) == 0

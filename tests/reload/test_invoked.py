@@ -66,7 +66,9 @@ def test_its_own_file_may_change_by_the_same_rules() -> None:
 def test_what_it_does_is_waited_for_where_it_changed_and_cancelled_with_now() -> None:
     ask = {**QUIZ["states"]["ask"], "do": {"play": "x"}}
     changed = tour({**QUIZ, "states": {**QUIZ["states"], "ask": ask}})
-    assert migrate(OLD, changed, ASKING) == MigrationDelay("the `do` of `ask` changed while it runs", "ask")
+    assert migrate(OLD, changed, ASKING) == MigrationDelay(
+        "these files change the `do` of `ask`, which is still running", "ask"
+    )
     assert planned(changed, now=True).leaving == (Cancel("d1@quiz"),)
 
 

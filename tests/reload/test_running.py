@@ -114,7 +114,7 @@ def test_a_motion_that_plays_may_be_deleted_when_it_has_ended() -> None:
     exhibition, seen = running(project)
     calm = machine(states={"a": {"do": {"say": "no"}, "onDone": "b"}, "b": {}})
     without = replace(project, behaviors={"tour": calm}, motions={})
-    assert exhibition.plan(without) == MigrationDelay("the `do` of `a` changed while it runs", "a")
+    assert exhibition.plan(without) == MigrationDelay("these files change the `do` of `a`, which is still running", "a")
     while len(seen.answers) < 2:
         exhibition.tick()
     exhibition.tick()

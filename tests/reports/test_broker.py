@@ -272,7 +272,7 @@ def test_a_plain_body_is_read_with_any_declared_encoding(encoding: str) -> None:
         (
             BODY,
             (
-                "it is JSON inside a text: encode it once, and send it with the content type "
+                "it is JSON inside a JSON string: encode it once, and send it with the content type "
                 "application/json, not text/plain"
             ),
         ),

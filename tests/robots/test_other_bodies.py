@@ -77,4 +77,4 @@ def test_what_a_body_lacks_reads_nothing_and_fails_in_words() -> None:
     robot.advance(0.02)
     (answer,) = robot.poll()
     assert answer.name == "error.command.1"
-    assert answer.data == {"reason": "`walk`: lamp has no legs and no wheels"}
+    assert answer.data == {"reason": "`walk`: lamp has neither legs nor wheels"}

@@ -39,8 +39,8 @@ states:
 @pytest.mark.parametrize(
     ("command", "lacks"),
     [
-        (Walk(0.1), "Stump has no legs and no wheels"),
-        (Move(0.1), "Stump has no legs and no wheels"),
+        (Walk(0.1), "Stump has neither legs nor wheels"),
+        (Move(0.1), "Stump has neither legs nor wheels"),
         (Look(0.1), "Stump has no head that turns"),
         (Leds({"eyes": "blue", "chest": "red"}), "Stump has no lights `eyes`, `chest`"),
     ],
@@ -99,7 +99,7 @@ def test_lint_says_at_the_verb_what_is_left_out_and_nothing_is_wrong(table: Path
         (7, 10, "info"),
         (8, 10, "info"),
     ]
-    assert found[0].message == "lamp has no legs and no wheels, so it leaves out `walk`"
+    assert found[0].message == "lamp has neither legs nor wheels, so it leaves out `walk`"
     assert "base: {kind: biped}" in found[0].hint
 
 

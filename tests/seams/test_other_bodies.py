@@ -75,7 +75,7 @@ def test_a_greeter_drives_and_looks_over_the_bus(remote: Made) -> None:
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        (Walk(0.2), "`walk`: Lantern has no legs and no wheels"),
+        (Walk(0.2), "`walk`: Lantern has neither legs nor wheels"),
         (Posture("Crouch"), "no posture `Crouch`: "),
     ],
 )
@@ -104,7 +104,7 @@ def test_without_a_head_nothing_looks_and_nothing_is_tracked(remote: Made, tmp_p
     performer.perform(project, Start("b", Track("head")), 0.0)
     performer.perform(project, Start("c", GoTo("desk")), 0.0)
     said = [str(event.data[LEFT_OUT]) for event in performer.events]
-    assert said == ["Lantern has no `head.yaw`, `head.pitch`", "Lantern has no legs and no wheels"]
+    assert said == ["Lantern has no `head.yaw`, `head.pitch`", "Lantern has neither legs nor wheels"]
     assert not switched
     assert any(f"{said[0]}, so it leaves out `track`" == finding.message for finding in found)
     performer.perform(performed_by("lantern"), Start("d", Track("head")), 0.0)

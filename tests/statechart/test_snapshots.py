@@ -174,7 +174,7 @@ def change(data: Any, path: tuple[Any, ...], value: Any) -> dict[str, Any]:
         (("timers", 0, "due"), float("inf"), "`timers.0.due` should be a number"),
         (("timers", 1, "kind"), "later", "should be `after`, `at`, `send` or `wait`"),
         (("timers", 1, "state"), "off", "names `off`, which is not active"),
-        (("doing", "on.l.a", "place"), 9, "is 9, but there are 2 actions"),
+        (("doing", "on.l.a", "place"), 9, "is 9, but should be less than 2, the number of actions"),
         (("doing", "on.l.a", "place"), 1, "no inner positions"),
         (("doing", "on.l.a", "inner", "block"), "do", "should be `then` or `else`"),
         (("doing", "on.l.a", "inner", "inner", "branches"), [None, None], "2 branches"),

@@ -44,6 +44,8 @@ def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_AN
     except queue.Empty:
         if (broker := bus.ability(BlockableBus)) and broker.blocked:
             raise BusUnreachableError(f"the broker is short of {broker.blocked} and accepts no messages") from None
-        raise BusUnreachableError(f"no answer came on `{key}`: check that an exhibition runs on that bus") from None
+        raise BusUnreachableError(
+            f"no answer came on `{key}`: check that an exhibition is running on that bus"
+        ) from None
     finally:
         undo()

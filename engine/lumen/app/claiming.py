@@ -39,6 +39,6 @@ def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
         parts = " or ".join(part for part in ALONE if part in presence.parts)
         raise BusUnreachableError(
             f"the broker is short of {broker.blocked} and accepts no messages, so Lumen can't check whether another"
-            f" process is the {parts} of {presence.robot}: start again when the broker has"
-            " enough (see `rabbitmqctl status`)"
+            f" process is the {parts} of {presence.robot}: start again when"
+            " `rabbitmqctl status` no longer shows this alarm"
         )

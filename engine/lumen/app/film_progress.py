@@ -23,8 +23,8 @@ class FilmProgress:
             return
         self._told, took = now, now - self._began
         left = (self._whole - length) * took / length
-        of = f" of about {self._whole:.0f} s, about {_duration(left)} more" if left > 0.0 else " s"
-        self._tell(f"film: {length:.0f}{of}")
+        of = f" of about {self._whole:.0f} s are ready; about {_duration(left)} to go" if left > 0.0 else " s"
+        self._tell(f"video: {length:.0f}{of}")
 
 
 def _duration(seconds: float) -> str:

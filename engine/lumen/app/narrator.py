@@ -115,7 +115,7 @@ class Narrator(Observer):
         elif kind == "error":
             self.line("trouble", f"could not {_base(running) or 'do that'}: {reason_of(event)}")
         elif kind == "done" and event.data and LEFT_OUT in event.data:
-            self.line("robot", f"leaves that out: {event.data[LEFT_OUT]}")
+            self.line("robot", f"leaves this action out: {event.data[LEFT_OUT]}")
         elif kind == "done" and running.startswith("plays "):
             motion = running.removeprefix("plays ")
             self.played[motion] = self.played.get(motion, 0) + 1

@@ -53,7 +53,7 @@ def one_line(text: str, what: str) -> str:
     """Return a text without line breaks and invisible signs. Raises UsageError if nothing is left, or too much."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
     if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
-        raise UsageError(f"`{what}` must be a text of 1 to {MAX_TEXT} characters")
+        raise UsageError(f"`{what}` must be a string of 1 to {MAX_TEXT} characters")
     return line
 
 

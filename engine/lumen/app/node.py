@@ -261,7 +261,7 @@ class Node:
             theirs = peer.said.get("speed")
             if isinstance(theirs, int | float) and theirs != self._speed:
                 raise UsageError(
-                    f"{where_it_runs(peer)} runs at {theirs:g} × real time: pass --speed {theirs:g} here, too"
+                    f"{where_it_runs(peer)} is running at {theirs:g} × real time: pass --speed {theirs:g} here, too"
                 )
 
     def _lose(self, thread: WatchedThread) -> None:

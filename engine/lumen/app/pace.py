@@ -34,12 +34,15 @@ class PaceWatch:
         self.worst = min(self.worst, now)
         if not self.slow and now < SLOW:
             self.slow = True
-            return f"it runs at only {now:.2f} × real time: this machine is too slow or too busy, so everything is late"
+            return (
+                f"the exhibition is running at only {now:.2f} × real time:"
+                " this machine is too slow or too busy, so everything is late"
+            )
         if self.slow and now > WELL:
             self.slow = False
-            return "it runs in real time again"
+            return "the exhibition is running in real time again"
         return ""
 
     def summary(self) -> list[str]:
         """What is said of it at the end."""
-        return [f"at its slowest, it ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []
+        return [f"at its slowest, the exhibition ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []

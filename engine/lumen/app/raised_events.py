@@ -82,7 +82,7 @@ class RaisedEvents(Observer):
                 self._reply(one.message, {"verdict": "done", "taken": False, "waiting": id})
         if self._open and not self._loop.waiting:
             for one in self._open:
-                self._reply(one.message, refusal("the behaviour could not process it: the reason is in its log"))
+                self._reply(one.message, refusal("the behaviour could not process the event; its log gives the reason"))
             self._open.clear()
 
     def stepped(self, step: Step) -> None:

@@ -52,7 +52,8 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
             keys = _keys(root, None, home)
             return Reached(connect(settings.bus, sender=TERMINAL), settings.robot, *keys, settings.bus, home)
         raise BusUnreachableError(
-            f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or pass --bus URL"
+            f"no exhibition of {root.absolute()} is running on this machine:"
+            " start it with `lumen run`, or pass --bus URL"
         )
     opened = LocalBusClient(LocalAddress.of(found), TERMINAL)
     return Reached(opened, _robot(root, found, home), *_keys(root, found, home), home=home)
@@ -66,7 +67,7 @@ def robots_meant(project: str | None) -> list[str]:
 
 
 def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
-    """What the exhibition of this project that runs on this machine has said of itself; None where none runs.
+    """What the exhibition of this project that is running on this machine has said of itself; None where none runs.
 
     Of several robots it is that of `robot`, where one is named.
 
@@ -80,7 +81,7 @@ def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
 
 
 def runs_here(root: Path) -> bool:
-    """Whether an exhibition of the project in that folder runs on this machine."""
+    """Whether an exhibition of the project in that folder is running on this machine."""
     return _running(root) is not None
 
 

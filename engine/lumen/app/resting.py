@@ -32,4 +32,4 @@ def stop_behavior(bus: Bus, robot: str) -> None:
 
 def no_robot(key: str) -> str:
     """What a person is told then."""
-    return f"no robot answers on `{key}`: it may still move. Press the button on its chest"
+    return f"the robot does not answer on `{key}` and may still move: press the button on its chest"

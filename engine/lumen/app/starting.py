@@ -22,7 +22,7 @@ _ROBOT = re.compile(r"(?m)^(robot: \{name: )\S+(, model: )\w+(\}).*$")
 IGNORED = """\
 # Data of runs, with the names of visitors. Do not share it.
 .lumen/
-# Films that `lumen run --video` wrote.
+# Videos that `lumen run --video` wrote.
 *.mp4
 """
 

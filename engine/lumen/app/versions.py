@@ -57,10 +57,10 @@ def _running(root: Path, robot: str) -> tuple[StoredSnapshot, Mapping[str, bytes
     keeper = SnapshotStore(home)
     kept = keeper.kept()
     if kept is None or not home.held():
-        raise UsageError(f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`")
+        raise UsageError(f"no exhibition of {root.absolute()} is running on this machine: start it with `lumen run`")
     files = keeper.files(kept.bundle)
     if files is None:
-        raise UsageError(f"the files that run are no longer in {home.folder}")
+        raise UsageError(f"the active files are no longer in {home.folder}")
     return kept, files
 
 

@@ -133,7 +133,7 @@ def speaker(
     found = Speaker(language, file, track)
     if found.mute:
         print(
-            "No sound player is installed: the speech is silent; `--sound FILE.wav` writes them to a file.",
+            "No sound player is installed: the speech is silent; `--sound FILE.wav` writes it to a file.",
             file=sys.stderr,
         )
     return found

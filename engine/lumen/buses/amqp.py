@@ -21,6 +21,7 @@ from lumen.buses.packing import packed
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
 from lumen.buses.transport import Transport
 from lumen.errors import BusClosedError, BusError
+from lumen.language.counts import counted
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 
@@ -185,6 +186,6 @@ class AmqpBus(Bus):
         self._closed = True
         ended = [transport.end(deadline) for transport in self._transports()]
         if left := sum(len(transport.publisher.outbox) for transport in self._transports()):
-            _log.warning("the bus was closed before %d messages were sent", left)
+            _log.warning("the bus was closed before %s could be sent", counted(left, "message"))
         elif not all(ended):
             _log.warning("the bus was still working %g s after it was closed", CLOSE_TIMEOUT)

@@ -90,7 +90,7 @@ def _number(number: float) -> float:
 def _key(key: object) -> str:
     if isinstance(key, str):
         return str(key)
-    raise BadMessageError(f"the keys of a body must be texts, not {type(key).__name__} ({key!r})")
+    raise BadMessageError(f"the keys of a body must be strings, not {type(key).__name__} ({key!r})")
 
 
 def _derived(body: object, depth: int) -> Any:
@@ -111,7 +111,7 @@ def _derived(body: object, depth: int) -> Any:
 def check_key(key: str) -> None:
     """Raise BusError where AMQP could not carry this key: a text of 255 bytes at most."""
     if not isinstance(key, str) or not _fits(key):
-        raise BadMessageError(f"a key must be a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
+        raise BadMessageError(f"a key must be a string of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
 
 
 def check_subscription(pattern: str, handler: object) -> None:
@@ -140,7 +140,7 @@ def encode(body: Any) -> bytes:
         data = orjson.dumps(copied(body))
     except orjson.JSONEncodeError as error:
         raise BadMessageError(
-            "a text in the body is not valid Unicode: it contains half of a surrogate pair"
+            "a string in the body is not valid Unicode: it contains half of a surrogate pair"
         ) from error
     if len(data) > MAX_BODY_BYTES:
         raise BadMessageError(f"a body must have at most {MAX_BODY_BYTES:,} bytes, not {len(data):,}")
@@ -201,7 +201,7 @@ def text_of_json(body: Any) -> str:
         _decoder.decode(body)
     except (ValueError, RecursionError, BadMessageError):
         return ""
-    return f"it is JSON inside a text: encode it once, and send it with the content type {JSON}, not {TEXT}"
+    return f"it is JSON inside a JSON string: encode it once, and send it with the content type {JSON}, not {TEXT}"
 
 
 def _no_constant(name: str) -> Any:

@@ -144,9 +144,11 @@ def _credentials(file: str) -> Any:
     try:
         name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
     except (OSError, UnicodeDecodeError) as error:
-        raise BusAddressError(f"the file `{file}` of {CREDENTIALS_VARIABLE} cannot be read: {error}") from None
+        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names cannot be read: {error}") from None
     if not separator or not name or "\n" in password:
-        raise BusAddressError(f"the file `{file}` of {CREDENTIALS_VARIABLE} must contain one line `NAME:PASSWORD`")
+        raise BusAddressError(
+            f"the file `{file}` that {CREDENTIALS_VARIABLE} names must contain one line `NAME:PASSWORD`"
+        )
     if os.name == "posix" and Path(file).stat().st_mode & 0o077:
         logging.getLogger(__name__).warning("other users can read the password in `%s`: run `chmod 600 %s`", file, file)
     return pika.PlainCredentials(name, password)

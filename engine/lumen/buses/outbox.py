@@ -132,7 +132,8 @@ class Outbox:
         late = [p for p in self._must if p.deadline is not None and p.deadline <= now]
         if not late:
             raise BusFullError(
-                f"the broker accepts no messages, and {len(self._must):,} messages that must arrive are waiting already"
+                "the broker accepts no messages, and the queue of messages that must arrive is full"
+                f" ({len(self._must):,})"
             )
         for message in late:
             self.drops.add(message.key, LATE)

@@ -14,6 +14,7 @@ from lumen.buses.outbox import Outbox, OutgoingMessage
 from lumen.buses.polled import PolledConnection
 from lumen.buses.properties import CAUSE_HEADER, write_properties
 from lumen.buses.queues import OTHERWISE, SIDE_QUEUES, UNROUTED, Queue, declare_side_queues, declared_otherwise
+from lumen.language.counts import counted
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
@@ -184,7 +185,7 @@ class Publisher(BrokerConnection):
 
     def _nacked(self, number: int, several: bool) -> None:
         messages = self._settled(number, several)
-        _log.warning("the broker at %s did not accept %d messages", self.address, len(messages))
+        _log.warning("the broker at %s did not accept %s", self.address, counted(len(messages), "message"))
         self.outbox.put_back([sent.again for sent in messages if sent.again])
 
     def _settled(self, number: int, several: bool) -> list[_Sent]:

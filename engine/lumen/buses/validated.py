@@ -136,7 +136,7 @@ class ValidatedBus(Bus):
         if check is not None:
             return check(body)
         known = key in self._routed or key.split(".", 1)[0] in KEY_PREFIXES
-        return "" if known else "no route of lumen.yaml has this key, and it does not begin with `avatar` or `lumen`"
+        return "" if known else "no route in lumen.yaml has this key, and it does not begin with `avatar` or `lumen`"
 
 
 @dataclass(eq=False)

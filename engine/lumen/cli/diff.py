@@ -21,7 +21,7 @@ COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    which = f"a folder, a revision of this project (HEAD~1), or `{LIVE}`: the files that run now"
+    which = f"a folder, a revision of this project (HEAD~1), or `{LIVE}`: the files that are running now"
     parser.add_argument("old", metavar="OLD", help=which)
     parser.add_argument(
         "new", metavar="NEW", nargs="?", help="the other version, in the same form (default: this folder or one above)"

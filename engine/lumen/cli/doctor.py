@@ -43,7 +43,7 @@ class Finding(NamedTuple):
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Check the bus of an exhibition: whether the broker runs, is new enough and lets Lumen read and send,"
+        "Check the bus of an exhibition: whether the broker is running, is new enough and lets Lumen read and send,"
         " whether the clocks agree, and which routes no process serves."
     )
     parser.add_argument(
@@ -98,7 +98,7 @@ def _embedded(options: argparse.Namespace, url: str, project: Project | None) ->
     if not url.startswith("memory:"):
         connect(url)  # says what an address looks like
     with closing(reach(options).bus) as bus:
-        yield Finding("bus", "ok", "an exhibition with an embedded bus runs on this machine")
+        yield Finding("bus", "ok", "an exhibition with an embedded bus is running on this machine")
         if project is None:
             yield Finding("project", "error", "its saved files have errors: run `lumen lint`")
         else:
@@ -135,7 +135,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     complete.wait(LISTENING)
     silent = [route.name for key, route in senses.items() if key not in heard]
     if silent:
-        text = f"no message came on {_names(silent)} in {LISTENING:g} s: check that the robot runs"
+        text = f"no message came on {_names(silent)} in {LISTENING:g} s: check that the robot's process is running"
         yield Finding("senses", "warning", text)
     elif senses:
         yield Finding("senses", "ok", f"messages come on {_names([route.name for route in senses.values()])}")
@@ -170,9 +170,9 @@ def _served(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
         if served.readers:
             taken.append(route.name)
         elif route.name == MOTION:
-            yield Finding("routes", "note", "no motion module runs: the brain plays motions itself")
+            yield Finding("routes", "note", "no motion module is running: the brain plays motions itself")
         else:
-            waiting = f", and {served.waiting} messages are waiting" if served.waiting else ""
+            waiting = f"; messages waiting: {served.waiting}" if served.waiting else ""
             yield Finding("routes", "warning", f"no process serves `{route.name}` ({key}){waiting}")
     if taken:
         yield Finding("routes", "ok", f"served: {_names(taken)}")

@@ -18,9 +18,11 @@ def film_path(path: Path | None, robot: str) -> Path | None:
     if path is None:
         return None
     if robot != "simulation":
-        raise UsageError("--video films the simulation: leave out --robot")
+        raise UsageError("--video records the simulation: leave out --robot")
     if path.suffix != ".mp4" or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise UsageError(f"can't write a film to {path}: name an .mp4 file in an existing folder that you can write to")
+        raise UsageError(
+            f"can't write a video to {path}: name an .mp4 file in an existing folder that you can write to"
+        )
     return path
 
 
@@ -33,7 +35,7 @@ def configure_size(parser: argparse.ArgumentParser) -> None:
     """`--size`, for a verb that has `--video`."""
     usual = "x".join(map(str, FILM_SIZE))
     parser.add_argument(
-        "--size", default=usual, metavar="WIDTHxHEIGHT", help=f"size of the film [px] (default: {usual})"
+        "--size", default=usual, metavar="WIDTHxHEIGHT", help=f"size of the video [px] (default: {usual})"
     )
 
 

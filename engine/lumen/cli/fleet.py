@@ -44,7 +44,7 @@ WHATS: Mapping[str, str] = {
     "pin": "leave a robot out of rollouts",
     "unpin": "let a robot join rollouts again",
     "diff": "list what a bundle would change",
-    "take-over": "take over from a centre that no longer runs",
+    "take-over": "take over from a centre that is no longer running",
 }
 LINES = {"status": fleet_lines, "log": log_lines}
 KEY_FILE = "fleet.key"

@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from lumen.cli.tables import table
+from lumen.language.counts import counted
 
 SHORT = 12
 
@@ -72,4 +73,4 @@ def _rollout(rollout: Mapping[str, Any] | None) -> Iterator[str]:
         now = i == rollout["step"] and not step["done"] and rollout["tried"]
         watched = f", watched {rollout['watched'] / 60:.0f} of {rollout['pause'] / 60:.0f} min" if now else ""
         mark = "ok" if step["done"] else "->" if now else "  "
-        yield f"{mark} {step['to']}: at most {step['most']} robots{watched}"
+        yield f"{mark} {step['to']}: at most {counted(step['most'], 'robot')}{watched}"

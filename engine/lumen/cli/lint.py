@@ -121,7 +121,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
 
 def _consistent(options: argparse.Namespace) -> None:
     if options.fix and options.diff:
-        raise UsageError("--fix repairs and --diff only shows: choose one")
+        raise UsageError("--fix changes the files, but --diff only shows the changes: choose one")
     if options.diff and options.against is not None:
         raise UsageError("--diff shows only what --fix would change: leave out --against")
     if options.robots is not None and not options.physics:

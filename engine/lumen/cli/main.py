@@ -39,7 +39,7 @@ VERBS = {
     "why-not": "explain why something did not happen, and what would have made it happen",
     "goto": "make a running exhibition enter a state",
     "model": "switch the language model of a running exhibition on or off",
-    "reload": "reload the files of a running exhibition, or show which files run",
+    "reload": "reload the files of a running exhibition, or show which files are active",
     "replay": "repeat the steps of a journal, with the files that ran then or with others",
     "story": "turn a recorded visit into a story, to keep as a test",
     "diff": "compare two versions of a project, and preview a reload",

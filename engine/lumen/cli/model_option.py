@@ -12,7 +12,7 @@ from lumen.loading.project_folders import MODELS
 
 
 def configure_model(parser: argparse.ArgumentParser) -> None:
-    what = "use the body models/NAME.yaml instead of that of lumen.yaml"
+    what = "use the body models/NAME.yaml instead of the one in lumen.yaml"
     parser.add_argument("--model", metavar="NAME", default="", help=what)
 
 

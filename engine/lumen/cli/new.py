@@ -56,5 +56,5 @@ def run(options: argparse.Namespace) -> int:
     print(f"  cd {folder}")
     print(f"  {f'lumen run --story {story}':<29}a scripted visitor meets the robot")
     print("  lumen lint                   after every change: what is wrong, and where")
-    print(f"  {f'behaviors/{behavior}.yaml':<29}what the robot does and says; change it while it runs")
+    print(f"  {f'behaviors/{behavior}.yaml':<29}what the robot does and says; you can change it during a run")
     return 0

@@ -36,9 +36,12 @@ class Performance:
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready():.1f} s.")
         if run_directory.taken:
-            print("This project already runs in another process: commands such as `lumen reload` go to that process.")
+            print(
+                "This project is already running in another process:"
+                " commands such as `lumen reload` go to that process."
+            )
         if self._setup.blind:
-            print(f"It runs without camera images: {self._setup.blind}.")
+            print(f"The exhibition runs without camera images: {self._setup.blind}.")
         if exhibition.node.story:
             print(f"The story is “{exhibition.node.story.title}”.\n")
         elif exhibition.node.visitor:
@@ -75,12 +78,12 @@ class Performance:
             )
         lines += [*exhibition.node.robot.summary(), *exhibition.node.losses()]
         film = str(video.absolute()) if video else ""
-        for line in [*lines, *([f"the film is {film}"] if film else [])]:
+        for line in [*lines, *([f"wrote the video {film}"] if film else [])]:
             print(f"  {line}")
-        print(f"Next: change a sentence in behaviors/{exhibition.project.behavior}.yaml while it runs,")
+        print(f"Next: change a sentence in behaviors/{exhibition.project.behavior}.yaml during a run,")
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
         if (story := exhibition.node.story) and not film:
-            print(f"      `lumen run --story {story.name} --speed max --video {story.name}.mp4` makes a film of this.")
+            print(f"      `lumen run --story {story.name} --speed max --video {story.name}.mp4` makes a video of this.")
         failure = failure or next(iter(troubles), "")
         return RunVerdict(how, self._lived, self._took, failure, tuple(lines), film)
 

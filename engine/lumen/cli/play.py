@@ -58,7 +58,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="max",
         help="speed of simulated time, as a multiple of real time (default: max)",
     )
-    parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
+    parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="save a video of the motion (needs OpenGL)")
     configure_size(parser)
     configure_imperfections(parser)
     configure_format(parser)

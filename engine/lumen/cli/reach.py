@@ -16,7 +16,7 @@ def configure_reach(parser: argparse.ArgumentParser) -> None:
 
 
 def configure_robot_name(parser: argparse.ArgumentParser) -> None:
-    what = "a robot of `robots:` (default: all for status, stop, resume and model, else the first that runs)"
+    what = "a robot in `robots:` (default: all for status, stop, resume and model, else the first that is running)"
     parser.add_argument("--robot-name", metavar="NAME", default="", help=what)
 
 

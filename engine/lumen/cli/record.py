@@ -120,7 +120,11 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
         _wait(bus, tape, span)
     finally:
         recorder.close()
-    lost = f"; {recorder.dropped:,} messages were lost: the disk was too slow" if recorder.dropped else ""
+    lost = (
+        f"; {counted(recorder.dropped, 'message')} could not be recorded: the disk was too slow"
+        if recorder.dropped
+        else ""
+    )
     said = tape.trouble or f"recorded {tape.path}: {counted(tape.messages, 'message')}, {tape.bytes / 1e6:.1f} MB{lost}"
     _say(options, said, file=str(tape.path), messages=tape.messages, bytes=tape.bytes, dropped=recorder.dropped)
     return 1 if tape.trouble else 0

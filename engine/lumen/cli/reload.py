@@ -9,11 +9,11 @@ from lumen.app.reload.requests import command_key, status_key
 from lumen.cli.reach import configure_reach, reach
 
 REQUESTS = {
-    "status": "show which files run, what is staged, and how the last reload ended",
+    "status": "show which files are active, what is staged, and how the last reload ended",
     "apply": "activate the staged files",
     "try": "activate the staged files for one visitor, then go back",
     "refuse": "discard the staged files",
-    "rollback": "go back to the files that ran before",
+    "rollback": "go back to the previous files",
     "dry-run": "only show what the saved files would change",
 }
 

@@ -62,10 +62,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--story",
         metavar="STORY",
-        help="play a story of behaviors/stories/ (default: you are the visitor and type what you say)",
+        help="play a story from behaviors/stories/ (default: you are the visitor and type what you say)",
     )
     configure_model(parser)
-    add("--robot-name", metavar="NAMES", help="robots of `robots:`, separated by commas (default: all)")
+    add("--robot-name", metavar="NAMES", help="robots in `robots:`, separated by commas (default: all)")
     add(
         "--robot",
         choices=ROBOTS,
@@ -83,7 +83,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml)")
     add("--for", dest="period", metavar="60s", help="end after this much simulated time")
     add("--language", metavar="LANG", help="the language that the robot speaks first")
-    add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
+    add("--video", metavar="FILE.mp4", type=Path, help="save a video of the run (simulation only; needs OpenGL)")
     configure_size(parser)
     configure_imperfections(parser)
     add("--record", metavar="FILE.mcap", type=Path, help="record the messages on the bus, for Foxglove and Lichtblick")
@@ -114,7 +114,7 @@ def run(options: argparse.Namespace) -> int:
     if is_substituted(path):
         journal = home_of_run(root) / JOURNAL_FOLDER
         complain(
-            f"There is no lumen.yaml here or above: this runs a copy of Lumen's own exhibition, {root}. Its journal is"
+            f"There is no lumen.yaml here or above: Lumen runs a copy of its own exhibition, {root}. Its journal is"
             f" {journal}. `lumen new DIR` makes a project of your own."
         )
     parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)

@@ -86,9 +86,9 @@ def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
         yield name, "does not answer, although its process on this machine is alive"
     elif status["ended"]:
         how = "was ended" if status["told"] else "ended unexpectedly"
-        yield name, f"does not run: it {how} at {_ago(status['ended'], now)}"
+        yield name, f"is not running: it {how} at {_ago(status['ended'], now)}"
     else:
-        yield name, "does not run"
+        yield name, "is not running"
     if status["stopped"]:
         yield "stopped", f"by {status['stopped_by']}; it stays stopped after a restart. To let it move, {HELD}"
 
@@ -107,7 +107,7 @@ def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
     if status["stopped"]:
         yield "stopped", f"by {status['stopped_by']}: to let it move again, {HELD}"
     if status["realtime"] < 1.0:
-        yield "time", f"it runs at {status['realtime']:.2f} × real time"
+        yield "time", f"the exhibition is running at {status['realtime']:.2f} × real time"
     if reload := status["last_reload"]:
         yield "reload", f"{reload['verdict']} {_ago(reload['at'], now)}: {reload['text']}"
     yield "files", str(status["bundle"])[:16]

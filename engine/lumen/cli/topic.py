@@ -196,7 +196,9 @@ def _listeners(key: str, project: Project | None) -> str:
     """Where somebody might listen: what an exhibition hears, the nearest first."""
     routes = by_key(project) if project else {}
     heard = [each for each, route in routes.items() if route.direction is Direction.IN]
-    return "check that the exhibition runs" if key in heard else did_you_mean(key, heard, "an exhibition listens to")
+    return (
+        "check that the exhibition is running" if key in heard else did_you_mean(key, heard, "an exhibition listens to")
+    )
 
 
 def _hz(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:

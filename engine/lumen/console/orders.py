@@ -57,7 +57,7 @@ def verdict_outcome(answer: Any) -> str | None:
         case {"verdict": str()}:
             return ""
         case _:
-            return "this exhibition runs an older Lumen, which cannot do that"
+            return "this exhibition is running an older version of Lumen, which cannot do that"
 
 
 def reload_outcome(answer: Any) -> str | None:
@@ -85,7 +85,7 @@ def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = T
     """The text of a field. Raises UsageError."""
     value = fields.get(name, "")
     if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
-        raise UsageError(f"`{name}` must be a text of {'1' if needed else '0'} to {most} characters")
+        raise UsageError(f"`{name}` must be a string of {'1' if needed else '0'} to {most} characters")
     return value
 
 

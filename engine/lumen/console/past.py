@@ -70,7 +70,9 @@ class Past:
         said = await self._ask(view, FORK(**asked))
         if said.get("verdict") == "refused" or "would" not in said:
             reason = said.get("reason") if said.get("verdict") == "refused" else None
-            raise DeniedError(400, str(reason or "this exhibition runs an older Lumen, which cannot do that"))
+            raise DeniedError(
+                400, str(reason or "this exhibition is running an older version of Lumen, which cannot do that")
+            )
         for key in ("was", "would"):
             said[key] = [{**one, **told_of(one)} for one in said[key]]
         return as_json(said)

@@ -128,7 +128,7 @@ class Site:
         data = await self.reception.posted(request)
         pin, name = data.get("pin"), data.get("name") or ""
         if not isinstance(pin, str) or not isinstance(name, str) or len(name) > MAX_NAME:
-            raise DeniedError(400, f"`pin` must be a text, and `name` a text of at most {MAX_NAME} characters")
+            raise DeniedError(400, f"`pin` must be a string, and `name` a string of at most {MAX_NAME} characters")
         self.reception.person(request)
         try:
             role = self.access.role(address_of(request), pin) if self.access.pins else Role.AUTHOR

@@ -18,12 +18,12 @@ def need_map(value: Any, what: str) -> None:
     """Raises UsageError where it is no map with texts as keys."""
     need(value, Mapping, what, "a map")
     for key in value:
-        need(key, str, f"each key of {what}", "a text")
+        need(key, str, f"each key of {what}", "a string")
 
 
 def need_text(value: Any, what: str, *, empty: bool = False) -> None:
     """Raises UsageError where it is no text, or an empty one where that says nothing."""
-    need(value, str, what, "a text")
+    need(value, str, what, "a string")
     if not value and not empty:
         raise UsageError(f"{what} is empty")
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from lumen.language.diagnostics import NodePath
 
 KINDS: Mapping[str, str] = {
-    "fallen": "the robot fell and does not get up",
+    "fallen": "the robot fell and has not got up",
     "stopped": "a person stopped the robot",
     "lost": "the robot, the brain or a module is lost, or back",
     "broker": "the message broker can't be reached, or accepts no messages",

@@ -60,7 +60,7 @@ GOTO = OperatorRequest("goto", {"state": TEXT, "only": {}}, ("state",), '"state"
 MARK = OperatorRequest("mark", {"text": {}})
 FORK = OperatorRequest("fork", {"position": {}, "at": {}, "event": {}, "bundle": {}}, example='"position": …')
 _PAST = {"what": TEXT, "at": {"type": ["string", "null"]}}
-WHY = OperatorRequest("why", _PAST, example='"what": …', fault="`what` and `at` must be texts")
+WHY = OperatorRequest("why", _PAST, example='"what": …', fault="`what` and `at` must be strings")
 WHY_NOT = OperatorRequest("why-not", _PAST, fault=WHY.fault)
 NOTE = OperatorRequest("note", {"text": TEXT}, ("text",))
 JOURNAL = OperatorRequest(

@@ -11,11 +11,11 @@ IMAGE, JOINT, SONAR, TACTILE, BATTERY = "image", "joint", "sonar", "tactile", "b
 FACE, HEARD, COMMAND, STOP = "face", "heard", "command", "stop"
 
 MEANINGS: Mapping[str, str] = {
-    IMAGE: "the images of the robot's camera",
-    JOINT: "the angles of its joints; without it `track` does not work",
-    SONAR: "the distances of the nearest echoes",
+    IMAGE: "the images from the robot's camera",
+    JOINT: "the angles of the robot's joints; `track` needs this route",
+    SONAR: "the distances to the nearest obstacles",
     TACTILE: "the touch sensors that are pressed",
-    BATTERY: "the charge of its battery",
+    BATTERY: "the charge of the robot's battery",
     FACE: "the position of a visitor's face in the camera's image; simulated visitors appear on it",
     HEARD: "the words of a visitor: spoken, typed, or from a story",
     COMMAND: "commands from other modules to the robot",

@@ -11,7 +11,7 @@ _ADD = "add {} under `roles` of its body"
 
 
 class Lack(NamedTuple):
-    """What a body lacks for a command, `NAO has no legs and no wheels`, and which roles would give it that."""
+    """What a body lacks for a command, `NAO has neither legs nor wheels`, and which roles would give it that."""
 
     message: str
     hint: str
@@ -23,7 +23,7 @@ def lack_of(command: object, body: Body) -> Lack | None:
     match command:
         case Walk() | Move() | GoTo() if roles.base.kind is BaseKind.FIXED:
             wanted = "`base: {kind: biped}` with `legs`, `soles` and `sensors`, or `base: {kind: wheels, …}`"
-            return Lack(f"{body.name} has no legs and no wheels", _ADD.format(wanted))
+            return Lack(f"{body.name} has neither legs nor wheels", _ADD.format(wanted))
         case Look() if not any(role in roles.head for role in HEAD_ROLES):
             return Lack(f"{body.name} has no head that turns", _ADD.format("`head: {yaw: …}`"))
         case Leds(colours) if colours and not any(group in roles.lights for group in colours):

@@ -176,7 +176,9 @@ class PoseReader:
         if cause:
             hint = f"write `units: {{angle: deg}}` at the top if these are degrees; {hint}"
         elif self.mirror.get(name, ("",))[0] not in ("", name) and self._fits(name, -value * self.factor):
-            hint = f"left and right joints turn in opposite directions: write {-value:g} if that is meant; {hint}"
+            hint = (
+                f"left and right joints turn in opposite directions: write {-value:g} if that is what you mean; {hint}"
+            )
         message = f"`{name}` can't go to {value:g} {self.unit}"
         self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, cause=cause, root=root)
         return False

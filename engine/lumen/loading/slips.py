@@ -243,10 +243,16 @@ def colons(text: str, index: int) -> Iterator[Slip]:
     if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{KEY})(?P<rest> +[^ :#].*| *)$", text):
         start, end, rest = *found.span("key"), found["rest"].strip()
         shown = f"write `{found['key']}: {rest}"[:40].rstrip() + "`"
-        alone = f"write `{found['key']}:` if it is a key; otherwise indent it under its key"
+        alone = (
+            f"if this line is a key, write `{found['key']}:`;"
+            " otherwise, indent the line under the key that it belongs to"
+        )
         yield line.slip(start, end - start, (_no_colon(found["key"]), shown if rest else alone), end, end, ":")
     if found := re.search(rf"{item}{KEY}:(?P<slip> +- +)\S", text):
-        words = "the first item of a list is on the same line as its key", "begin a new line under the key with `- `"
+        words = (
+            "the first item of a list is on the same line as its key",
+            "put the first item on a new line under the key, and begin that line with `- `",
+        )
         yield line.slip(found.start("slip") + 1, 1, words, *found.span("slip"), " ")
     if found := re.search(rf"{item}(?P<all>{KEY}: [^,]+(?:, *{KEY}: [^,]+)+) *$", text):
         (start, end), meant = found.span("all"), f"{{{found['all']}}}"

@@ -27,8 +27,8 @@ def sound_duration(root: Path, file: str) -> float:
         raise ValueError("it is not a WAV file with PCM samples") from None
     if bits != 16 or channels not in (1, 2) or not RATES[0] <= rate <= RATES[1]:
         raise ValueError(
-            f"it has {channels} channels, {bits} bits and {rate} Hz;"
-            f" 1 or 2 channels, 16 bits and {RATES[0]} to {RATES[1]} Hz are allowed"
+            f"channels: {channels}, bits: {bits}, sample rate: {rate:,} Hz;"
+            f" allowed are 1 or 2 channels, 16 bits and {RATES[0]:,} to {RATES[1]:,} Hz"
         )
     if not frames:
         raise ValueError("it is empty")

@@ -23,7 +23,10 @@ _HINTS = {
     "mapping values are not allowed": "put quotes around a text that contains a colon and a space",
     "cannot start any token": "put quotes around a text that begins with `@`, `%`, a backquote or a quote",
     "another document": "a file may contain only one document: delete the line `---`",
-    "could not find expected ':'": "write `:` and a space after it if it is a key; otherwise indent it under its key",
+    "could not find expected ':'": (
+        "if this line is a key, write `:` and a space after it;"
+        " otherwise, indent the line under the key that it belongs to"
+    ),
 }
 _CONFLICT = re.compile(r"(<{7}|={7}|>{7})(?= |$)")
 _NOT_ALLOWED = yaml.reader.Reader.NON_PRINTABLE

@@ -68,7 +68,7 @@ class Sound(NamedTuple):
 def sound_of(text: object) -> Sound:
     """The sound in a WAV in base64. Raises ModuleError for what is none, or not of the kind that is understood."""
     if not isinstance(text, str):
-        raise ModuleError("a sound must be a text: a WAV file in base64")
+        raise ModuleError("a sound must be a string: a WAV file encoded in base64")
     try:
         data = base64.b64decode(text.partition("base64,")[2] or text, validate=True)
     except (binascii.Error, ValueError):

@@ -40,7 +40,7 @@ class CommandParameters:
         if value is None and default is not None:
             return default
         if not isinstance(value, str):
-            raise BadCommandError(f"the parameter `{name}` of `{self.method}` must be a text")
+            raise BadCommandError(f"the parameter `{name}` of `{self.method}` must be a string")
         return value.strip()
 
     def language(self, name: str) -> str:

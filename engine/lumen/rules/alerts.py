@@ -14,7 +14,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.routes import PASSWORD_IN_FILE
 
-ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "a webhook is not a web address")
+ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "the value of a `webhook` is not a valid web address")
 ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "alerts are sent unencrypted: others can read them")
 ALERT_QUIET = Code("alert-quiet", "alerts", ERROR, "quiet hours begin and end at the same time")
 ALERT_TO_NOBODY = Code("alert-to-nobody", "alerts", WARNING, "alerts have no recipient")

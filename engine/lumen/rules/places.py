@@ -120,7 +120,10 @@ def _on_stage(main: DocumentReport, name: str, place: HallPlace, stage: Stage) -
                 else "is off the stage"
             )
             room = f"[{low + SOLE_REACH:.3g}, {high - SOLE_REACH:.3g}]"
-            hint = f"choose {axis} in {room} m, because a sole reaches {SOLE_REACH:g} m; or enlarge the `stage`"
+            hint = (
+                f"choose {axis} in {room} m, because the soles extend {SOLE_REACH:g} m from the point between the feet;"
+                " or enlarge the `stage`"
+            )
             related = [(("stage", axis), "the stage ends here")]
             main(PLACE_OFF_STAGE, ("places", name, axis), f"`{name}` {beyond}", hint, related=related)
 

@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
         return
     report = draft.report("behaviors", settings.behavior)
     if SHARED in (report.document.data.get("context") or {}):
-        hint = "rename it: `shared` holds the values of lumen.yaml for all robots"
+        hint = "rename it: `shared` holds the values from lumen.yaml for all robots"
         report(SHARED_TAKEN, ("context", SHARED), "this key hides the `shared` of the house", hint, key=True)
         return
     for way, where in _assigned(machine):

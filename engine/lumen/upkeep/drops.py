@@ -72,7 +72,7 @@ class DropLog:
             told = [(key, *self.untold.pop(key), now - self._told[key]) for key in due]
             self._told.update(dict.fromkeys(due, now))
         for key, count, why, seconds in told:
-            self._log.warning("%d more %s on `%s` were dropped in %.0f s: %s", count, self._what, key, seconds, why)
+            self._log.warning("more %s on `%s` were dropped (%d in %.0f s): %s", self._what, key, count, seconds, why)
 
 
 class ReasonLog:

@@ -41,7 +41,7 @@ class Origin(NamedTuple):
         return {
             "kind": alert.kind,
             "text": self.line(alert),
-            "meaning": KINDS.get(alert.kind, "an operator tests whether alerts arrive"),
+            "meaning": KINDS.get(alert.kind, "an operator is testing whether alerts arrive"),
             "about": alert.about,
             "exhibition": self.exhibition,
             "robot": self.robot,
@@ -53,7 +53,7 @@ class Origin(NamedTuple):
         }
 
     def line(self, alert: Alert) -> str:
-        """`NAO: it fell and does not get up (3 times since 10:02)`."""
+        """`NAO: it fell and has not got up (3 times since 10:02)`."""
         held = f" ({alert.times} times since {_clock(alert.first)})" if alert.times > 1 else ""
         return one_line(f"{self.robot}: {alert.text}{held}")
 

@@ -34,7 +34,7 @@ class FallWatch:
         """Why it does not get up, empty where it stands, may still get up, or that was said."""
         if self._fallen is None:
             return ""
-        why = "it fell and can't get up" if self._failed else "it fell and does not get up"
+        why = "it fell and can't get up" if self._failed else "it fell and has not got up"
         if not self._failed and now - self._fallen < TIME_TO_RISE:
             return ""
         self._fallen, self._failed = None, False

@@ -97,7 +97,7 @@ class FleetAgent:
             case _:
                 return self._refuse("an order is not valid")
         if not verified(self._key, ORDER, text.encode(), signature):
-            return self._refuse("an order is not signed with the key of fleet.yaml")
+            return self._refuse("an order is not signed with the key in fleet.yaml")
         desired = desired_from(text)
         if desired is None or desired.house != self._house:
             return self._refuse("a signed order is not for this house")
@@ -130,7 +130,7 @@ class FleetAgent:
         """Go on towards what is wanted."""
         memory, wanted = self.memory, self.memory.followed.wanted
         if self.state == PROBATION and self._taker.running != self._offered:
-            self._fail(ROLLED_BACK, "it failed its probation; the reason is in the house's journal")
+            self._fail(ROLLED_BACK, "the bundle failed its probation; the reason is in the house's journal")
         elif self.state == PROBATION and not self._taker.on_probation:
             self._proved()
         if self.state in (CHECKING, WAITING, PROBATION):
@@ -150,7 +150,7 @@ class FleetAgent:
         elif (failed := memory.failed.get(goal)) and failed[0] == memory.order:
             self.state, self.trouble = str(failed[1]), str(failed[2])
         elif memory.done == memory.order and self._taker.running != memory.before:
-            self.state, self.trouble = BROKEN, "its files were changed on this machine after the bundle arrived"
+            self.state, self.trouble = BROKEN, "the robot's files were changed on this machine after the bundle arrived"
         else:
             self._go(goal, own=back)
 
@@ -192,7 +192,7 @@ class FleetAgent:
             self._fail(REFUSED, str(error))
             return
         if here is not None and (why := self._folder.keep(here)):
-            self._fail(REFUSED, f"the files that run can't be stored: {why}")
+            self._fail(REFUSED, f"the active files can't be stored: {why}")
             return
         self._offered = fingerprint(files)
         if not own:

@@ -78,8 +78,6 @@ def _passive(probe: BrokerProbe, kind: str, name: str) -> BrokerFinding:
             return BrokerFinding(what, "it is missing", mend=IMPORT)
         return BrokerFinding(what, f"the broker refuses the check: {error.reply_text}")
     note = (
-        f"{waiting:,} messages are waiting for the line to the centre"
-        if waiting
-        else "nothing is waiting for the centre"
+        f"messages waiting for the line to the centre: {waiting:,}" if waiting else "nothing is waiting for the centre"
     )
     return BrokerFinding(what, note=note)

@@ -87,7 +87,7 @@ class BundleParts:
         if not 0 <= part < parts <= MAX_BYTES // PIECE + 1:
             raise BadBundleError(f"bundle {hash[:12]} has an invalid part: number {part} of {parts}")
         if not verified(key, BUNDLE, hash.encode(), signature):
-            raise BadBundleError(f"bundle {hash[:12]} is not signed with the key of fleet.yaml")
+            raise BadBundleError(f"bundle {hash[:12]} is not signed with the key in fleet.yaml")
         if self._of != (hash, parts):
             self._of, self._parts = (hash, parts), {}
         try:

@@ -51,7 +51,7 @@ class BundleTrial:
 
     def _try(self, kept: Mapping[str, bytes], bundle: str) -> None:
         self._asked = True
-        self._tell(f"bundle {bundle[:12]} is tried, without switching to it")
+        self._tell(f"bundle {bundle[:12]} is being tried; the robot keeps its present files")
         try:
             files = fitted(kept, self._trier.files(self._trier.running) or {})
         except UsageError as error:

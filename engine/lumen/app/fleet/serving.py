@@ -50,7 +50,7 @@ class ServedCentre:
         fleet = fleet_in(root)
         if fleet.key != signer.public:
             raise UsageError(
-                f"this key is not the one that robots trust, `key: {fleet.key}` of fleet.yaml: pass --key FILE"
+                f"the private key does not match `key: {fleet.key}` in fleet.yaml, which robots trust: pass --key FILE"
             )
         private_folder(home := home_of(root))
         self._home = Home(home / FOLDER)
@@ -84,7 +84,10 @@ class ServedCentre:
         if not url.startswith(("amqp:", "amqps:")):
             return None
         if not has_stream(url, STREAM):
-            tell(f"the broker has no stream {STREAM}: incidents are lost while no centre runs (`lumen fleet check`)")
+            tell(
+                f"the broker has no stream {STREAM}: incidents are lost while no centre is running;"
+                " `lumen fleet check` lists what the broker lacks"
+            )
             return None
         reader = StreamReader(url, STREAM, first)
         reader.open()

@@ -13,6 +13,7 @@ from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.app.recording.redaction import redacted
 from lumen.errors import JournalError, LumenError, ModuleError
 from lumen.formats.recordings.rewriting import rewrite
+from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
 from lumen.loading.json_lines import forget_lines, line_names
 from lumen.modules.eyes.eyes import FACES_FILE
@@ -115,8 +116,8 @@ def _recording(file: Path, person: PersonName, found: Forgetting) -> None:
         gone, changed = redacted(file, person)
         if gone:
             rewrite([file], file, changed)
-            said = f"the name: {gone.messages} messages, {gone.files} attached files"
-            found.deleted.append(ForgottenPlace(str(file), f"{said}; {gone.pictures} pictures and sounds"))
+            said = f"the name: {counted(gone.messages, 'message')}, {counted(gone.files, 'attached file')}"
+            found.deleted.append(ForgottenPlace(str(file), f"{said}; pictures and sounds: {gone.pictures}"))
     except LumenError as error:
         raise ModuleError(str(error)) from None
 

@@ -33,7 +33,7 @@ class Forgetting:
 
 
 FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"
-COPIES = "films, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
+COPIES = "videos, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
 
 def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPlace]:

@@ -37,7 +37,7 @@ class FilmPart(Part, Observer):
         from lumen.robots.simulation.shots import FilmMoment
 
         if not isinstance(robot, SimulatedRobot):
-            raise UsageError("only the simulated robot can be filmed")
+            raise UsageError("only the simulated robot can be recorded on video")
         self._moments = FilmMoment
         self._film, self._path, self._track = Film(path, robot, size=size or FILM_SIZE, title=title), path, track
         self._progress = progress

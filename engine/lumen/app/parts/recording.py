@@ -86,7 +86,7 @@ class RecordingPart(Part):
         if self._recorder:
             self._recorder.close()
             if dropped := self._recorder.dropped:
-                self._tell(f"{dropped:,} messages were not recorded: the disk was too slow for them")
+                self._tell(f"{counted(dropped, 'message')} could not be recorded: the disk was too slow")
         if self._rescue:
             self._rescue.close()
 

@@ -19,5 +19,7 @@ def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
     if not parts:
         raise UsageError(f"--only must be one or more of {', '.join(ALL)}")
     if robot == "remote" and ROBOT_PART in parts:
-        raise UsageError("the robot can't be both local and remote: leave out --robot remote, or `robot` of --only")
+        raise UsageError(
+            "the robot can't be both local and remote: leave out --robot remote, or remove `robot` from --only"
+        )
     return parts

@@ -32,7 +32,7 @@ class RefusalPart(Part):
 def refusal(report: ReloadReport) -> str:
     """What is told of a report, empty where that is nothing."""
     if report.verdict == "rolled back":
-        return "the saved files failed while they ran: the previous files run again"
+        return "the saved files failed while they were in use: the previous files are active again"
     if report.verdict != "refused":
         return ""
     errors = [found for found in report.diagnostics if found.severity is Severity.ERROR]
@@ -40,5 +40,5 @@ def refusal(report: ReloadReport) -> str:
         return "the saved files were refused: recorded visits would go differently; the exhibition continues unchanged"
     first = f": {errors[0].place} {errors[0].code}" if errors else ""
     more = f" and {len(errors) - 1} more" if len(errors) > 1 else ""
-    what = "the last good files run" if report.who == START else "the exhibition continues unchanged"
+    what = "the last good files are active" if report.who == START else "the exhibition continues unchanged"
     return f"the saved files were refused{first}{more}; {what}"

@@ -22,9 +22,9 @@ from lumen.language.projects import Project
 OTHER_VISITS = "recorded visits would go differently with these files"
 APPLY = "`lumen reload --apply` activates them anyway"
 ONE_VISITOR = "for one visitor: after that visit, the previous files come back"
-VISIT_OVER = "the visit for which they were tried is over; `lumen reload --apply` activates them permanently"
+VISIT_OVER = "the visit for which these files were tried is over; `lumen reload --apply` activates them permanently"
 BETWEEN = "a visit is under way"
-BY_A_PERSON = "a person refused them"
+BY_A_PERSON = "a person refused these files"
 
 _log = logging.getLogger(__name__)
 

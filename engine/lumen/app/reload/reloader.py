@@ -207,7 +207,7 @@ class Reloader:
         elif order.verb == "status":
             order.answer(self._status().to_json())
         elif self._mode == "off":
-            self._notifier.tell(self._answer("refused", "it was started with --reload off"), [order])
+            self._notifier.tell(self._answer("refused", "the exhibition was started with --reload off"), [order])
         elif order.verb in ("reload", "dry-run"):
             if self._running.replay_check.mode:
                 order.answer(self._answer("judging", "playing the recorded visits with the saved files").to_json())

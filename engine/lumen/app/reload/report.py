@@ -78,7 +78,9 @@ class ReloadReport:
             case "rolled back":
                 yield f"{self.reason}: back to the previous files, revision {self.revision}"
             case "refused":
-                goes_on = "the last good files run" if self.who == START else "the exhibition continues unchanged"
+                goes_on = (
+                    "the last good files are active" if self.who == START else "the exhibition continues unchanged"
+                )
                 yield f"refused: {self._why()}{goes_on}"
             case "waiting":
                 yield f"waiting for `{self.waiting_for}`: {self.reason} (`lumen reload --now` does not wait)"

@@ -52,7 +52,7 @@ def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
             raise WorkersError(f"the scheduler at {shown} has no workers: start some with `dask worker {address}`")
         if bare := [name for name, found in seen.items() if not found["packages"].get(PACKAGE_NAME)]:
             raise WorkersError(
-                f"Lumen is not installed where the worker {bare[0]} runs: install the same version there"
+                f"Lumen is not installed on the machine of the worker {bare[0]}: install the same version there"
             )
         yield client.get_executor(pure=False), client.submit(bytes, packed)
     except OSError as error:  # the scheduler is gone

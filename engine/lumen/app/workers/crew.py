@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 from lumen.app.workers.tasks import TaskHead, do_task
 from lumen.errors import WorkersError
+from lumen.language.counts import counted
 
 IN_FLIGHT = 256
 """How many tasks are given away at once: what they carry is in memory, and a cluster may have as many workers."""
@@ -63,7 +64,7 @@ class StaffedCrew:
                 return
             self._staff = None
             if not again:
-                _log.warning("%s: %d tasks are repeated", self._trouble, len(work.left))
+                _log.warning("%s: repeating %s", self._trouble, counted(len(work.left), "task"))
             numbered = chain(work.left.items(), numbered)
         raise WorkersError(f"{self._trouble}, for the second time: {self._remedy}")
 

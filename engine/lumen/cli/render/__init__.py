@@ -18,7 +18,7 @@ FORMATS: Mapping[str, str] = {
     "concise": "a line for each finding",
     "json": "one object, for programs",
     "sarif": "SARIF 2.1.0, for code scanning",
-    "github": "annotations of GitHub Actions",
+    "github": "annotations for GitHub Actions",
     "junit": "JUnit XML, for continuous integration",
 }
 """Each format, and what it is for; it is the module of its name here."""

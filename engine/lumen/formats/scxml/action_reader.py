@@ -71,7 +71,7 @@ class ScxmlActionReader:
             case tag if tag == f"{{{LUMEN_NAMESPACE}}}action":
                 yield own(element)
             case tag:
-                raise AssertionError(f"{tag} is in no table and was removed before")
+                raise AssertionError(f"`{tag}` is in no table, so it should have been removed earlier")
 
     def _text(self, element: XmlElement) -> str:
         try:

@@ -29,8 +29,8 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
     nth = next(i for i, placed in enumerate(state.do) if deed.where[: len(placed.where)] == placed.where)
     if position is not None and position.place < nth:
         ids = list(awaited(position))
-        stands = f"has not reached it and is at step {position.place + 1} of {len(state.do)}"
-        text = f"the `do` of {name} {stands}: it waits for {', '.join(ids)}"
+        stands = f"it is at step {position.place + 1} of {len(state.do)} and waits for {', '.join(ids)}"
+        text = f"the `do` of {name} has not reached this action: {stands}"
         place = last.place(deed.machine, state.do[position.place].where)
         if nth == position.place + 1 and len(ids) == 1 and ids[0].startswith("d"):
             return Reason("no-event", text, at, place, change={"event": f"done.command.{ids[0]}"})

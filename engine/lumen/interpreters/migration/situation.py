@@ -85,7 +85,7 @@ class Situation:
             if node.path in doing and node in placement.left:
                 yield _gone(node)
             elif node in changed:
-                yield MigrationDelay(f"the `do` of `{node.name}` changed while it runs", node.name)
+                yield MigrationDelay(f"these files change the `do` of `{node.name}`, which is still running", node.name)
         for id in self.ending(placement):
             child = self.snapshot.invoked[id]
             if _is_busy(child.snapshot):

@@ -192,7 +192,7 @@ def _within(data: JsonCursor, actions: tuple[CompiledAction, ...], blocks: tuple
     if block not in blocks:
         raise data["block"].refused(f"should be {' or '.join(f'`{name}`' for name in blocks)}")
     if place >= len(actions):
-        raise data["place"].refused(f"is {place}, but there are {len(actions)} actions")
+        raise data["place"].refused(f"is {place}, but should be less than {len(actions)}, the number of actions")
     return Within(block, place, _position(data["inner"], actions[place]))  # type: ignore[arg-type]  # one of the blocks
 
 

@@ -83,7 +83,7 @@ class Memory(Module):
         try:
             self._settle()
         except ModuleError as error:
-            self.tell(f"{error} ({len(self._pending)} entries are lost)")
+            self.tell(f"{error} (lost entries: {len(self._pending)})")
         self._store.close()
 
     def _settle(self) -> None:

@@ -37,7 +37,7 @@ def body_of_arguments(arguments: Sequence[Any], fields: Sequence[SchemaField]) -
     """The arguments under the names of the fields; raises ModuleError where number or types differ."""
     if len(arguments) != len(fields):
         names = ", ".join(field.name for field in fields) or "none"
-        raise ModuleError(f"it has {len(arguments)} arguments; the route has {len(fields)} fields ({names})")
+        raise ModuleError(f"arguments in the message: {len(arguments)}; fields of the route: {len(fields)} ({names})")
     return {field.name: _value(field, value) for field, value in zip(fields, arguments, strict=True)}
 
 

@@ -164,7 +164,7 @@ def _credentials(file: str) -> tuple[str, str]:
     try:
         name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
     except (OSError, UnicodeDecodeError) as error:
-        raise ModuleError(f"the file `{file}` of {CREDENTIALS_VARIABLE} cannot be read: {error}") from None
+        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names cannot be read: {error}") from None
     if not separator or not name or "\n" in password:
-        raise ModuleError(f"the file `{file}` of {CREDENTIALS_VARIABLE} must contain one line `NAME:PASSWORD`")
+        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names must contain one line `NAME:PASSWORD`")
     return name, password

@@ -5,6 +5,8 @@ import time
 from collections import Counter
 from collections.abc import Callable
 
+from lumen.language.counts import counted
+
 TELL_PERIOD = 10.0
 """How long after a line about a place the next one comes [s]."""
 MAX_PLACES = 100
@@ -45,4 +47,4 @@ class Refusals:
             told = [(place, self._more.pop(place), self._why.pop(place)) for place in due]
             self._told.update(dict.fromkeys(due, now))
         for place, count, why in told:
-            self._tell(f"{count} more on {place} were dropped: {why}")
+            self._tell(f"Lumen dropped {counted(count, 'more message')} on {place}: {why}")

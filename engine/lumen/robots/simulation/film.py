@@ -237,5 +237,5 @@ def _writer(path: Path, size: FilmSize) -> Generator[None, bytes, None]:
         remedy = (
             f"IMAGEIO_FFMPEG_EXE={chosen} is not ffmpeg: unset it" if chosen else "install `lumen-robot[simulation]`"
         )
-        raise RobotModelError(f"ffmpeg, which writes films, cannot be started ({error}): {remedy}") from None
+        raise RobotModelError(f"ffmpeg, which writes videos, cannot be started ({error}): {remedy}") from None
     return writer

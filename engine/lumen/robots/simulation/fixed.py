@@ -20,7 +20,7 @@ class Fixed:
         self._nothing = np.zeros(joints)
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        raise RobotRefusedError("the robot has no legs and no wheels to walk with")
+        raise RobotRefusedError("the robot can't walk: it has neither legs nor wheels")
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
         return self._nothing

@@ -32,10 +32,10 @@ export default [
   ["this takes longer than {0} s: use `lumen` in a terminal", "ini lebih lama dari {0} detik: pakai `lumen` di terminal"],
   ["cannot start a process to compute this: {0}", "tidak dapat memulai proses untuk menghitungnya: {0}"],
   ["the answer has more than {0#} MB", "jawabannya lebih dari {0} MB"],
-  ["this exhibition runs an older Lumen, which cannot do that", "pameran ini memakai Lumen lama, yang tidak dapat melakukannya"],
+  ["this exhibition is running an older version of Lumen, which cannot do that", "pameran ini memakai Lumen lama, yang tidak dapat melakukannya"],
   ["the exhibition sent an answer that the console does not understand", "pameran mengirim jawaban yang tidak dipahami konsol"],
   ["there is no command `{0}`: choose one of {1}", "tidak ada perintah `{0}`: pilih salah satu dari {1}"],
-  ["`{0}` must be a text of {1} to {2} characters", "`{0}` harus berupa teks dengan {1} sampai {2} karakter"],
+  ["`{0}` must be a string of {1} to {2} characters", "`{0}` harus berupa teks dengan {1} sampai {2} karakter"],
   ["`data` must be an object, or be left out", "`data` harus berupa objek, atau dihilangkan"],
   ["`level` must be `ask` or `alone`", "`level` harus `ask` atau `alone`"],
   ["`{0_}` must be true or false", "`{0}` harus true atau false"],
@@ -61,7 +61,7 @@ export default [
   ["the role `show` may only press the buttons on the page: sign in as operator", "peran peragaan hanya boleh menekan tombol di halaman: masuk sebagai operator"],
   ["{0#} pages are open already: close some", "{0} halaman sudah terbuka: tutup beberapa di antaranya"],
   ["`id` must be 1 to 100 letters, digits or . _ : -; use a new one for each command", "`id` harus 1 sampai 100 huruf, angka atau . _ : -; pakai yang baru untuk setiap perintah"],
-  ["`pin` must be a text, and `name` a text of at most {0} characters", "`pin` harus berupa teks, dan `name` teks dengan paling banyak {0} karakter"],
+  ["`pin` must be a string, and `name` a string of at most {0} characters", "`pin` harus berupa teks, dan `name` teks dengan paling banyak {0} karakter"],
   ["no role has this PIN", "PIN ini tidak dikenal"],
 
   // People and roles.
@@ -126,6 +126,6 @@ export default [
   ["revision {0#} runs ({1_}), staged", "revisi {0} berjalan ({1}), berkas baru siap"],
   ["revision {0#} runs ({1_}), waiting: {2}", "revisi {0} berjalan ({1}), menunggu: {2}"],
   ["revision {0#} runs ({1_})", "revisi {0} berjalan ({1})"],
-  ["it was started with --reload off", "pameran dijalankan dengan --reload off"],
+  ["the exhibition was started with --reload off", "pameran dijalankan dengan --reload off"],
   ["there is nothing to apply", "tidak ada yang dapat diterapkan"],
 ];
