@@ -91,7 +91,8 @@ def test_slow_time_is_told_once_and_told_again_when_it_is_well() -> None:
             told.append(watch.tick())
     lines = [line for line in told if line]
     assert lines[0].startswith("the exhibition is running at only 0.9")
-    assert [" ".join(line.split()[:3]) for line in lines] == ["it runs at", "it runs in", "it runs at"]
+    begun = [line.removeprefix("the exhibition is running ").split()[0] for line in lines]
+    assert begun == ["at", "in", "at"]
     assert watch.worst == pytest.approx(0.5, abs=0.02)
     assert watch.summary() == ["at its slowest, the exhibition ran at 0.50 × real time"]
     assert PaceWatch(SimulatedClock(lambda _: None)).summary() == []

@@ -115,7 +115,7 @@ def test_it_ends_at_a_person_a_file_or_the_start() -> None:
     assert play.why("b")[-1] == "person: Ani requested it"
     goto = Event("operator.goto", {"by": "Budi", "state": "c"}, play.now.at)
     play.take(entered_directly(play.machine, play.now, "c", goto))
-    assert play.why("c") == ["person: Budi moved the behaviour to c (`lumen goto`)"]
+    assert play.why("c") == ["person: Budi moved the behaviour to c with `lumen goto`"]
     play.take(Step(None, ("c",), ("a",), (), play.now._replace(configuration=frozenset("a"))))
     assert play.why("a") == ["file: the files were saved and reloaded during the run"]
 

@@ -257,7 +257,7 @@ class Exhibition:
         doing: then it is applied at a later tick. Raises UsageError where it was opened without `reload`.
         """
         if self.reloader is None:
-            raise UsageError('this exhibition runs with reload="off": it keeps its files')
+            raise UsageError('this exhibition was opened with reload="off", so it can\'t reload files')
         return self.reloader.reload(self.now)
 
     def close(self) -> None:

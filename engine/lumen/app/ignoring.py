@@ -59,7 +59,9 @@ def _words(found: IgnoredEvent) -> str:
     false = [_false(guard, found.event) for guard in found.refused[:MAX_GUARDS]]
     more = len(found.refused) - len(false)
     nothing = [f"no row of {state} matches" for state in found.unheard]
-    return f"{what} while {', and '.join([*nothing, *false])}" + (f", and {more} more guards are false" if more else "")
+    return f"{what} while {', and '.join([*nothing, *false])}" + (
+        f", and {more} more {'guard is' if more == 1 else 'guards are'} false" if more else ""
+    )
 
 
 def _false(guard: FalseGuard, event: Event) -> str:

@@ -15,7 +15,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "what",
         choices=("test",),
-        help="send a test alert to each recipient in `alerts:` of lumen.yaml, even in quiet hours",
+        help="send a test alert to each recipient under `alerts:` in lumen.yaml, even in quiet hours",
     )
     add("project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)")
     add("--format", choices=("text", "json"), default="text", help="output format (default: text)")

@@ -6,6 +6,8 @@ from datetime import datetime
 from textwrap import wrap
 from typing import Any
 
+from lumen.language.counts import counted
+
 BECAUSE = {
     "guard": "its guard was false",
     "unheard": "it was not heard",
@@ -63,7 +65,7 @@ def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
         if reason["file"]:
             yield f"{INDENT}  {_place(reason)}"
     if (left := shown.get("inactive", 0) - MAX_INACTIVE) > 0:
-        yield f"{INDENT}… and {left} more ways from states that were not active (--format json shows them)"
+        yield f"{INDENT}… and {counted(left, 'more way')} from states that were not active (--format json shows them)"
 
 
 def _block(time: str, text: str, deeper: str) -> Iterator[str]:

@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     targets = (*WRITERS, "fll", "asyncapi")
     parser.add_argument("target", metavar="FORMAT", choices=targets, help=" | ".join(targets))
-    which = "a behaviour (default: the one that runs) or a controller (default: the only one)"
+    which = "a behaviour (default: the one that lumen.yaml names) or a controller (default: the only one)"
     parser.add_argument("behavior", nargs="?", metavar="NAME", help=which)
     parser.add_argument(
         "--project",

@@ -26,7 +26,7 @@ def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
     ]
     yield table(("robot", "bundle", "state", "since", ""), rows)
     here, houses = sum(row["here"] for row in found["robots"]), len(found["houses"])
-    yield f"{here} of {len(rows)} robots are online, in {houses} houses"
+    yield f"{here} of {counted(len(rows), 'robot')} online, in {counted(houses, 'house')}"
     for name in ("trouble",):
         if found.get(name):
             yield f"!! {found[name]}"

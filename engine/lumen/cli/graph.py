@@ -24,7 +24,7 @@ DRAWING = 60.0
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("behavior", nargs="?", help="a behaviour's name (default: the one that runs)")
+    add("behavior", nargs="?", help="a behaviour's name (default: the one in lumen.yaml)")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--region", metavar="NAME", help="only the states inside this state, and their targets")
     which.add_argument("--state", metavar="NAME", help="only this state, with the transitions into and out of it")

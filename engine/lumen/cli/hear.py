@@ -40,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="STATE",
         help="a state's id, or its path such as guide.talking (default: all states that hear)",
     )
-    add("--behavior", metavar="BEHAVIOR", help="a behaviour other than the one that runs")
+    add("--behavior", metavar="BEHAVIOR", help="a behaviour other than the one that lumen.yaml names")
     add("--language", metavar="LANG", help="the language that the robot speaks (default: the project's first)")
     add(
         "--project",

@@ -41,7 +41,7 @@ class Performance:
                 " commands such as `lumen reload` go to that process."
             )
         if self._setup.blind:
-            print(f"The exhibition runs without camera images: {self._setup.blind}.")
+            print(f"The exhibition is running without camera images: {self._setup.blind}.")
         if exhibition.node.story:
             print(f"The story is “{exhibition.node.story.title}”.\n")
         elif exhibition.node.visitor:

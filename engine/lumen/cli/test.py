@@ -46,7 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--coverage", action="store_true", help="list the states and transitions that were never used")
     add("--fail-under", metavar="N", type=float, help="fail if less than N %% is covered (implies --coverage)")
     add("--explore", action="store_true", help="search the behaviour for dead ends instead of playing the stories")
-    add("--behavior", metavar="NAME", help="with --explore: a behaviour other than the one that runs")
+    add("--behavior", metavar="NAME", help="with --explore: a behaviour other than the one that lumen.yaml names")
     add(
         "--home",
         metavar="STATE",

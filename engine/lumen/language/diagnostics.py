@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol, Self
 
+from lumen.language.counts import counted
 from lumen.language.lookalikes import difference, typed
 
 MIN_FINDINGS_FOR_ROOT = 8
@@ -172,7 +173,7 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
     first, *others = sorted(findings, key=lambda d: (d.cause != cause, "/stories/" in d.place.file, _order(d)))
     shown = [Related(d.place, d.message if d.message != first.message else "and here") for d in others[:MAX_RELATED]]
     if left := len(others) - len(shown):
-        shown[-1] = Related(shown[-1].place, f"and here, and in {left} more places")
+        shown[-1] = Related(shown[-1].place, f"and here, and in {counted(left, 'more place')}")
     if many and first.cause != cause == first.root:
         first = replace(first, hint=f"look at {cause} first: it causes the problem in {len(findings)} places")
     return replace(first, related=(*first.related, *shown))

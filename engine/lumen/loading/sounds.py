@@ -33,5 +33,5 @@ def sound_duration(root: Path, file: str) -> float:
     if not frames:
         raise ValueError("it is empty")
     if frames / rate > MAX_SOUND_DURATION:
-        raise ValueError(f"it lasts {frames / rate:.0f} s; {MAX_SOUND_DURATION:g} s is the maximum")
+        raise ValueError(f"it lasts {frames / rate:.0f} s, but the maximum is {MAX_SOUND_DURATION:g} s")
     return float(frames / rate)

@@ -64,7 +64,7 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
             return _state(draft, use)
         case NameKind.MOTION:
             motion = draft.motions.get(use.name)
-            moves = f"{motion.duration:g} s, moves {len(motion.tracks)} joints" if motion else ""
+            moves = f"{motion.duration:g} s, moves {counted(len(motion.tracks), 'joint')}" if motion else ""
             return f"{moves}{f', begins in {motion.start}' if motion and motion.start else ''}"
         case NameKind.JOINT:
             return _joint(draft, use.name)

@@ -17,7 +17,7 @@ from lumen.rules.alerts import loopback
 from lumen.rules.routes import PASSWORD_IN_FILE
 
 BAD_CONDITION = Code("bad-condition", "fleet", ERROR, "the condition that stops a rollout can't be evaluated")
-BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the key of a fleet is not a public key")
+BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the `key` in fleet.yaml is not a public key")
 FLEET_IN_CLEAR = Code(
     "fleet-in-clear", "fleet", WARNING, "messages between the houses and the centre are not encrypted"
 )
@@ -86,7 +86,7 @@ def _key(fleet: Fleet, report: DocumentReport) -> None:
         sound = False
     if not sound:
         hint = "run `lumen fleet keygen`, which makes a pair of keys and prints the line to write here"
-        report(BAD_FLEET_KEY, ("key",), "this is not a public key of 32 bytes in base64", hint)
+        report(BAD_FLEET_KEY, ("key",), "this is not a public key: a public key is 32 bytes, encoded in base64", hint)
 
 
 def _address(address: str, where: NodePath, report: DocumentReport) -> None:

@@ -16,7 +16,7 @@ from lumen.rules.statecharts import within
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
 
 SHADOWED_QUESTION = Code(
-    "shadowed-question", "hearing", WARNING, "a question of knowledge/ matches a row of `hears`, so it is not answered"
+    "shadowed-question", "hearing", WARNING, "a question in knowledge/ matches a row of `hears`, so it is not answered"
 )
 
 

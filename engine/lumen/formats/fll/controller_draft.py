@@ -19,6 +19,7 @@ from lumen.language.controllers import (
     Negation,
     Proposition,
 )
+from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.plain import plain_document
@@ -109,7 +110,9 @@ class ControllerDraft:
         fits = len(values) - len(wanted) in (0, 1) or kind in ("linear", "discrete")
         if kind == "discrete" and (len(values) < 2 or len(values) % 2):
             fits = False
-        return "" if fits else f"it has {len(values)} parameters instead of {len(wanted)} ({', '.join(wanted)})"
+        return (
+            "" if fits else f"it has {counted(len(values), 'parameter')} instead of {len(wanted)} ({', '.join(wanted)})"
+        )
 
     def rule(self, text: str, place: Place, spot: PlaceOfWord) -> str:
         """The rule in our words; empty where it is left out."""

@@ -27,6 +27,7 @@ from lumen.formats.gestures.statements import (
     lists_of,
     statements,
 )
+from lumen.language.counts import counted
 from lumen.language.diagnostics import Place, did_you_mean
 
 BEZIER, LINEAR = 3, 1
@@ -397,7 +398,9 @@ class _Reading:
         arguments = node.args
         if not 3 <= len(arguments) <= 4:
             wanted = ", ".join(ALMOTION_CALLS[method])
-            self.findings.lost(self._place(node), f"`{method}` has {len(arguments)} arguments", f"it needs {wanted}")
+            self.findings.lost(
+                self._place(node), f"`{method}` has {counted(len(arguments), 'argument')}", f"it needs {wanted}"
+            )
             return
         if branch is Branch.ELSE:
             self.findings.lost(self._place(node), "a call in an `else` or `except` is left out")

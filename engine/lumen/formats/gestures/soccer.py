@@ -8,6 +8,7 @@ files hold.
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.cells import Cell, cells_of
 from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
+from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
 
 SOCCER_VERSION = "V1.1"
@@ -30,7 +31,7 @@ def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurv
     for cells in lines:
         takes = _takes(cells, len(joints))
         if takes is None:
-            wanted = f"`{POSE}%`, {len(joints)} angles and a time above 0 s, separated by `%`"
+            wanted = f"`{POSE}%`, {counted(len(joints), 'angle')} and a time above 0 s, separated by `%`"
             findings.lost(cells[0][1], f"this line can't be read: write {wanted}")
             continue
         time += takes

@@ -11,6 +11,7 @@ from lumen.formats.gestures.cells import Cell, cells_of
 from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
 from lumen.formats.gestures.soccer import SOCCER_VERSION, read_soccer
 from lumen.formats.known import FormatTable, Known
+from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
 
 FIRST_CELL = "#WEBOTS_MOTION"
@@ -39,7 +40,7 @@ def read_webots(file: str, text: str, findings: ConversionFindings) -> JointCurv
     for cells in lines:
         time = _time(cells[0][0])
         if time is None or len(cells) != len(joints) + 2:
-            wanted = "a time such as 00:01:500" if time is None else f"a name and {len(joints)} angles"
+            wanted = "a time such as 00:01:500" if time is None else f"a name and {counted(len(joints), 'angle')}"
             findings.lost(cells[0][1], f"this line can't be read: write {wanted}")
             continue
         if not renamed and not _PLAIN_NAME.fullmatch(cells[1][0]):

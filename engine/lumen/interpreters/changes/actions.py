@@ -22,6 +22,7 @@ from lumen.language.actions import (
     Template,
     Wait,
 )
+from lumen.language.counts import counted
 from lumen.language.verbs import verb_of
 
 T = TypeVar("T")
@@ -134,6 +135,6 @@ def described(action: Action) -> str:
         case AskQuestion(question):
             return f"asks for an answer to {code(question.shown)}"
         case Parallel(branches):
-            return f"does {len(branches)} things at once"
+            return f"does {counted(len(branches), 'thing')} at once"
         case _:
             return verb_of(action).change(action)

@@ -162,7 +162,7 @@ class Chain:
             yield self._link(
                 number,
                 "person",
-                f"{by} moved the behaviour to {event.data['state']} (`lumen goto`)",
+                f"{by} moved the behaviour to {event.data['state']} with `lumen goto`",
                 values=brought(event),
             )
         elif timer := ended_timer(one.before, event):

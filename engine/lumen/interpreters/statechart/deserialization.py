@@ -111,7 +111,7 @@ class _SnapshotReader:
             return f"{len(active)} states of {here} are active, but only one can be"
         regions = [child for child in children if child.kind is not StateKind.HISTORY]
         if state.kind is StateKind.PARALLEL and len(active) < len(regions):
-            return f"only {len(active)} of the {len(regions)} regions of {here} are active"
+            return f"active regions of {here}: {len(active)} of {len(regions)}, but all must be active"
         return ""
 
     def context(self, data: JsonCursor) -> dict[str, Any]:
