@@ -239,7 +239,9 @@ def test_a_start_that_is_refused(hall: Hall, only: tuple[str, ...], capsys: pyte
     tour.write_text(tour.read_text().replace("onDone: idle", "onDone: nowhere"))
     assert main(["run", str(hall.folder), "--robot", "recording", *only]) == 1
     [body] = hall.web.told("start")
-    assert body["text"].endswith("the project's files have errors, the first at behaviors/tour.yaml:8:13: unknown-state")
+    assert body["text"].endswith(
+        "the project's files have errors, the first at behaviors/tour.yaml:8:13: unknown-state"
+    )
     assert body["parts"] == (only[1].split(",") if only else ["robot", "brain"])
     capsys.readouterr()
 

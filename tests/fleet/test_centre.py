@@ -223,7 +223,7 @@ def test_only_one_process_is_the_centre_of_a_folder_and_only_with_its_key(hall: 
         with pytest.raises(UsageError, match="another process is already the centre"):
             ServedCentre(hall.root, hall.signer, bus, print)
         generate(tmp_path / "other")
-        with pytest.raises(UsageError, match="not the one that robots trust"):
+        with pytest.raises(UsageError, match="the private key does not match"):
             ServedCentre(hall.root, Signer(tmp_path / "other"), bus, print)
 
 
