@@ -61,7 +61,7 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
         (["--bus", "amqp://guest:guest@127.0.0.1:1/"], "no broker listens at 127.0.0.1:1"),
         (["--bus", "carrier-pigeon://"], "write memory://"),
         (["--video", "film.avi"], "name an .mp4 file"),
-        (["--robot", "recording", "--video", "film.mp4"], "--video films the simulation"),
+        (["--robot", "recording", "--video", "film.mp4"], "--video records the simulation"),
         (
             ["--video", "film.mp4", "--size", "641x480"],
             "invalid `--size 641x480`: write two even numbers from 64 to 4096",

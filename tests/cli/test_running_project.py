@@ -55,7 +55,7 @@ def test_a_run_in_an_empty_folder_writes_into_the_state_folder_only(
     journal = root / STATE_FOLDER / "journal"
     assert list(journal.rglob("*.journal"))
     (line,) = [line for line in capsys.readouterr().err.splitlines() if "no lumen.yaml" in line]
-    assert f"a copy of Lumen's own exhibition, {root}." in line
+    assert f"a copy of its own exhibition, {root}." in line
     assert str(journal) in line
     assert main(["replay"]) == 0  # the other commands find it
 

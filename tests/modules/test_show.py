@@ -422,7 +422,7 @@ def test_a_flood_is_a_line_and_then_a_count() -> None:
     found.tick()
     assert told == [
         "a message on hall/button (MQTT) is dropped: it is not JSON",
-        "499 more on hall/button (MQTT) were dropped: it is not JSON",
+        "Lumen dropped 499 more messages on hall/button (MQTT): it is not JSON",
     ]
     for i in range(2 * refusals.MAX_PLACES):
         found.add(f"topic {i}", "it is no JSON")

@@ -272,11 +272,11 @@ def test_a_plain_body_is_read_with_any_declared_encoding(encoding: str) -> None:
         (
             BODY,
             (
-                "it is JSON inside a JSON string: encode it once, and send it with the content type "
+                "it is a string that contains JSON: encode it once, and send it with the content type "
                 "application/json, not text/plain"
             ),
         ),
-        ("[1, 2]", "it is JSON inside a text"),
+        ("[1, 2]", "it is a string that contains JSON"),
         ("hello", "'hello' is not of type 'object'"),
         ("{hello}", "'{hello}' is not of type 'object'"),
         ({"x": "left"}, "x: 'left' is not of type"),

@@ -34,7 +34,7 @@ def test_it_does_what_it_has_parts_for(lantern: SimulatedRobot, command: RobotCo
 
 
 def test_it_does_not_walk(lantern: SimulatedRobot) -> None:
-    assert "no legs and no wheels" in does(lantern, Walk(0.2))
+    assert "neither legs nor wheels" in does(lantern, Walk(0.2))
 
 
 def test_a_push_moves_nothing_but_its_joints(lantern: SimulatedRobot) -> None:

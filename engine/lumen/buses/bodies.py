@@ -201,7 +201,7 @@ def text_of_json(body: Any) -> str:
         _decoder.decode(body)
     except (ValueError, RecursionError, BadMessageError):
         return ""
-    return f"it is JSON inside a JSON string: encode it once, and send it with the content type {JSON}, not {TEXT}"
+    return f"it is a string that contains JSON: encode it once, and send it with the content type {JSON}, not {TEXT}"
 
 
 def _no_constant(name: str) -> Any:
