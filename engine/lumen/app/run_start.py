@@ -125,7 +125,9 @@ def _why(error: LumenError) -> str:
         return str(error)
     found = [diagnostic for diagnostic in error.diagnostics if diagnostic.severity is Severity.ERROR]
     return (
-        f"its files have errors, the first at {found[0].place}: {found[0].code}" if found else "its files have errors"
+        f"the project's files have errors, the first at {found[0].place}: {found[0].code}"
+        if found
+        else "the project's files have errors"
     )
 
 
