@@ -259,7 +259,9 @@ def test_a_start_of_several_robots_that_is_refused(hall: Hall, capsys: pytest.Ca
     assert main(["run", str(hall.folder), "--robot", "recording", "--speed", "max"]) == 1
     [body] = hall.web.told("start")
     assert body["robot"] == "ana, ben"
-    assert body["text"].endswith("the project's files have errors, the first at behaviors/tour.yaml:8:13: unknown-state")
+    assert body["text"].endswith(
+        "the project's files have errors, the first at behaviors/tour.yaml:8:13: unknown-state"
+    )
     capsys.readouterr()
 
 
