@@ -25,6 +25,8 @@ from pathlib import Path
 from statistics import median_low
 from typing import NamedTuple
 
+from source_files import SourceFile, read, statements, top_level
+
 ROOT = Path(__file__).parents[1]
 PACKAGE = "engine/lumen"
 
@@ -43,19 +45,6 @@ _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+")
 _TYPE_NAME = re.compile(r"_?[A-Z]\w*[a-z]\w*")
 _DOTTED = re.compile(r"[\w.]+")
 _WORD = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])")
-
-
-class SourceFile(NamedTuple):
-    """A Python file of the package."""
-
-    path: str
-    module: str
-    text: str
-    tree: ast.Module
-
-    @property
-    def lines(self) -> int:
-        return len(self.text.splitlines())
 
 
 class When(StrEnum):
@@ -110,19 +99,6 @@ class Shape:
     action_files: list[str]
 
 
-def read(package: Path) -> list[SourceFile]:
-    """The Python files beneath a folder, in the order of their paths; raises SyntaxError for one that is not Python."""
-    if not (files := sorted(package.rglob("*.py"))):
-        raise SystemExit(f"no Python file is beneath {package}: the shape of nothing is not checked")
-    return [_source_file(package, path) for path in files]
-
-
-def _source_file(package: Path, path: Path) -> SourceFile:
-    beneath, text = path.relative_to(package), path.read_text(encoding="utf-8")
-    module = ".".join([package.name, *beneath.with_suffix("").parts]).removesuffix(".__init__")
-    return SourceFile(beneath.as_posix(), module, text, ast.parse(text, str(path)))
-
-
 def floor_order(pyproject: str) -> list[set[str]]:
     """What stands on each floor, from the top: the first contract of layers in the text of a pyproject.toml."""
     contracts = tomllib.loads(pyproject)["tool"]["importlinter"]["contracts"]
@@ -150,22 +126,14 @@ def function_sizes(files: Iterable[SourceFile]) -> list[Size]:
     return sorted(
         Size((node.end_lineno or node.lineno) - node.lineno + 1, f"{node.name} in {file.path}")
         for file in files
-        for node in _statements(file.tree)
+        for node in statements(file.tree)
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
     )
 
 
-def _statements(parent: ast.AST) -> Iterator[ast.AST]:
-    """The statements beneath a node, at any depth; quicker than `ast.walk`, which looks into expressions, too."""
-    for node in ast.iter_child_nodes(parent):
-        if isinstance(node, ast.stmt | ast.excepthandler | ast.match_case):
-            yield node
-            yield from _statements(node)
-
-
 def type_names(file: SourceFile) -> set[str]:
     """The classes and the aliases of types at a file's top level."""
-    classes = {node.name for node in _top_level(file.tree.body) if isinstance(node, ast.ClassDef)}
+    classes = {node.name for node in top_level(file.tree.body) if isinstance(node, ast.ClassDef)}
     return classes | {name for name in _assigned(file, aliases=True) if _TYPE_NAME.fullmatch(name)}
 
 
@@ -176,7 +144,7 @@ def constants(file: SourceFile) -> set[str]:
 
 def _assigned(file: SourceFile, *, aliases: bool = False) -> Iterator[str]:
     """The names that are given values at a file's top level; with `aliases`, those that may be types."""
-    for node in _top_level(file.tree.body):
+    for node in top_level(file.tree.body):
         if isinstance(node, ast.Assign | ast.AnnAssign) and not (aliases and _is_made(node.value)):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
             parts = (part for target in targets for part in ast.walk(target))
@@ -186,14 +154,6 @@ def _assigned(file: SourceFile, *, aliases: bool = False) -> Iterator[str]:
 def _is_made(value: ast.expr | None) -> bool:
     """Whether a value is what a call returns, as a TypeVar is; a NewType is a type all the same."""
     return isinstance(value, ast.Call) and not (isinstance(value.func, ast.Name) and value.func.id == "NewType")
-
-
-def _top_level(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements of a module, those under an `if` or a `try` too."""
-    for node in body:
-        yield node
-        if isinstance(node, ast.If | ast.Try):
-            yield from _top_level([*node.body, *node.orelse])
 
 
 def shared(
