@@ -4,6 +4,8 @@
     python scripts/shape.py --check docs/architecture.md    fails where that table is no longer true
     python scripts/shape.py --action say                    the files that know an action
     python scripts/shape.py --commit HEAD                   the files that a commit touched
+    python scripts/shape.py --list "seam probes"            the places that a figure of the architecture counts
+    python scripts/shape.py --of ../before                  these figures, beside those of another checkout
 
 What is counted are the Python files of the package, by what stands in them; nothing is imported. Sizes are lines as an
 editor counts them: a function's from its `def` to its end, its docstring included. Paths are beneath the package.
@@ -25,6 +27,7 @@ from pathlib import Path
 from statistics import median_low
 from typing import NamedTuple
 
+from figures import Figure, compared, figures, values
 from source_files import SourceFile, read, statements, top_level
 
 ROOT = Path(__file__).parents[1]
@@ -363,16 +366,36 @@ def main(arguments: Sequence[str] | None = None) -> None:
     output.add_argument("--json", action="store_true", help="all figures and names")
     output.add_argument("--write", type=Path, metavar="PAGE", help="put the table into a page")
     output.add_argument("--check", type=Path, metavar="PAGE", help="fail where the table of a page is stale")
+    output.add_argument("--list", metavar="NAME", help="print the places that this figure of the architecture counts")
+    output.add_argument("--of", type=Path, metavar="PATH", help="print these figures beside those of another checkout")
     asked = parser.parse_args(arguments)
     if asked.commit:
         print(_listed(f"Python files of the package in {asked.commit}", commit_files(asked.root, asked.commit)))
         return
-    order = floor_order((asked.root / "pyproject.toml").read_text(encoding="utf-8"))
-    shape = measure(read(asked.root / PACKAGE), order, asked.action)
+    files = read(asked.root / PACKAGE)
+    if asked.list:
+        print(_places(asked.list, figures(files)))
+    elif asked.of:
+        print(compared(read(asked.of / PACKAGE), files))
+    else:
+        order = floor_order((asked.root / "pyproject.toml").read_text(encoding="utf-8"))
+        _report(measure(files, order, asked.action), files, asked)
+
+
+def _report(shape: Shape, files: Sequence[SourceFile], asked: argparse.Namespace) -> None:
+    """Print the figures, or write them, in the form that is asked for."""
     if page := asked.write or asked.check:
         _keep(page, table(shape), only_check=asked.check is not None)
+    elif asked.json or asked.markdown:
+        print(json.dumps(asdict(shape), indent=2) if asked.json else table(shape))
     else:
-        print(json.dumps(asdict(shape), indent=2) if asked.json else table(shape) if asked.markdown else report(shape))
+        print(f"{report(shape)}\n\n{values(figures(files))}")
+
+
+def _places(name: str, found: Mapping[str, Figure]) -> str:
+    if name not in found:
+        sys.exit(f"no figure `{name}`: choose one of {', '.join(found)}")
+    return "\n".join([f"{name}: {found[name].value:,}", *(f"  {each}" for each in found[name].counted)])
 
 
 def _keep(page: Path, text: str, *, only_check: bool) -> None:

@@ -3,15 +3,25 @@
 import re
 
 import pytest
+from figures import beyond_ceilings, figures
 from scripts.shape import PACKAGE, ROOT, Shape, floor_order, measure, read
+from source_files import SourceFile
 
+from lumen.upkeep.garbage import gc_paused
+from tests.house.ceilings import ENTERING, ceilings
 from tests.scanning import matching
 
 
 @pytest.fixture(scope="module")
-def house() -> Shape:
+def files() -> list[SourceFile]:
+    with gc_paused():  # a search through all trees finds nothing and takes longer than reading them
+        return read(ROOT / PACKAGE)
+
+
+@pytest.fixture(scope="module")
+def house(files: list[SourceFile]) -> Shape:
     order = floor_order((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    return measure(read(ROOT / PACKAGE), order)
+    return measure(files, order)
 
 
 def test_a_public_class_or_alias_has_a_name_of_its_own(house: Shape) -> None:
@@ -24,6 +34,12 @@ def test_no_files_import_each_other_in_a_circle_for_types_and_late_neither(house
 
 def test_no_file_imports_what_stands_above_or_beside_its_floor(house: Shape) -> None:
     assert house.arrows_up == []
+
+
+def test_the_figures_of_the_architecture_are_at_their_ceilings(files: list[SourceFile]) -> None:
+    held = {name: ceiling for name, ceiling in ceilings().items() if name != ENTERING}
+    with gc_paused():
+        assert beyond_ceilings(figures(files), held) == []
 
 
 def test_every_thread_is_watched() -> None:

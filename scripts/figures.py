@@ -1,0 +1,135 @@
+"""The figures of the architecture: how an exhibition is put together, and how long and wide the code is.
+
+Each is counted by a rule from the code alone; the rules are in wiring.py, closed_lists.py and below. tests/house holds
+them: ceilings.yaml lists the greatest value that each may have.
+"""
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from callables import Callables
+from closed_lists import closed_lists
+from scopes import Package, Place, parameters
+from source_files import SourceFile, statements
+from wiring import added_callables, assigned_callables, composition_sites, seam_probes, storing_methods
+
+LONG = 50
+"""Functions of more lines are listed."""
+WIDE = 8
+"""Functions of more parameters are counted, without the object or class that a method belongs to."""
+STEPS = {"statements": 500}
+"""The ceilings of these figures are multiples, so that not every change of the code changes them."""
+CEILINGS = "tests/house/ceilings.yaml"
+TOP_LEVEL = "top-level files"
+NO_FORMAT = re.compile(r"#\s*fmt:\s*(skip|off)")
+
+
+class Figure(NamedTuple):
+    """A figure, and a line for each thing that it counts."""
+
+    value: int
+    counted: Sequence[object]
+
+
+def figures(files: Sequence[SourceFile]) -> dict[str, Figure]:
+    """All figures by name. Raises LookupError if the package has no parts and nodes to be composed."""
+    package = Package(files)
+    callables = Callables(package)
+    long = sorted(long_functions(package), reverse=True)
+    sizes = folder_sizes(files)
+    return {
+        "composition sites": _number(composition_sites(package)),
+        "longest function": Figure(long[0][0], [f"{lines:>4} {place}" for lines, place in long if lines > LONG]),
+        "seam probes": _number(seam_probes(package)),
+        "assigned callables": _number(assigned_callables(package, callables)),
+        "added callables": _number(added_callables(package, callables)),
+        "storing methods": _number(storing_methods(package, callables)),
+        "closed lists": _number(closed_lists(package)),
+        "wide functions": _number(wide_functions(package)),
+        "unformatted statements": _number(unformatted_statements(files)),
+        "statements": Figure(sizes.total(), [f"{size:>7,} in {folder}" for folder, size in sizes.most_common()]),
+    }
+
+
+def _number(places: Iterable[Place]) -> Figure:
+    found = sorted(places)
+    return Figure(len(found), found)
+
+
+def long_functions(package: Package) -> Iterator[tuple[int, Place]]:
+    """All functions, each with its lines from `def` to its end."""
+    for scoped in package.of(ast.FunctionDef, ast.AsyncFunctionDef):
+        lines = (scoped.node.end_lineno or scoped.node.lineno) - scoped.node.lineno + 1
+        yield lines, scoped.place(scoped.node.name)
+
+
+def wide_functions(package: Package) -> Iterator[Place]:
+    """The functions of more than `WIDE` parameters."""
+    for scoped in package.of(ast.FunctionDef, ast.AsyncFunctionDef):
+        if (number := len(parameters(scoped.node))) > WIDE:
+            owner = f"{scoped.owner.name}." if scoped.owner else ""
+            yield scoped.place(f"{owner}{scoped.node.name} has {number} parameters")
+
+
+def unformatted_statements(files: Iterable[SourceFile]) -> Iterator[Place]:
+    """The lines that the formatter leaves as they are."""
+    for file in files:
+        for number, line in enumerate(file.text.splitlines(), 1):
+            if NO_FORMAT.search(line):
+                yield Place(file.path, number, line.strip())
+
+
+def folder_sizes(files: Iterable[SourceFile]) -> Counter[str]:
+    """The statements in each folder of the package; those of its own files are counted as its `TOP_LEVEL`."""
+    found: Counter[str] = Counter()
+    for file in files:
+        found[file.path.partition("/")[0] if "/" in file.path else TOP_LEVEL] += statement_count(file)
+    return found
+
+
+def statement_count(file: SourceFile) -> int:
+    """The statements of a file, without imports and without bare texts, which are docstrings."""
+    return sum(isinstance(node, ast.stmt) and not _is_uncounted(node) for node in statements(file.tree))
+
+
+def _is_uncounted(node: ast.stmt) -> bool:
+    text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+    return text or isinstance(node, ast.Import | ast.ImportFrom)
+
+
+def beyond_ceilings(figures: Mapping[str, Figure], ceilings: Mapping[str, int]) -> list[str]:
+    """The figures that are above their ceiling, with all that they count, or below it, with the ceiling to write."""
+    found = []
+    for name in {**figures, **ceilings}:
+        if name not in figures or name not in ceilings:
+            found.append(f"{name}: the figures and {CEILINGS} don't both have it")
+            continue
+        value, ceiling, step = figures[name].value, ceilings[name], STEPS.get(name, 1)
+        least = -(-value // step) * step
+        if least > ceiling:
+            found.append(
+                "\n  ".join([f"{name}: {value} is above the ceiling of {ceiling}", *map(str, figures[name].counted)])
+            )
+        elif least < ceiling:
+            found.append(f"{name}: {value} is below the ceiling of {ceiling}: write {least} into {CEILINGS}")
+    return found
+
+
+def values(found: Mapping[str, Figure]) -> str:
+    """A line for each figure: its value and its name."""
+    return "\n".join(f"{figure.value:>8,}  {name}" for name, figure in found.items())
+
+
+def compared(there: Sequence[SourceFile], here: Sequence[SourceFile]) -> str:
+    """A line for each figure, and for the statements of each folder: the value there, the value here, and the name."""
+    before, now = _with_folders(there), _with_folders(here)
+    rows = [(f"{before.get(name, 0):,}", f"{now.get(name, 0):,}", name) for name in {**now, **before}]
+    return "\n".join(f"{old:>8} {new:>8}  {name}".rstrip() for old, new, name in [("there", "here", ""), *rows])
+
+
+def _with_folders(files: Sequence[SourceFile]) -> dict[str, int]:
+    sizes = {f"statements in {folder}": size for folder, size in sorted(folder_sizes(files).items())}
+    return {name: figure.value for name, figure in figures(files).items()} | sizes
