@@ -10,7 +10,7 @@ from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.exhibition import Exhibition
 from lumen.app.node import Node
-from lumen.app.processes.assembling import ProcessOptions, assemble
+from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import Setup
@@ -102,7 +102,7 @@ class Hall:
         bus, how = validated(self.bus, project), ProcessOptions("memory://", reload="manual")
         desk = self._desk(project, *names)
         clock = setup.clock if setup else clock
-        node = assemble(project, names, bus, clock, narrator, directory, how, setup, None, desk)
+        node = assemble(Plan(project, names, bus, clock, narrator, directory, how, setup, None, desk))
         self.nodes.append(node)
         self.closing += [node.close, lambda: directory.close(forget=False)]
         return node

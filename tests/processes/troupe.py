@@ -14,7 +14,7 @@ from typing import Any
 
 import lumen
 from lumen.app.parts.remote_brain import RemoteBrainPart
-from lumen.app.processes.assembling import ProcessOptions, assemble
+from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
@@ -115,7 +115,8 @@ class Member:
         bus = validated(connect(url), project)
         narrator = Printed(clock.now, lambda: self.process.project.machine)
         how = ProcessOptions(url, float(speed), "manual")
-        self.process = assemble(project, names, bus, clock, narrator, self.run_directory, how, self.cast, played)
+        plan = Plan(project, names, bus, clock, narrator, self.run_directory, how, self.cast, played)
+        self.process = assemble(plan)
         brains = [part for part in self.process.parts if isinstance(part, RemoteBrainPart)]
         self.brain = brains[0] if brains else None
 

@@ -74,7 +74,7 @@ class Failures:
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class BegunRun:
     """The homes and the projects of the robots of a run, by name; the name is empty if the project has one robot."""
 
     root: Path
@@ -92,7 +92,7 @@ def started(
     last_good: bool,
     alerted: bool,
     tell: Callable[[str], None],
-) -> Iterator[Start]:
+) -> Iterator[BegunRun]:
     """Take the homes of these robots, finish an interrupted installation, and read the files.
 
     The homes are given back at the end. An error on the way, or while the run lasts, is reported to the people in
@@ -113,7 +113,7 @@ def started(
                 name: startup_project(root, directory, last_good=last_good, warn=tell)
                 for name, directory in directories.items()
             }
-            yield Start(root, directories, projects, failures)
+            yield BegunRun(root, directories, projects, failures)
         except Exception as error:
             failures.report(error, names)
             raise

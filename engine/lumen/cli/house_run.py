@@ -12,8 +12,8 @@ from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
 from lumen.app.node import Node
 from lumen.app.parts.console import ConsolePart
-from lumen.app.processes.assembling import ProcessOptions, assemble
-from lumen.app.run_start import WHOLE, Start
+from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
+from lumen.app.run_start import WHOLE, BegunRun
 from lumen.app.setup import Setup
 from lumen.bus import connect
 from lumen.buses.validated import validated
@@ -39,7 +39,7 @@ ALONE = ("model", "robot_url", "video", "record", "sound")
 class HouseRun:
     """The robots of a house as a terminal runs them; `parts` are those of each that this process is, all without."""
 
-    def __init__(self, options: argparse.Namespace, start: Start, parts: Sequence[str]) -> None:
+    def __init__(self, options: argparse.Namespace, start: BegunRun, parts: Sequence[str]) -> None:
         self._options, self._start, self._parts = options, start, parts
         self.directories, self.projects = start.directories, start.projects
         robots = tuple(self.projects)
@@ -141,10 +141,11 @@ class HouseRun:
         how = ProcessOptions(self._url, float(options.speed), options.reload, options.language or "", options.fresh)
         bus = validated(connect(self._url, sender="+".join(self._parts)), project)
         alerts = alert_desk(project, self._parts, self.transcripts[name], self.story)
-        return assemble(
+        plan = Plan(
             project, self._parts, bus, self._clocks[name], self.transcripts[name], directory, how,
             self._setups.get(name), self.stories[name], alerts,
         )  # fmt: skip
+        return assemble(plan)
 
     def _lose(self, name: str, error: LumenError) -> None:
         """An error ended one robot; the others go on."""

@@ -14,11 +14,11 @@ from lumen.app.node import Node
 from lumen.app.one_robot import robots_of
 from lumen.app.parts.console import ConsolePart
 from lumen.app.parts.visitor import VisitorPart
-from lumen.app.processes.assembling import ProcessOptions, assemble
+from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
 from lumen.app.processes.choosing import parts_of
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.reloader import MODES
-from lumen.app.run_start import WHOLE, Start, started
+from lumen.app.run_start import WHOLE, BegunRun, started
 from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
 from lumen.app.stories import home_of
 from lumen.bus import connect
@@ -132,14 +132,14 @@ def run(options: argparse.Namespace) -> int:
         return verdict.code
 
 
-def _house(options: argparse.Namespace, start: Start, parts: tuple[str, ...]) -> RunVerdict:
+def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
     """Run several robots in this process."""
     from lumen.cli.house_run import HouseRun  # nobody else needs it
 
     return HouseRun(options, start, parts).run()
 
 
-def _run(options: argparse.Namespace, start: Start, parts: tuple[str, ...]) -> RunVerdict:
+def _run(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
     (project,), (run_directory,) = start.projects.values(), start.directories.values()
     story = chosen_story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
@@ -221,7 +221,8 @@ def _processes(
     except BusUnreachableError as error:
         raise error if options.only else BusUnreachableError(f"{error}, or use --bus memory://") from None
     alerts = alert_desk(project, parts, transcript, story)
-    node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
+    plan = Plan(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
+    node = assemble(plan)
     transcript.unread = lambda: node.interrupt(2, leave=True)
     if project.console.wanted and BRAIN in parts:
         node.parts.append(ConsolePart(run_directory.root, url, partial(transcript.line, "console")))

@@ -35,7 +35,7 @@ from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.home import home_of
-from lumen.runtime.presence import BRAIN, MOTION, VISITOR
+from lumen.runtime.presence import BRAIN, MOTION, VISITOR, Presence
 from lumen.runtime.resuming import FreshStart, Resumption
 from lumen.runtime.story import staged
 
@@ -51,110 +51,64 @@ class ProcessOptions:
     fresh: bool = False
 
 
-def assemble(
-    project: Project,
-    names: Sequence[str],
-    bus: ValidatedBus,
-    clock: Clock,
-    narrator: Narrator,
-    run_directory: RunDirectory,
-    options: ProcessOptions,
-    setup: Setup | None = None,
-    story: Story | None = None,
-    alerts: AlertDesk | None = None,
-    record: Path | None = None,
-) -> Node:
-    """The process that is these parts of an exhibition; `setup` is its robot, where it has one.
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What one process of several is made of; `names` are its parts."""
 
-    `alerts` has people told of what goes wrong, and is closed with it. What is said on the bus is recorded into the
-    file `record`, and the last minutes by the process that has the brain.
-    """
+    project: Project
+    names: Sequence[str]
+    bus: ValidatedBus
+    clock: Clock
+    narrator: Narrator
+    directory: RunDirectory
+    options: ProcessOptions
+    setup: Setup | None = None
+    """Its robot, if it has one."""
+    story: Story | None = None
+    alerts: AlertDesk | None = None
+    """Whom it tells of what goes wrong; it is closed with the process."""
+    record: Path | None = None
+    """The file into which the messages on the bus are recorded."""
+
+
+def assemble(plan: Plan) -> Node:
+    """Put a process together; the one that has the brain also records the last minutes."""
+    project, names, bus, narrator, story = plan.project, plan.names, plan.bus, plan.narrator, plan.story
     robot: HostedRobotPart | None = None
 
     def said() -> dict[str, Any]:
         follows = robot.follows if robot else ""
-        body = {"bundle": node.project.hash, "speed": options.speed, "follows": follows}
+        body = {"bundle": node.project.hash, "speed": plan.options.speed, "follows": follows}
         body |= robot.said if robot else {}
         return {**body, "time": round(node.now, 3), "realtime": node.pace.realtime} if robot else body
 
     presence = presence_of(project, bus, tuple(names), said)
-    node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
-    if setup or BRAIN in names:
+    node = Node(project, bus, plan.clock, narrator, presence=presence, speed=plan.options.speed)
+    if plan.setup or BRAIN in names:
         analyse(project.motions.values(), project.body)
-    folder, records = home_of(run_directory.root, project.one_of_several), run_directory.records
+    folder, records = home_of(plan.directory.root, project.one_of_several), plan.directory.records
 
     def kept() -> str:
         return records.trouble or recording.trouble
 
-    def stopped_here() -> bool:
+    def stopped() -> bool:
         return robot is not None and robot.stopped()
 
-    alone = {} if BRAIN in names else {"stopped": stopped_here}
-    watch = AlertPart(alerts, bus, folder, names, presence, kept, **alone) if alerts else None
-    ring = run_directory.home is not None and story is None
-    recording = RecordingPart(project, bus, partial(narrator.line, "recording"), record, ring=ring)
-    node.parts.append(recording)
-    if watch:
-        node.parts.append(watch)
-    if setup:
+    alone = {} if BRAIN in names else {"stopped": stopped}
+    watch = AlertPart(plan.alerts, bus, folder, names, presence, kept, **alone) if plan.alerts else None
+    ring = plan.directory.home is not None and story is None
+    recording = RecordingPart(project, bus, partial(narrator.line, "recording"), plan.record, ring=ring)
+    node.parts += [recording, *([watch] if watch else [])]
+    if plan.setup:
         noticed = watch.noticed if watch and BRAIN not in names else lambda _: None
-        robot = HostedRobotPart(project, bus, setup, presence, narrator, noticed)
+        robot = HostedRobotPart(project, bus, plan.setup, presence, narrator, noticed)
         node.parts.append(robot)
         if BRAIN not in names:
             node.parts.append(ForgettingPart(project, bus, robot.forget))
     if MOTION in names:
-        node.parts.append(MotionPart(project, bus, clock, presence, narrator))
+        node.parts.append(MotionPart(project, bus, plan.clock, presence, narrator))
     if BRAIN in names:
-        node.parts.append(ModuleTroublesPart(project, bus, narrator.line))
-        body = RemoteBody(staged(project, story), bus, clock, presence)
-
-        def adopt(bundle: Project) -> None:
-            body.robot.use(bundle)
-            node.use(bundle)
-
-        behavior = body.behavior(project, bus, story, options.speed, adopt)
-        reloader = run_directory.reloader(behavior, narrator, mode=options.reload)
-
-        def stopped() -> StoppedBy | None:
-            return robot.server.hold.stopped if robot else stopped_there(presence)
-
-        def recover() -> Resumption | FreshStart:
-            found = run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
-            operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
-            return watch.recovered(found) if watch else found
-
-        home = run_directory.home
-        brain = RemoteBrainPart(behavior, body, narrator, presence, home, options.language, stopped, recover)
-        journal = record_inputs(behavior, records, story=story, rehearsed=story is not None)
-        node.closing.append(records.close_inputs)
-
-        if watch and alerts:
-            behavior.loop.observers.append(watch)
-            node.parts.append(RefusalPart(reloader, alerts))
-        operator = OperatorPart(
-            behavior,
-            narrator,
-            journal,
-            stopped=stopped,
-            realtime=lambda: node.pace.realtime,
-            reloaded=lambda: reloader.last_reload,
-            record=run_directory.records.write,
-            keep=records.keep_decisions,
-            marking=recording.marking,
-            needs=brain.needs,
-        )
-        if run_directory.home and story is None:
-            operator.model.keep(run_directory.home.folder)
-        tell = partial(narrator.line, "fleet")
-        agent = fleet_part(run_directory.root, bus, behavior, reloader, run_directory.home, tell, brain.needs)
-        node.parts += [
-            ReloadPart(reloader, brain.needs),
-            *([agent] if agent and story is None else []),
-            operator,
-            ForgettingPart(project, bus, behavior.forget, records.forget, needs=brain.needs),
-            brain,
-            RecordsPart(run_directory.records, behavior, brain.needs),
-        ]
+        _add_brain(plan, node, presence, robot, watch, recording)
     if VISITOR in names:
         node.parts.append(RemoteVisitorPart(project, bus, narrator, story, telling=BRAIN not in names))
     node.parts += [ModulePart(name, project, bus, narrator.line, folder) for name in names if name in MODULES]
@@ -164,3 +118,64 @@ def assemble(
         node.before.append(follower.tick)
         node.closing.append(follower.close)
     return node
+
+
+def _add_brain(
+    plan: Plan,
+    node: Node,
+    presence: Presence,
+    robot: HostedRobotPart | None,
+    watch: AlertPart | None,
+    recording: RecordingPart,
+) -> None:
+    """Add the behaviour, and the parts that serve it."""
+    project, bus, narrator, story, directory = plan.project, plan.bus, plan.narrator, plan.story, plan.directory
+    records, options = directory.records, plan.options
+    node.parts.append(ModuleTroublesPart(project, bus, narrator.line))
+    body = RemoteBody(staged(project, story), bus, plan.clock, presence)
+
+    def adopt(bundle: Project) -> None:
+        body.robot.use(bundle)
+        node.use(bundle)
+
+    behavior = body.behavior(project, bus, story, options.speed, adopt)
+    reloader = directory.reloader(behavior, narrator, mode=options.reload)
+
+    def stopped() -> StoppedBy | None:
+        return robot.server.hold.stopped if robot else stopped_there(presence)
+
+    def recover() -> Resumption | FreshStart:
+        found = directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
+        operator.recover(records.decisions(), resumed=isinstance(found, Resumption))
+        return watch.recovered(found) if watch else found
+
+    brain = RemoteBrainPart(behavior, body, narrator, presence, directory.home, options.language, stopped, recover)
+    journal = record_inputs(behavior, records, story=story, rehearsed=story is not None)
+    node.closing.append(records.close_inputs)
+    if watch and plan.alerts:
+        behavior.loop.observers.append(watch)
+        node.parts.append(RefusalPart(reloader, plan.alerts))
+    operator = OperatorPart(
+        behavior,
+        narrator,
+        journal,
+        stopped=stopped,
+        realtime=lambda: node.pace.realtime,
+        reloaded=lambda: reloader.last_reload,
+        record=records.write,
+        keep=records.keep_decisions,
+        marking=recording.marking,
+        needs=brain.needs,
+    )
+    if directory.home and story is None:
+        operator.model.keep(directory.home.folder)
+    tell = partial(narrator.line, "fleet")
+    agent = fleet_part(directory.root, bus, behavior, reloader, directory.home, tell, brain.needs)
+    node.parts += [
+        ReloadPart(reloader, brain.needs),
+        *([agent] if agent and story is None else []),
+        operator,
+        ForgettingPart(project, bus, behavior.forget, records.forget, needs=brain.needs),
+        brain,
+        RecordsPart(records, behavior, brain.needs),
+    ]
