@@ -18,7 +18,6 @@ from lumen.loading.project import draft
 from lumen.loading.yaml_reader import parse
 from lumen.rules import sayings, speech
 from lumen.rules.fixes.edits import Edit, FileText, edited
-from lumen.rules.lookups import value_at
 from lumen.rules.new_language import beside
 from lumen.upkeep.replacing import replace_file
 
@@ -63,8 +62,8 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
     document, _ = parse(DAY_FILE, content)
     if document is None or not isinstance(document.data, Mapping) or not document.data:
         raise UsageError(f"{DAY_FILE} has no sayings: add one by hand, or delete the file")
-    depth = next((n for n in range(len(keys)) if keys[n] not in _at(document.data, keys[:n])), len(keys))
-    if depth == len(keys) and saying.text in _at(document.data, keys):
+    depth = next((n for n in range(len(keys)) if keys[n] not in document.value(keys[:n])), len(keys))
+    if depth == len(keys) and saying.text in document.value(keys):
         return content
     after = edited(content, [_edit(document, FileText(DAY_FILE, content), keys, depth, saying.text)])
     read, found = parse(DAY_FILE, after)
@@ -80,10 +79,10 @@ def _edit(document: Document, text: FileText, keys: tuple[str, ...], depth: int,
     """The edit that writes the saying behind the last entry of the deepest of its keys that is there."""
     around = keys[:depth]
     report, whole = DocumentReport(document), document.spans[around].value
-    last: NodePath = (*around, _last(_at(document.data, around)))
+    last: NodePath = (*around, _last(document.value(around)))
     if _is_flow(text, whole):
         return beside(report, text, around, last, _flow(keys[depth:], said))
-    while isinstance(node := value_at(report, last), Mapping | list) and not _is_flow(text, document.spans[last].value):
+    while isinstance(node := document.find(last), Mapping | list) and not _is_flow(text, document.spans[last].value):
         last = (*last, _last(node))
     dash = "" if keys[depth:] else "- "
     return beside(report, text, around, last, _block(keys[depth:], said, whole.column - 1), dash)
@@ -117,12 +116,6 @@ def _save(root: Path, before: bytes, after: bytes) -> None:
         replace_file(file, after)
     except OSError as error:
         raise UsageError(f"{DAY_FILE} can't be written: {(error.strerror or str(error)).lower()}") from None
-
-
-def _at(data: Any, keys: tuple[str, ...]) -> Any:
-    for key in keys:
-        data = data[key]
-    return data
 
 
 def _last(node: Any) -> str | int:

@@ -39,6 +39,20 @@ class Document:
     text: str = field(default="", repr=False, compare=False)
     dropped: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
 
+    def value(self, path: NodePath) -> Any:
+        """Return the plain data at a path. Raises KeyError, IndexError or TypeError if the path leads to nothing."""
+        node = self.data
+        for step in path:
+            node = node[step]
+        return node
+
+    def find(self, path: NodePath) -> Any:
+        """Return the plain data at a path, or None if the path leads to nothing."""
+        try:
+            return self.value(path)
+        except (KeyError, IndexError, TypeError):
+            return None
+
     def place(self, path: NodePath, *, key: bool = False) -> Place:
         """The place of the node at `path`, or of its key; of the nearest node above it where there is none.
 

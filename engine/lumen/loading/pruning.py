@@ -15,7 +15,7 @@ def prune(report: DocumentReport, doomed: set[NodePath]) -> None:
     """
     document = report.document
     for path in doomed:
-        report.lost.update(_names(_at(document.data, path)))
+        report.lost.update(_names(document.value(path)))
         if path and isinstance(path[-1], str):
             report.lost.add(path[-1])
     copy = _Copy(document, doomed)
@@ -45,12 +45,6 @@ class _Copy:
             left = [i for i in range(len(data)) if (*old, i) not in self._doomed]
             return [self.of(data[i], (*old, i), (*new, n)) for n, i in enumerate(left)]
         return data
-
-
-def _at(data: Any, path: NodePath) -> Any:
-    for step in path:
-        data = data[step]
-    return data
 
 
 def _names(data: Any) -> Iterator[str]:

@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.json_paths import with_value
 from lumen.language.text_lines import lines_of
 from lumen.loading.document import MAX_NODES, Document, NodeSpan
 from lumen.loading.yaml_composer import TooLargeError, compose
@@ -103,8 +104,4 @@ def _with(before: Document, text: str, path: NodePath, made: Any, spans: Spans) 
             together[where] = span
         elif where == path:
             together.update(spans)
-    return Document(before.file, _replaced(before.data, path, made), together, text)
-
-
-def _replaced(data: Any, path: NodePath, made: Any) -> Any:
-    return {**data, path[0]: _replaced(data[path[0]], path[1:], made)} if path else made
+    return Document(before.file, with_value(before.data, path, made), together, text)

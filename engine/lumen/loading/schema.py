@@ -165,7 +165,9 @@ def _judge(
 
 def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, NodePath]:
     """The nodes in which a key is empty and keys after it are unknown, each with that key: those belong below it."""
-    empty = {c.about[:-1]: c.path for c in found if c.code == WRONG_TYPE and c.path and _at(report, c.path) is None}
+    empty = {
+        c.about[:-1]: c.path for c in found if c.code == WRONG_TYPE and c.path and report.document.value(c.path) is None
+    }
     found_below: dict[NodePath, NodePath] = {}
     for complaint in found:
         if complaint.code in _ASTRAY and complaint.about:
@@ -209,11 +211,4 @@ def _comment(report: DocumentReport, path: NodePath) -> str:
     place = report.document.place(path, key=True)
     line = lines_of(report.document.text)[place.line - 1] if path in report.document.spans else ""
     found = re.match(r": +(#[\w.-]+)\s*$", line[place.end_column - 1 :])
-    return found[1] if found and _at(report, path) is None else ""
-
-
-def _at(report: DocumentReport, path: NodePath) -> Any:
-    node = report.document.data
-    for step in path:
-        node = node[step]
-    return node
+    return found[1] if found and report.document.value(path) is None else ""

@@ -15,7 +15,7 @@ def whole_text(document: Document, path: NodePath, *, by_language: bool = False)
     The rest of a text is a key without a colon, behind an entry that is a text. If a colon is in the rest, it is a key
     with a text; that counts only in a map `by_language`, for keys that are no language.
     """
-    around = _node(document, path[:-1])
+    around = document.find(path[:-1])
     if not path or not isinstance(around, dict) or path[-1] not in around:
         return ""
     keys = list(around)
@@ -61,13 +61,3 @@ def _follows(document: Document, path: NodePath) -> str:
 def _in_braces(document: Document, path: NodePath) -> bool:
     place = document.place(path)
     return lines_of(document.text)[place.line - 1][place.column - 1 :].startswith("{")
-
-
-def _node(document: Document, path: NodePath) -> Any:
-    node = document.data
-    for step in path:
-        try:
-            node = node[step]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return node

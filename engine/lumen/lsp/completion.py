@@ -114,7 +114,7 @@ class _Completion:
             yield from self.keys(path)
 
     def keys(self, path: NodePath) -> Iterator[Item]:
-        there = self.value(path)
+        there = self.here.document.value(path)
         taken = there if isinstance(there, dict) else {}
         for key, schema in keys_at(self.kind, path).items():
             if key not in taken:
@@ -122,7 +122,7 @@ class _Completion:
 
     def rows(self, path: NodePath) -> Iterator[Item]:
         """Yield names for a key of `hears`, and the words that it may begin with."""
-        before, there = self.here.before, self.value(path[:-1])
+        before, there = self.here.before, self.here.document.value(path[:-1])
         part = _PART.search(before)
         wide = len(part[0]) if part else 0
         for kind in (NameKind.PHRASE, NameKind.ANSWERS):
@@ -245,7 +245,7 @@ class _Completion:
             yield from (Item(name, "route", len(route)) for name in self.routes())
 
     def body(self, path: NodePath) -> Iterator[tuple[str, str]]:
-        around = self.value(path[:-2])
+        around = self.here.document.value(path[:-2])
         route = around.get("route") if isinstance(around, dict) else None
         yield from ((name, "field") for name in self.fields(self.schema(str(route))))
 
@@ -299,12 +299,6 @@ class _Completion:
     def fields(self, schema: Any) -> list[str]:
         properties = schema.get("properties") if isinstance(schema, Mapping) else None
         return list(properties) if isinstance(properties, Mapping) else []
-
-    def value(self, path: NodePath) -> Any:
-        node: Any = self.here.document.data
-        for step in path:
-            node = node[step]
-        return node
 
 
 def _steps(path: NodePath) -> Iterator[str]:

@@ -95,9 +95,7 @@ def _marked(document: Document) -> tuple[NodePath, bool, str] | None:
     for path in document.spans:
         if path and isinstance(path[-1], str) and CURSOR_MARK in path[-1]:
             return path, True, path[-1]
-        value = document.data
-        for step in path:
-            value = value[step]
+        value = document.value(path)
         if isinstance(value, str) and CURSOR_MARK in value:
             return path, False, value
     return None

@@ -1,7 +1,7 @@
 """What a time means, shown beside it: an `after` among what its state does, a beat in seconds."""
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
 from lumen.loading.project_folders import kind_of
@@ -67,12 +67,6 @@ def _beats(analysis: Analysis, file: str) -> Iterator[Hint]:
         return
     for path in document.spans:
         if path and path[-1] == "beat":
-            beat = _value(document.data, path)
+            beat = document.value(path)
             if isinstance(beat, int | float) and not isinstance(beat, bool):
                 yield Hint(document.place(path), f"{60 * beat / tempo:.2f} s", f"at {tempo:g} beats per minute")
-
-
-def _value(data: Any, path: tuple[str | int, ...]) -> Any:
-    for step in path:
-        data = data[step]
-    return data

@@ -169,7 +169,7 @@ class _Reader:
                 yield from self.keyed(kind, path)
             if span.key and path[-2:-1] == ("after",):
                 yield from self.parts(path, str(path[-1]), in_template(str(path[-1])), key=True)
-            value = _value(self.document.data, path)
+            value = self.document.value(path)
             if isinstance(value, str) and value and (kind := value_kind(self.kind, path)):
                 yield from self.valued(kind, path, value)
             elif isinstance(value, str) and path[-1:] == ("id",) and path[-3:-2] == ("states",):
@@ -187,7 +187,7 @@ class _Reader:
 
     def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
         """The name that a whole key or value is."""
-        whole = str(path[-1]) if key else str(_value(self.document.data, path))
+        whole = str(path[-1]) if key else str(self.document.value(path))
         text = context_key(whole) if kind is NameKind.CONTEXT else whole
         place = self.lines.part(self.document.place(path, key=key), whole, 0, len(text))
         if place is None or kind is NameKind.FIELD:
@@ -320,9 +320,3 @@ def _states(data: Any) -> dict[str, Any]:
     if kind in ("atomic", "compound", "parallel", "final", "history"):
         state["type"] = kind
     return state
-
-
-def _value(data: Any, path: NodePath) -> Any:
-    for step in path:
-        data = data[step]
-    return data

@@ -55,14 +55,8 @@ class DocumentText:
     def scalar(self, path: NodePath, *, key: bool = False) -> Place | None:
         """The place of a key or of a text, without its quotes."""
         place = self.document.place(path, key=key)
-        value = path[-1] if key else self._value(path)
+        value = path[-1] if key else self.document.value(path)
         return self.part(place, str(value), 0, len(str(value)))
-
-    def _value(self, path: NodePath) -> object:
-        node = self.document.data
-        for step in path:
-            node = node[step]
-        return node
 
 
 def key_at(document: Document, line: int, column: int) -> NodePath:

@@ -50,9 +50,7 @@ def of_patterns(draft: ProjectDraft, phrases: Iterable[str]) -> Iterator[str]:
 
 def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
     """Sentences in which the phrase at a path is found."""
-    text: Any = analysis.documents[file].data
-    for step in path:
-        text = text[step]
+    text = analysis.documents[file].value(path)
     if not isinstance(text, str):
         return ""
     found = list(of_phrase(text, _lists(analysis.draft)))

@@ -36,9 +36,7 @@ def search(analysis: Analysis, query: str) -> Iterator[NameUse]:
 
 
 def _below(document: Document, kind: str, path: tuple[str | int, ...]) -> tuple[Symbol, ...]:
-    node = document.data
-    for step in path:
-        node = node[step]
+    node = document.value(path)
     found: list[Symbol] = []
     for key in node if isinstance(node, dict) else ():
         here = (*path, key)

@@ -8,7 +8,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import on_disk
 from lumen.loading.sounds import sound_duration
-from lumen.rules.lookups import first, value_at
+from lumen.rules.lookups import first
 from lumen.rules.statecharts import within
 from lumen.rules.walk import action_sites
 
@@ -41,7 +41,7 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
         if (
             state.resume
             and not report.broken((*state.where, "do"))
-            and "do" not in (value_at(report, state.where) or ())
+            and "do" not in (report.document.find(state.where) or ())
         ):
             message = "`resume` has no effect in a state without a `do`: there is nothing to resume"
             report(NO_EFFECT, (*state.where, "resume"), message, "delete it, or give the state a `do`", key=True)
@@ -63,7 +63,7 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
             elif transition.reenter and not any(within(target, state.path) for target in transition.targets):
                 message = f"`reenter` has no effect here: a target outside `{state.name}` leaves it anyway"
                 report(NO_EFFECT, path, message, "delete it", key=True)
-        written = value_at(report, state.where) or {}
+        written = report.document.find(state.where) or {}
         if leaves := _leaves_at_once(state):
             idle = [key for key in _AFTER_ENTRY if key in written]
             if idle and not report.broken(leaves.where):

@@ -19,7 +19,6 @@ from lumen.loading.remembered_findings import Check, RememberedFindings
 from lumen.rules.caught import caught_schema
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.lists import entry_schema, list_schema
-from lumen.rules.lookups import value_at
 from lumen.rules.recipients import sent_to
 from lumen.rules.traps import LOOKS_LIKE_TRUTH
 from lumen.rules.walk import ExpressionSite, expression_sites
@@ -95,7 +94,7 @@ class _Expressions:
         if spot.transition and spot.transition.hears and HEARD in spot.text.shown:
             found[HEARD] = caught_schema(self.machine, spot.transition.hears) if self.whole else {}
         for depth in range(len(where) if self.loops else 0):
-            node = value_at(self.report, where[:depth])
+            node = self.report.document.find(where[:depth])
             loop = node.get("for") if isinstance(node, Mapping) and where[depth] != "for" else None
             if isinstance(loop, Mapping) and "as" in loop:
                 name = re.fullmatch(r"lists\.(\w+)", str(loop.get("each")).strip())

@@ -6,9 +6,9 @@ warnings can be ignored: what is an error keeps the exhibition from starting, wh
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from lumen.language.diagnostics import WARNING, Code, Diagnostic, NodePath, Place, Severity, did_you_mean, has_errors
+from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place, Severity, did_you_mean, has_errors
 from lumen.language.text_lines import lines_of
 from lumen.loading.document import Document
 
@@ -75,23 +75,13 @@ def _in_text(document: Document, line: int, column: int) -> bool:
     """Whether a place lies inside a key, or inside a value that is a text; a map goes on behind the comments in it."""
     here = (line, column)
     return any(
-        _holds(span.key, here) or (_holds(span.value, here) and isinstance(_value(document, path), str))
+        _holds(span.key, here) or (_holds(span.value, here) and isinstance(document.find(path), str))
         for path, span in document.spans.items()
     )
 
 
 def _holds(place: Place | None, here: tuple[int, int]) -> bool:
     return place is not None and (place.line, place.column) < here < (place.end_line, place.end_column)
-
-
-def _value(document: Document, path: NodePath) -> Any:
-    node = document.data
-    for step in path:
-        try:
-            node = node[step]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return node
 
 
 def _spot(diagnostic: Diagnostic) -> tuple[str, int, str]:

@@ -9,7 +9,7 @@ from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.project_folders import LIFE_FOLDER
 from lumen.loading.units import ANGLES
-from lumen.rules.lookups import References, first, value_at
+from lumen.rules.lookups import References, first
 
 LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than is safe")
 LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint too fast")
@@ -35,7 +35,7 @@ def check(draft: ProjectDraft) -> None:
         return
     for name, style in draft.life.items():
         report = draft.report(LIFE_FOLDER, name)
-        unit = value_at(report, ("units", "angle")) or "rad"
+        unit = report.document.find(("units", "angle")) or "rad"
         for code, path, message, hint in _Judge(style, draft.body, unit).faults():
             by_role = (*path[:-2], "roles", draft.body.roles.path(str(path[-1])))
             report(code, first(report, path, by_role, path), message, hint)

@@ -1,7 +1,6 @@
 """Names of files that a rule looks up, and where in a document it points."""
 
 from collections.abc import Mapping
-from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, nearest
 from lumen.loading.bodies import UNKNOWN_MODEL
@@ -28,17 +27,6 @@ UNKNOWN_STORY = Code("unknown-story", "references", ERROR, "a name refers to a s
 def first(report: DocumentReport, *paths: NodePath) -> NodePath:
     """The first of these paths that stands in the document: a value may be written short or at length."""
     return next((path for path in paths if path in report.document.spans), paths[-1])
-
-
-def value_at(report: DocumentReport, path: NodePath) -> Any:
-    """The plain data at that path, None where there is nothing."""
-    node = report.document.data
-    for step in path:
-        try:
-            node = node[step]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return node
 
 
 _FOLDERS: Mapping[str, tuple[str, str, Code]] = {

@@ -16,7 +16,6 @@ from lumen.loading.memoization import memoize
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE
 from lumen.loading.project_folders import PASSAGES
 from lumen.loading.units import ANGLES
-from lumen.rules.lookups import value_at
 
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 
@@ -34,7 +33,7 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report(folder, motion.name)
         if report.diagnostics:
             continue
-        unit = value_at(report, ("units", "angle")) or "rad"
+        unit = report.document.find(("units", "angle")) or "rad"
         fast, far = memoize(("excess", folder, motion.name), (motion, body), partial(_excesses, motion, body))
         for excesses in _by_key(fast):
             _too_fast(report, excesses, unit, draft.body)

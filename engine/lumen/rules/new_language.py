@@ -8,7 +8,6 @@ from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.fixes.edits import Edit, FileText, edited
-from lumen.rules.lookups import value_at
 from lumen.rules.translation import TO_DO, language_entries, plain_texts
 
 
@@ -27,15 +26,15 @@ def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str
             last = (*path, list(by_language)[-1])
             edits.setdefault(text.file, []).append(beside(report, text, path, last, f"{language}: {words}"))
     main = draft.main
-    if list(value_at(main, ("languages",))) == [source]:
+    if list(main.document.find(("languages",))) == [source]:
         for report, path in plain_texts(draft):
-            text, said = FileText(report.document.file, files[report.document.file]), value_at(report, path)
+            text, said = FileText(report.document.file, files[report.document.file]), report.document.find(path)
             both = ", ".join(f"{name}: {json.dumps(words, ensure_ascii=False)}" for name, words in (
                 (source, said), (language, _to_do(said))
             ))  # fmt: skip
             edits.setdefault(text.file, []).append(Edit(report.document.place(path), f"{{{both}}}"))
     text = FileText(main.document.file, files[main.document.file])
-    spoken = value_at(main, ("languages",))
+    spoken = main.document.find(("languages",))
     last = ("languages", len(spoken) - 1)
     edits.setdefault(text.file, []).append(beside(main, text, ("languages",), last, language, dash="- "))
     return {file: edited(files[file], changes) for file, changes in edits.items()}
@@ -53,7 +52,7 @@ def beside(
     whole, end = spans[around].value, spans[last].value
     if text.line(whole.line)[whole.column - 1 : whole.column] in ("{", "["):
         return Edit(Place(text.file, end.end_line, end.end_column, end.end_line, end.end_column), f", {entry}")
-    line, nothing = end.end_line, ("", "#") if isinstance(value_at(report, last), list) else ("",)
+    line, nothing = end.end_line, ("", "#") if isinstance(report.document.find(last), list) else ("",)
     if not text.line(line)[: end.end_column - 1].strip():
         line -= 1  # the parser sees its end where the next thing begins
     while line > end.line and text.line(line).strip()[:1] in nothing:

@@ -13,7 +13,6 @@ from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
-from lumen.rules.lookups import value_at
 from lumen.rules.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
 
 BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase is not a valid pattern, so it is read as plain words")
@@ -125,7 +124,7 @@ def _torn(phrase: WrittenPhrase) -> NodePath | None:
     if not isinstance(place, int):
         return None
     near = range(max(place - _MAX_TORN, 0), place + _MAX_TORN + 1)
-    texts = [(i, text) for i in near if isinstance(text := value_at(phrase.report, (*around, i)), str)]
+    texts = [(i, text) for i in near if isinstance(text := phrase.report.document.find((*around, i)), str)]
     left_open = [(i, sum(map(text.count, "([")) - sum(map(text.count, ")]"))) for i, text in texts]
     begun = [i for i, more in left_open if more > 0 and i <= place]
     closed = [i for i, more in left_open if more < 0 and i >= place]

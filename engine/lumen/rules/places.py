@@ -15,7 +15,6 @@ from lumen.language.projects import Stage
 from lumen.language.stories import Expect
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.lookups import value_at
 from lumen.rules.units import HALF_TURN_PARTS, WRONG_UNIT
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
@@ -141,7 +140,7 @@ def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> Non
 
 def _heading(main: DocumentReport, name: str) -> None:
     """A heading that is hardly meant in the file's unit."""
-    heading, unit = value_at(main, ("places", name, "heading")), value_at(main, ("units", "angle")) or "deg"
+    heading, unit = main.document.find(("places", name, "heading")), main.document.find(("units", "angle")) or "deg"
     if not isinstance(heading, int | float):
         return
     path = ("places", name, "heading")

@@ -20,7 +20,6 @@ from lumen.loading.settings import said_at
 from lumen.loading.torn_texts import quoting, whole_text
 from lumen.loading.words import ANYHOW
 from lumen.rules.lists import is_torn, listed_texts
-from lumen.rules.lookups import value_at
 from lumen.rules.naming import heard_rows, looked_up
 from lumen.rules.torn_texts import TORN_TEXT
 from lumen.rules.translation import begun, is_empty, language_entries, switched_to
@@ -275,7 +274,7 @@ def _written(report: DocumentReport, path: NodePath) -> set[str]:
 
 
 def _mapping_at(report: DocumentReport, path: NodePath) -> Mapping[str, Any]:
-    node = value_at(report, path)
+    node = report.document.find(path)
     return node if isinstance(node, dict) else {}
 
 

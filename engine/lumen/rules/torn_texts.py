@@ -8,7 +8,6 @@ from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.text_lines import lines_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.lookups import value_at
 
 CUT_TEXT = Code("cut-text", "speech", WARNING, "a text is cut off by ` #`, which begins a comment")
 TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is split by a comma or a colon")
@@ -40,7 +39,7 @@ def _cut(report: DocumentReport) -> None:
     for path, span in list(report.document.spans.items()):
         place = span.value
         line = lines[place.end_line - 1] if place.end_line <= len(lines) else ""
-        value = value_at(report, path)
+        value = report.document.find(path)
         if not isinstance(value, str) or " " not in value or lines[place.line - 1][place.column - 1] in "\"'|>":
             continue
         if found := _CUT.match(line, place.end_column - 1):
@@ -54,7 +53,7 @@ def _torn(report: DocumentReport) -> None:
     lines = lines_of(report.document.text)
     lists: dict[NodePath, list[str]] = {}
     for path in report.document.spans:
-        if path and isinstance(path[-1], int) and isinstance(value := value_at(report, path), str):
+        if path and isinstance(path[-1], int) and isinstance(value := report.document.find(path), str):
             lists.setdefault(path[:-1], []).append(value)
     for path, texts in lists.items():
         if "phrases" in path:  # a full stop there says that a phrase must be a whole clause
@@ -79,7 +78,7 @@ def _mapped(report: DocumentReport) -> None:
     for path in report.document.spans:
         if "answers" not in path or "value" not in path[:-1] or not isinstance(path[-1], int):
             continue
-        value, place = value_at(report, path), report.document.place(path)
+        value, place = report.document.find(path), report.document.place(path)
         if isinstance(value, dict) and len(value) == 1 and lines[place.line - 1][place.column - 1] != "{":
             ((key, rest),) = value.items()
             if isinstance(rest, str) and " " in f"{key}{rest}":

@@ -12,7 +12,6 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.words import ANYHOW
 from lumen.rules.lists import listed_texts
-from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
 
@@ -41,7 +40,7 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
     found = {(report.document.file, path): report for report, path in _places(draft)}
     entries = []
     for (_, path), report in found.items():
-        value = value_at(report, path)
+        value = report.document.find(path)
         if isinstance(value, Mapping) and value and value.keys().isdisjoint(("", "any")):
             texts = {language: text for language, text in value.items() if language not in ("gestures", ANYHOW)}
             entries.append(LanguageEntry(report, path, texts))
@@ -54,7 +53,7 @@ def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]
         report = draft.report("behaviors", name)
         for site in action_sites(machine):
             path = (*site.step.where, "say")
-            said = value_at(report, path) if isinstance(site.step.action, SayText) else None
+            said = report.document.find(path) if isinstance(site.step.action, SayText) else None
             place = report.document.place(path)
             if isinstance(said, str) and place.line == place.end_line and _HOLE.sub("", said).strip(" .,!?"):
                 yield report, path

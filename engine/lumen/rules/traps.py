@@ -12,7 +12,6 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.text_lines import LineIndex, lines_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
 CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "curly quotes are used where YAML needs straight ones")
@@ -72,7 +71,7 @@ def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath,
         if place.line in wanted and path and place.line == place.end_line:
             source = lines[place.line - 1][place.column - 1 : place.end_column - 1]
             if source and source[0] not in "'\"[{|>&*!":
-                yield path, source, value_at(report, path)
+                yield path, source, report.document.find(path)
 
 
 def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -> None:

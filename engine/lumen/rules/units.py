@@ -12,7 +12,6 @@ from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.units import ANGLES, LENGTHS
-from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
 WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is not in the unit of the file")
@@ -39,7 +38,7 @@ def check(draft: ProjectDraft) -> None:
 
 def _radians(report: DocumentReport, body: Body | None) -> None:
     """In a file that counts in degrees: 1.57 is hardly one and a half of them."""
-    if value_at(report, ("units", "angle")) != "deg":
+    if report.document.find(("units", "angle")) != "deg":
         return
     angles = [(path, angle) for path, angle in _angles(report.document.data, (), body) if angle]
     small = [(path, angle) for path, angle in angles if round(abs(angle), 4) in HALF_TURN_PARTS]
@@ -76,7 +75,7 @@ def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[Node
 
 
 def _actions(machine: MachineDefinition, report: DocumentReport, body: Body | None, stage: Stage | None) -> None:
-    units = value_at(report, ("units",)) or {}
+    units = report.document.find(("units",)) or {}
     angle, length = units.get("angle", "rad"), units.get("length", "m")
     for site in action_sites(machine):
         where = site.step.where

@@ -12,7 +12,6 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
 from lumen.loading.project_folders import WORDS_FOLDER
 from lumen.loading.words import ANYHOW
-from lumen.rules.lookups import value_at
 
 
 class WordTables(NamedTuple):
@@ -48,7 +47,7 @@ def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
 
 def written_phrases(report: DocumentReport, path: NodePath) -> Iterator[WrittenPhrase]:
     """The phrases at a path: a text, a list of texts, or either for each language."""
-    value = value_at(report, path)
+    value = report.document.find(path)
     table = value if isinstance(value, Mapping) else {"": value}
     for language, rows in table.items():
         if language == ANYHOW:

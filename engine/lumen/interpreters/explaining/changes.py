@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from lumen.interpreters.explaining.words import prefix_of
 from lumen.interpreters.statechart.values import Invoked, Snapshot
 from lumen.language.events import Event
+from lumen.language.json_paths import with_value
 
 ProposedChange = Mapping[str, Any]
 """By how expressions call it, its other value: `event.data.result`, `context.tries`; in what runs as `quiz`,
@@ -33,21 +34,14 @@ class StepSituation(NamedTuple):
             if way[0] == "context":
                 snapshot = _remembering(snapshot, self.owner, way[1:], value)
             elif way[:2] == ["event", "data"] and event is not None:
-                event = event._replace(data=_with(event.data, way[2:], value))
+                event = event._replace(data=with_value(event.data, way[2:], value))
         return self._replace(snapshot=snapshot, event=event)
 
 
 def _remembering(snapshot: Snapshot, owner: str, way: list[str], value: Any) -> Snapshot:
     if not owner:
-        return snapshot._replace(context=_with(snapshot.context, way, value))
+        return snapshot._replace(context=with_value(snapshot.context, way, value))
     rest, _, id = owner.rpartition("@")
     child = snapshot.invoked[id]
     inner = Invoked(child.state, _remembering(child.snapshot, rest, way, value), child.commands)
     return snapshot._replace(invoked={**snapshot.invoked, id: inner})
-
-
-def _with(data: Any, way: list[str], value: Any) -> Any:
-    if not way:
-        return value
-    fields = data if isinstance(data, Mapping) else {}
-    return {**fields, way[0]: _with(fields.get(way[0]), way[1:], value)}

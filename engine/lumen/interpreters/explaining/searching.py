@@ -18,6 +18,7 @@ from lumen.interpreters.statechart.type_checks import fits
 from lumen.interpreters.talk.hearing import said_in
 from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.actions import Expression
+from lumen.language.json_paths import with_value
 from lumen.language.machines import MachineDefinition, Transition
 
 MAX_TRIED = 40
@@ -107,15 +108,8 @@ def edited_scope(scope: Scope, edits: Mapping[tuple[str, ...], Any]) -> Scope:
     """What an expression sees with other values at these paths."""
     seen: dict[str, Any] = {"context": scope.context, "event": scope.event}
     for path, value in edits.items():
-        seen = _with(seen, path, value)
+        seen = with_value(seen, path, value)
     return scope._replace(context=seen["context"], event=seen["event"])
-
-
-def _with(data: Any, path: tuple[str, ...], value: Any) -> Any:
-    if not path:
-        return value
-    fields = data if isinstance(data, Mapping) else {}
-    return {**fields, path[0]: _with(fields.get(path[0]), path[1:], value)}
 
 
 def _name(path: tuple[str, ...], owner: str) -> str:

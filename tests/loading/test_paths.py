@@ -1,0 +1,29 @@
+"""Values of a document by path, and data with another value at a path."""
+
+import pytest
+
+from lumen.language.json_paths import with_value
+from lumen.loading.document import Document
+
+DATA = {"states": {"idle": {"do": [{"say": "Hello"}]}}}
+
+
+def test_a_value_is_found_through_maps_and_lists() -> None:
+    assert Document("a.yaml", DATA).value(("states", "idle", "do", 0, "say")) == "Hello"
+    assert Document("a.yaml", DATA).value(()) is DATA
+
+
+@pytest.mark.parametrize("path", [("gone",), ("states", "idle", "do", 1), ("states", "idle", "do", 0, "say", "deeper")])
+def test_a_missing_value_raises_or_is_none(path: tuple[str | int, ...]) -> None:
+    document = Document("a.yaml", DATA)
+    assert document.find(path) is None
+    with pytest.raises((KeyError, IndexError, TypeError)):
+        document.value(path)
+
+
+def test_another_value_at_a_path_leaves_the_data_as_it_was() -> None:
+    before = {"visitor": {"name": "Budi"}, "tries": 1}
+    assert with_value(before, ("visitor", "name"), "Sri") == {"visitor": {"name": "Sri"}, "tries": 1}
+    assert with_value(before, ("tries", "left"), 2) == {"visitor": {"name": "Budi"}, "tries": {"left": 2}}
+    assert with_value(before, (), None) is None
+    assert before == {"visitor": {"name": "Budi"}, "tries": 1}
