@@ -5,6 +5,7 @@ from itertools import count
 from time import time as now
 
 from lumen.language.causes import MessageOrigin
+from lumen.language.numbers import is_number
 
 MAX_IDENTITY_BYTES = 255
 """How long an id or a sender may be [bytes]: AMQP's bound on a short string."""
@@ -37,4 +38,4 @@ def _text(said: object) -> str:
 
 
 def _moment(said: object) -> float:
-    return float(said) if type(said) in (int, float) and 0 < said < MAX_TIME else 0.0  # type: ignore[operator, arg-type]
+    return float(said) if is_number(said) and 0 < said < MAX_TIME else 0.0

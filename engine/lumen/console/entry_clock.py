@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
 from lumen.language.events import CLOCK_SET
+from lumen.language.numbers import is_number
 
 
 class ToldPage(NamedTuple):
@@ -49,4 +50,4 @@ def _epoch_in(entry: Mapping[str, Any]) -> float | None:
 
 
 def _number(value: object) -> float:
-    return float(value) if type(value) in (int, float) else 0.0  # type: ignore[arg-type]
+    return float(value) if is_number(value) else 0.0

@@ -9,6 +9,7 @@ import orjson
 
 from lumen.console.entry_ring import EntryRing
 from lumen.console.spoken_names import SpokenNames
+from lumen.language.numbers import is_number
 from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
 
 SILENT_AFTER = 2.5
@@ -84,7 +85,7 @@ class KnownRobot:
         match sense:
             case "battery" | "sonar":
                 self._sensed[sense] = {key: value for key, value in body.items() if key != "time"}
-            case "face" if type(body.get("x")) in (int, float) and type(body.get("y")) in (int, float):
+            case "face" if is_number(body.get("x")) and is_number(body.get("y")):
                 self._seen, self._saw = {"x": body["x"], "y": body["y"]}, time.monotonic()
             case "recognised" if isinstance(name := body.get("name"), str):
                 self._known, self._knew = name[:MAX_NAME], time.monotonic()

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import Any, NamedTuple
 
+from lumen.language.numbers import is_number
+
 
 class FieldKind(StrEnum):
     """What a field holds, where that is one certain kind of value; `MIXED` for everything else."""
@@ -41,4 +43,4 @@ def _field(name: str, row: Any) -> SchemaField:
 
 
 def _number(value: Any) -> float | None:
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
+    return float(value) if is_number(value) else None

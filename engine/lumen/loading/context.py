@@ -1,15 +1,11 @@
 """What a behaviour remembers: first values and JSON Schemas of context keys and events, checked to be sound."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
-
 from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
-from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.loading.complaints import WRONG_VALUE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.messages import examine
-from lumen.loading.numbers import finite
+from lumen.loading.numbers import finite, numbers_in
 
 
 def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tuple[str, str]]:
@@ -22,16 +18,8 @@ def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tup
     ]
     checks = type_checks(machine)
     for key, value in machine.context.items():
-        odd = [path for path, number in _numbers(value, ("context", key)) if not finite(number, report, path)]
+        odd = [path for path, number in numbers_in(value, ("context", key)) if not finite(number, report, path)]
         if not odd and key in machine.types and ("types", key) not in unsound and not fits(value, checks[key]):
             hint = "write an initial value that fits, or widen its schema under `types:`"
             report(WRONG_VALUE, ("context", key), f"`{key}` {refusal(value, checks[key])}", hint=hint)
     return unsound
-
-
-def _numbers(value: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        yield path, value
-    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
-    for key, item in items:
-        yield from _numbers(item, (*path, key))

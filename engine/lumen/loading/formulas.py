@@ -24,6 +24,7 @@ from lumen.interpreters.expressions.tree import (
 )
 from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
 from lumen.language.diagnostics import Code, NodePath, did_you_mean
+from lumen.language.numbers import is_number
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.word_places import report_word
 
@@ -58,7 +59,7 @@ def _sound(node: ExpressionNode, text: str, names: Sequence[str], report: Docume
             message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, but needs {wanted}"
             hint = f"write {name}({', '.join('ab'[:wanted])})"
             return refuse(WRONG_ARGUMENT_COUNT, node.named, len(name), message, hint)
-        case Literal(value) if isinstance(value, bool) or not isinstance(value, int | float):
+        case Literal(value) if not is_number(value):
             length = node.end - node.offset
             return refuse(TYPE_MISMATCH, node.offset, length, "a formula can only contain numbers", "write a number")
         case Binary("in"):

@@ -5,6 +5,7 @@ from math import isfinite, isinf, isnan
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.numbers import is_number
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.pruning import prune
 
@@ -36,7 +37,7 @@ def without_extremes(data: Any, report: DocumentReport, endless: Callable[[NodeP
 
     `endless` tells where a number may be infinite.
     """
-    doomed = {_key(path) for path, number in _numbers(data, ()) if not _usable(number, report, path, endless)}
+    doomed = {_key(path) for path, number in numbers_in(data, ()) if not _usable(number, report, path, endless)}
     if not doomed:
         return data
     prune(report, doomed)
@@ -60,12 +61,13 @@ def _usable(number: float, report: DocumentReport, path: NodePath, endless: Call
     return False
 
 
-def _numbers(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
-    if isinstance(data, int | float) and not isinstance(data, bool):
+def numbers_in(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
+    """Yield each number in nested maps and lists with its path, which begins with `path`."""
+    if is_number(data):
         yield path, data
     children = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else ()
     for key, child in children:
-        yield from _numbers(child, (*path, key))
+        yield from numbers_in(child, (*path, key))
 
 
 def _key(path: NodePath) -> NodePath:

@@ -9,6 +9,7 @@ from lumen.language.counts import counted
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint, meant_duration
 from lumen.language.lookalikes import other_sign, typed
+from lumen.language.numbers import is_number
 from lumen.loading.bracketed_texts import slot_signs
 from lumen.loading.units import seconds
 from lumen.loading.yaml_scalars import resolve
@@ -185,9 +186,9 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
     if "boolean" in wanted and (truth := _truth(value)):
         return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
     if {"number", "integer"} & set(wanted) and isinstance(value, str):
-        if type(resolve(value)) in (int, float):
+        if is_number(resolve(value)):
             return f"leave out the quotes: {value}"
-        if value != typed(value) and type(resolve(typed(value).replace(",", "."))) in (int, float):
+        if value != typed(value) and is_number(resolve(typed(value).replace(",", "."))):
             return f"write `{typed(value).replace(',', '.')}`: {other_sign(value)}"
         if number := _NUMBER.fullmatch(value):
             return f"write {number[1].replace(',', '.').replace('_', '')}" + _unit(number[2])
@@ -198,7 +199,7 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
         if any("to" in example for example in schema.get("examples", ()) if isinstance(example, dict)):
             return f"write `{{to: {_short(value)}}}`"
     listed = isinstance(value, str) and re.fullmatch(r"[\w./-]+( *, *[\w./-]+)*", value)
-    if wanted == ["array"] and (listed or type(value) in (int, float)):
+    if wanted == ["array"] and (listed or is_number(value)):
         parts = re.split(r" *(?:,|(?<=\d)-) *", value) if isinstance(value, str) else [str(value)]
         return f"write it in brackets: `[{', '.join(parts)}]`"
     if "string" in wanted and isinstance(value, bool | int | float):

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
+from lumen.language.numbers import is_number
 from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
 from lumen.rules.timing import duration
@@ -63,10 +64,10 @@ def _beats(analysis: Analysis, file: str) -> Iterator[Hint]:
     """When a beat is, in seconds from the beginning of its list of keyframes."""
     document = analysis.documents.get(file)
     tempo = document.data.get("tempo") if document and isinstance(document.data, dict) else None
-    if document is None or not isinstance(tempo, int | float) or isinstance(tempo, bool) or tempo <= 0:
+    if document is None or not is_number(tempo) or tempo <= 0:
         return
     for path in document.spans:
         if path and path[-1] == "beat":
             beat = document.value(path)
-            if isinstance(beat, int | float) and not isinstance(beat, bool):
+            if is_number(beat):
                 yield Hint(document.place(path), f"{60 * beat / tempo:.2f} s", f"at {tempo:g} beats per minute")

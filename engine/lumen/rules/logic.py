@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, Logic, Unary
+from lumen.language.numbers import is_number
 
 MAX_ALTERNATIVES = 24
 """Alternatives of a condition that are looked at; of one with more, nothing is told."""
@@ -138,20 +139,22 @@ def _agree(claims: list[Claim]) -> bool:
 
 def _bound(claims: list[Claim], strict: str, loose: str, start: float) -> tuple[float, bool]:
     """The tightest bound on one side, and whether it can be reached."""
-    bounds = [(c.value, c.sign == loose) for c in claims if c.sign in (strict, loose) and _number(c.value)]
+    bounds = [(c.value, c.sign == loose) for c in claims if c.sign in (strict, loose) and is_number(c.value)]
     values = [start, *(value for value, _ in bounds if isinstance(value, int | float))]
     tightest = max(values) if start < 0 else min(values)
     return tightest, all(closed for value, closed in bounds if value == tightest)
 
 
 def _excludes(claim: Claim, value: float) -> bool:
-    return claim.sign == "!=" and _number(claim.value) and claim.value == value
+    return claim.sign == "!=" and is_number(claim.value) and claim.value == value
 
 
 def _holds(value: object, claim: Claim) -> bool:
     """Whether a claim holds of that value; what can't be compared is left open."""
     if claim.sign in ("==", "!="):
-        same = _number(value) == _number(claim.value) and value == claim.value and _kind(value) == _kind(claim.value)
+        same = (
+            is_number(value) == is_number(claim.value) and value == claim.value and _kind(value) == _kind(claim.value)
+        )
         return same == (claim.sign == "==")
     if not (isinstance(value, int | float) and isinstance(claim.value, int | float)):
         return True
@@ -165,9 +168,5 @@ def _holds(value: object, claim: Claim) -> bool:
     return value >= claim.value
 
 
-def _number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def _kind(value: object) -> type:
-    return float if _number(value) else type(value)
+    return float if is_number(value) else type(value)

@@ -6,6 +6,7 @@ from typing import Any, Protocol
 from lumen.interpreters.bounds import within_limits
 from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
+from lumen.language.numbers import is_number
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Robot
 from lumen.runtime.route_inbox import RouteInbox
@@ -95,14 +96,10 @@ def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
     if not isinstance(names, list) or not isinstance(angles, list):
         return {}
     found = {name: angle for name, angle in zip(names, angles, strict=False) if name in joints}
-    return found if len(found) == len(joints) and all(map(_is_number, found.values())) else {}
+    return found if len(found) == len(joints) and all(map(is_number, found.values())) else {}
 
 
 def _time(body: Mapping[str, Any], otherwise: float) -> float:
     """The body's `time` [s] where it has one."""
     time = body.get("time")
-    return time if isinstance(time, int | float) and _is_number(time) else otherwise
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return time if is_number(time) else otherwise

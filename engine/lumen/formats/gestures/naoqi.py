@@ -29,6 +29,7 @@ from lumen.formats.gestures.statements import (
 )
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Place, did_you_mean
+from lumen.language.numbers import is_number
 
 BEZIER, LINEAR = 3, 1
 MAX_STEPS = 20_000
@@ -489,4 +490,4 @@ def _names(node: ast.AST) -> set[str]:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < MAX_NUMBER
+    return is_number(value) and abs(value) < MAX_NUMBER

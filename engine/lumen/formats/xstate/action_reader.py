@@ -14,6 +14,7 @@ from lumen.formats.xstate.names import XStateNames
 from lumen.interpreters.expressions.kinds import kind_of
 from lumen.language.actions import PARENT
 from lumen.language.diagnostics import NodePath, has_errors
+from lumen.language.numbers import is_number
 from lumen.loading.behaviors import build_machine
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.plain import plain_document
@@ -154,7 +155,7 @@ class XStateActionReader:
         if more := {key: quoted(value) for key, value in fields.items() if key != "type"}:
             body["data"] = more
         if delay is not None:
-            if isinstance(delay, bool) or not isinstance(delay, int | float) or not 0 <= delay < MAX_DELAY:
+            if not is_number(delay) or not 0 <= delay < MAX_DELAY:
                 raise _AbsentError(f"the delay `{delay}` is not a number of milliseconds")
             body["delay"] = duration(delay)
         if id is not None:

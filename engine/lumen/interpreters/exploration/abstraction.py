@@ -12,6 +12,7 @@ from lumen.interpreters.expressions import names
 from lumen.interpreters.expressions.tree import FunctionCall, Literal, path_of, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import MachineDefinition
+from lumen.language.numbers import is_number
 
 MAX_ITEMS_COMPARED = 4
 """Of a list or map in the context more is not looked at."""
@@ -39,7 +40,7 @@ class Abstraction:
         uses = [*self._asked, *(use for use in every if not self._goes_on(use))]
         literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
         self._texts = {value for value in literals if isinstance(value, str)}
-        self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
+        self._numbers = sorted({v for v in literals if is_number(v)} | {0})
         self._sized = any(
             isinstance(n, FunctionCall) and n.function == "size" for use in uses for n, _ in walk(use.tree)
         )

@@ -19,6 +19,7 @@ from lumen.interpreters.expressions.tree import (
     walk,
 )
 from lumen.language.machines import MachineDefinition
+from lumen.language.numbers import is_number
 
 MAX_FIELD_COMBINATIONS = 300
 """Combinations of fields that are tried."""
@@ -161,7 +162,7 @@ def _compared(other: ExpressionNode, context: Mapping[str, Any], *, sized: bool)
         if isinstance(item, Literal) or isinstance(value, str | int | float):
             if sized and isinstance(value, int):
                 found += [" ".join([SAMPLE_TEXT] * n) for n in (value, value + 1) if 0 <= n < 50]
-            elif isinstance(value, int | float) and not isinstance(value, bool):
+            elif is_number(value):
                 found += [value, value - 1, value + 1]
             else:
                 found.append(value)

@@ -6,6 +6,7 @@ from typing import Any
 from lumen.interpreters.expressions.kinds import LIST, NUMBER, FaultError, WrongKindError
 from lumen.interpreters.expressions.scope import Scope
 from lumen.language.language_tags import is_language_tag
+from lumen.language.numbers import is_number
 
 
 def take(values: Any, count: Any) -> list[Any]:
@@ -60,6 +61,6 @@ def _list(value: Any) -> Any:
 
 
 def _count(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if not is_number(value):
         raise WrongKindError(1, value, NUMBER)
     return max(0, int(min(value, 2**31)))

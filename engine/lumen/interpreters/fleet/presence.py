@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite
 from typing import Any
+
+from lumen.language.numbers import is_finite_number
 
 MAX_TEXT = 300
 MAX_MEASURES = 50
@@ -65,7 +66,7 @@ def presence_from(robot: str, body: Any) -> RobotPresence | None:
     sound = (
         all(isinstance(text, str) and len(text) <= MAX_TEXT for text in texts.values())
         and all(isinstance(count, int) and not isinstance(count, bool) and count >= 0 for count in counts.values())
-        and all(_number(time) for time in times.values())
+        and all(is_finite_number(time) for time in times.values())
         and all(_measures(each) for each in measures.values())
         and texts["state"] in STATES
         and _tried(tried := body.get("tried", {}))
@@ -88,8 +89,4 @@ def measures_from(data: Any) -> dict[str, float] | None:
 def _measures(data: Any) -> bool:
     if not isinstance(data, Mapping) or len(data) > MAX_MEASURES + 1:
         return False
-    return all(isinstance(name, str) and _number(count) and count >= 0 for name, count in data.items())
-
-
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+    return all(isinstance(name, str) and is_finite_number(count) and count >= 0 for name, count in data.items())

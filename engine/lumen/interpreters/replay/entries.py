@@ -6,6 +6,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 from lumen.errors import JournalError
 from lumen.language.causes import Cause, CauseKind
 from lumen.language.events import Event
+from lumen.language.numbers import is_number
 
 How = Literal["heard", "timer", "goto"]
 """An event from outside, a timer that ran out, and the wish of an operator to enter a state."""
@@ -133,6 +134,6 @@ def _texts(said: Any) -> tuple[str, ...]:
 
 
 def _time(said: Any) -> float:
-    if type(said) not in (int, float) or not abs(said) < LATEST:
+    if not is_number(said) or not abs(said) < LATEST:
         raise TypeError
     return float(said)

@@ -1,10 +1,10 @@
 """JSON data from outside, piece by piece, each with its place: an error names the piece that is not as it should be."""
 
 from collections.abc import Mapping
-from math import isfinite
 from typing import Any
 
 from lumen.errors import SnapshotError, UsageError
+from lumen.language.numbers import is_finite_number
 
 
 class JsonCursor:
@@ -48,7 +48,7 @@ class JsonCursor:
         return [row.text() for row in self.rows()]
 
     def number(self) -> float:
-        if isinstance(self.data, bool) or not isinstance(self.data, int | float) or not is_finite(self.data):
+        if not is_finite_number(self.data):
             raise self.refused("should be a number")
         return float(self.data)
 
@@ -76,19 +76,11 @@ def plain(value: Any, place: str) -> Any:
         raise UsageError(f"`{place}` is nested too deeply") from None
 
 
-def is_finite(number: float) -> bool:
-    """Whether it is a number that fits a float."""
-    try:
-        return isfinite(number)
-    except OverflowError:
-        return False
-
-
 def _plain(value: Any, place: str) -> Any:
     match value:
         case None | bool() | str():
             return value
-        case int() | float() if is_finite(value):
+        case int() | float() if is_finite_number(value):
             return value
         case Mapping():
             for key in value:

@@ -7,12 +7,13 @@ from lumen.errors import UsageError
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition
+from lumen.language.numbers import is_number
 
 _TESTS: Mapping[str, Callable[[Any], bool]] = {
     "null": lambda v: v is None,
     "boolean": lambda v: isinstance(v, bool),
     "integer": lambda v: not isinstance(v, bool) and (isinstance(v, int) or (isinstance(v, float) and v.is_integer())),
-    "number": lambda v: isinstance(v, int | float) and not isinstance(v, bool),
+    "number": is_number,
     "string": lambda v: isinstance(v, str),
     "array": lambda v: isinstance(v, list | tuple),
     "object": lambda v: isinstance(v, Mapping),

@@ -1,7 +1,6 @@
 """Bodies as messages of OSC: fields as arguments, each of the type that its schema declares (OSC 1.0)."""
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
 from typing import Any
 
 from pythonosc.osc_message_builder import BuildError, OscMessageBuilder
@@ -9,6 +8,7 @@ from pythonosc.osc_packet import OscPacket, ParseError
 
 from lumen.errors import ModuleError
 from lumen.interpreters.message_fields import FieldKind, SchemaField
+from lumen.language.numbers import is_finite_number, is_number
 
 
 def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
@@ -42,7 +42,7 @@ def body_of_arguments(arguments: Sequence[Any], fields: Sequence[SchemaField]) -
 
 
 def _argument(field: SchemaField, value: Any) -> tuple[str, Any]:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
+    number = is_number(value)
     match field.kind:
         case FieldKind.NUMBER if number:
             return OscMessageBuilder.ARG_TYPE_FLOAT, float(value)
@@ -60,7 +60,7 @@ def _argument(field: SchemaField, value: Any) -> tuple[str, Any]:
 
 def _value(field: SchemaField, value: Any) -> Any:
     """An argument as the field has it: desks send whole numbers as floats, and 1 and 0 for yes and no."""
-    number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+    number = is_finite_number(value)
     match field.kind:
         case FieldKind.NUMBER if number:
             return value

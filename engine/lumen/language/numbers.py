@@ -1,0 +1,17 @@
+"""Numbers in plain data: what JSON, YAML and the expressions call a number. `True` is none, though Python counts it."""
+
+from math import isfinite
+from typing import TypeGuard
+
+
+def is_number(value: object) -> TypeGuard[int | float]:
+    """Return True for an int or a float, also a NaN or an infinity; False for a bool and anything else."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def is_finite_number(value: object) -> TypeGuard[int | float]:
+    """Return True for a number with a finite value that a float can hold."""
+    try:
+        return is_number(value) and isfinite(value)
+    except OverflowError:  # an integer beyond all floats
+        return False
