@@ -2,7 +2,7 @@
 
 import pytest
 
-from lumen.language.json_paths import with_value
+from lumen.language.json_paths import schema_at, value_at, with_value
 from lumen.loading.document import Document
 
 DATA = {"states": {"idle": {"do": [{"say": "Hello"}]}}}
@@ -19,6 +19,19 @@ def test_a_missing_value_raises_or_is_none(path: tuple[str | int, ...]) -> None:
     assert document.find(path) is None
     with pytest.raises((KeyError, IndexError, TypeError)):
         document.value(path)
+
+
+def test_what_no_map_leads_to_is_none() -> None:
+    body = {"face": {"x": 0.5}}
+    assert value_at(body, ("face", "x")) == 0.5
+    assert [value_at(body, path) for path in (("face", "y"), ("face", "x", "deeper"), ("gone", "x"))] == [None] * 3
+
+
+def test_a_schema_is_followed_through_its_properties() -> None:
+    schema = {"properties": {"face": {"properties": {"x": {"type": "number"}}}}}
+    assert schema_at(schema, ("face", "x")) == {"type": "number"}
+    assert schema_at(schema, ("face", "y")) is None
+    assert schema_at(True, ("face",)) is None
 
 
 def test_another_value_at_a_path_leaves_the_data_as_it_was() -> None:

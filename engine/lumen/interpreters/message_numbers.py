@@ -1,8 +1,8 @@
 """Numbers in the bodies of messages, which anybody may have sent."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
+from lumen.language.json_paths import value_at
 from lumen.language.numbers import is_finite_number
 
 
@@ -13,7 +13,4 @@ def number(value: object) -> float | None:
 
 def number_at(body: object, path: Sequence[str]) -> float | None:
     """The finite number in that field of a body, None where there is none."""
-    value: Any = body
-    for step in path:
-        value = value.get(step) if isinstance(value, Mapping) else None
-    return number(value)
+    return number(value_at(body, path))

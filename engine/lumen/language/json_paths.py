@@ -1,7 +1,19 @@
-"""Plain data with another value at a path."""
+"""Values in nested maps, by path."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
+
+
+def value_at(data: Any, path: Iterable[str]) -> Any:
+    """Return the value at a path of nested maps, or None if the path leads to nothing."""
+    for key in path:
+        data = data.get(key) if isinstance(data, Mapping) else None
+    return data
+
+
+def schema_at(schema: Any, path: Iterable[str]) -> Any:
+    """Return the JSON Schema of the property at a path of objects, or None if the schema declares none."""
+    return value_at(schema, [key for name in path for key in ("properties", name)])
 
 
 def with_value(data: Any, path: Sequence[str | int], value: Any) -> Any:

@@ -10,6 +10,7 @@ from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
 from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import Template, context_key
 from lumen.language.diagnostics import Place, Related
+from lumen.language.json_paths import schema_at
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.shared import SHARED
 from lumen.loading.document_report import DocumentReport
@@ -81,10 +82,7 @@ class _Expressions:
     def expected(self, way: str) -> Mapping[str, Any] | None:
         """The schema of what `assign` calls so; None where nothing is known of it."""
         key, *within = way.split(".")
-        schema: Any = self.context.get(key)
-        for name in within:
-            properties = schema.get("properties") if isinstance(schema, Mapping) else None
-            schema = properties.get(name) if isinstance(properties, Mapping) else None
+        schema = schema_at(self.context.get(key), within)
         return schema if isinstance(schema, Mapping) else None
 
     def variables(self, spot: ExpressionSite) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from lumen.interpreters.statechart import Snapshot
 from lumen.language.commands import Command, Start, Track, Volume
 from lumen.language.controllers import MessageBinding
 from lumen.language.events import Event
+from lumen.language.json_paths import schema_at
 from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.route_inbox import RouteInbox
@@ -94,10 +95,7 @@ def _schema(project: Project, field: RouteField) -> Mapping[str, Any]:
     """What the schema of its messages says of a field, nothing where it says nothing."""
     route, *path = field
     row = project.routes.get(route)
-    schema: Any = project.messages.get(row.schema) if row else None
-    for step in path:
-        fields = schema.get("properties") if isinstance(schema, Mapping) else None
-        schema = fields.get(step) if isinstance(fields, Mapping) else None
+    schema = schema_at(project.messages.get(row.schema) if row else None, path)
     return schema if isinstance(schema, Mapping) else {}
 
 

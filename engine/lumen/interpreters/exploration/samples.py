@@ -18,6 +18,7 @@ from lumen.interpreters.expressions.tree import (
     path_of,
     walk,
 )
+from lumen.language.json_paths import schema_at, value_at, with_value
 from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number
 
@@ -46,12 +47,12 @@ def samples(
         for path, found in _mentioned(machine, tree, context):
             values.setdefault(path, {}).update(dict.fromkeys(found))
     for path, mentioned in values.items():
-        values[path] = {**dict.fromkeys(_plain(_below(schema, path))), **mentioned}
+        values[path] = {**dict.fromkeys(_plain(schema_at(schema, path))), **mentioned}
     base = example(schema)
     for chosen in _chosen([list(found) for found in values.values()]):
         data = base
         for path, value in zip(values, chosen, strict=True):
-            data = _with(data, path, value)
+            data = with_value(data, path, value)
         yield data
 
 
@@ -137,28 +138,23 @@ def texts_for(machine: MachineDefinition, function: str, text: str) -> list[Any]
 
 def phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list[Any]:
     """Phrases that stand in the context, one for each language."""
-    value = _value_at(path, context)
+    value = _in_context(path, context)
     try:
         return [text for texts in phrases_of(value).values() for text in texts[:1]] if value else []
     except FaultError:
         return []
 
 
-def _value_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> Any:
-    """The value that a path leads to in the context; None if there is none."""
-    if not path or path[0] != "context":
-        return None
-    value: Any = context
-    for key in path[1:]:
-        value = value.get(key) if isinstance(value, Mapping) else None
-    return value
+def _in_context(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> Any:
+    """The value at a path that begins with `context`; None for any other."""
+    return value_at(context, path[1:]) if path and path[0] == "context" else None
 
 
 def _compared(other: ExpressionNode, context: Mapping[str, Any], *, sized: bool) -> list[Any]:
     items = other.items if isinstance(other, ListLiteral) else (other,)
     found: list[Any] = []
     for item in items:
-        value = item.value if isinstance(item, Literal) else _value_at(path_of(item), context)
+        value = item.value if isinstance(item, Literal) else _in_context(path_of(item), context)
         if isinstance(item, Literal) or isinstance(value, str | int | float):
             if sized and isinstance(value, int):
                 found += [" ".join([SAMPLE_TEXT] * n) for n in (value, value + 1) if 0 <= n < 50]
@@ -182,16 +178,3 @@ def _fields(tree: ExpressionNode) -> Iterator[FieldPath]:
 def _field(node: ExpressionNode) -> FieldPath | None:
     path = path_of(node)
     return path[2:] if path and path[:2] == ("event", "data") else None
-
-
-def _below(schema: Any, path: FieldPath) -> Any:
-    for key in path:
-        schema = (schema.get("properties") or {}).get(key) if isinstance(schema, Mapping) else None
-    return schema
-
-
-def _with(data: Any, path: FieldPath, value: Any) -> Any:
-    if not path:
-        return value
-    fields = data if isinstance(data, Mapping) else {}
-    return {**fields, path[0]: _with(fields.get(path[0]), path[1:], value)}

@@ -7,6 +7,7 @@ from typing import Any, Literal, NamedTuple
 from lumen.interpreters.talk.finder import Find, Finder, ReadSentence
 from lumen.interpreters.talk.patterns import Form, Slot, forms
 from lumen.interpreters.talk.speech import WORD_LISTS, Speech
+from lumen.language.json_paths import value_at
 from lumen.language.machines import Answer, Hears, MachineDefinition
 
 HEARD = "heard"
@@ -170,9 +171,7 @@ class Hearing:
 
     def entry(self, path: str, context: Mapping[str, Any]) -> Any:
         """The phrases at a path of the context, `context.round.entry.right`; None if there are none."""
-        table: Any = context
-        for key in path.split(".")[1:]:
-            table = table.get(key) if isinstance(table, Mapping) else None
+        table = value_at(context, path.split(".")[1:])
         return table if isinstance(table, str | list | tuple | Mapping) else None
 
     def _entry_finder(self, path: str, context: Mapping[str, Any]) -> Finder | None:

@@ -8,6 +8,7 @@ from lumen.interpreters.talk.finder import Languages
 from lumen.interpreters.talk.hearing import ENTRY, by_language, phrases_in
 from lumen.interpreters.talk.patterns import Slot, forms, written_forms
 from lumen.interpreters.talk.speech import NEGATIONS, NEGATIONS_AFTER, QUESTIONS
+from lumen.language.json_paths import value_at
 from lumen.language.machines import Hears, MachineDefinition
 
 NONSENSE = ("lorem ipsum dolor sit amet", "")
@@ -71,9 +72,7 @@ def of_row(
 def _tables(machine: MachineDefinition, name: str, context: Mapping[str, Any]) -> Iterator[Languages]:
     """The phrases of a name, by language."""
     if name.startswith(ENTRY):
-        value: Any = {"context": context}
-        for key in name.split("."):
-            value = value.get(key) if isinstance(value, Mapping) else None
+        value = value_at(context, name.split(".")[1:])
         if isinstance(value, str | list | tuple | Mapping):
             yield by_language(value)
     elif name in machine.phrases:
