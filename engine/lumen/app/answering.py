@@ -11,6 +11,7 @@ from typing import Any
 from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
 from lumen.interpreters.explaining import RecordedStep
+from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import JOURNAL, WHY
 from lumen.ports import Bus, Message
 from lumen.runtime.inputs.journal_writer import JournalWriter
@@ -39,12 +40,17 @@ def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | No
     return why_not(steps, what, until).to_json()
 
 
+def moment_of(text: str) -> float:
+    """Return the time of an ISO 8601 text [s since 1970]. Raises UsageError."""
+    try:
+        return time_of(text)
+    except ValueError:
+        raise UsageError(f"`{text[:40]}` is not a time: write it as in 2026-11-22T14:03:00Z") from None
+
+
 def _until(steps: Sequence[RecordedStep], at: str) -> float:
     """That time on the exhibition's clock [s]; raises UsageError where nothing of it is kept."""
-    try:
-        moment = datetime.fromisoformat(at).timestamp()
-    except (ValueError, OverflowError, OSError):
-        raise UsageError(f"`{at[:40]}` is not a time: write it as in 2026-11-22T14:03:00Z") from None
+    moment = moment_of(at)
     if not steps:
         raise TooLongAgoError("no steps from that time are in memory")
     until = _on_its_day(moment - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from datetime import datetime
 from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from lumen.app.answering import moment_of
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import takes
 from lumen.errors import JournalError, LumenError, ProjectError, UsageError
@@ -79,7 +79,7 @@ def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[
     remembered = _remembered(journal)
     if type(position) is int:
         return (remembered if _knows(remembered, position) else _kept(journal, position)), position
-    moment = _moment(str(at))
+    moment = moment_of(str(at))
     found = _after(remembered, moment)
     if found is not None and _knows(remembered, found):
         return remembered, found
@@ -119,13 +119,6 @@ def _files(journal: JournalWriter) -> list[Any]:
 
 def _read(file: Path) -> Sequence[RecordedEntry]:
     return list(read_journal(file).entries)
-
-
-def _moment(text: str) -> float:
-    try:
-        return datetime.fromisoformat(text).timestamp()
-    except (ValueError, OverflowError, OSError):
-        raise UsageError(f"`{text[:40]}` is not a time: write it as in 2026-11-22T14:03:00Z") from None
 
 
 def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:

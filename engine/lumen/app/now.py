@@ -1,11 +1,9 @@
 """How a running exhibition is at this moment, in one object: for whoever shows it to the people who run it."""
 
 from collections.abc import Callable, Iterator
-from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
 from lumen.app.doings import Doings, Spoken, UnderWay
-from lumen.app.status import iso
 from lumen.interpreters.explaining.names import machines_in
 from lumen.interpreters.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
 from lumen.interpreters.explaining.pressing import ShownButton, shown_buttons
@@ -13,6 +11,7 @@ from lumen.interpreters.statechart import Snapshot
 from lumen.language.approvals import Autonomy
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
+from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.projects import Project
 from lumen.runtime.approvals import Approvals, HeldEvent
@@ -87,7 +86,7 @@ class NowView:
             bundle = self._bundle = _Bundle(now.project)
 
         def time(at: float) -> str:
-            return iso(datetime.fromtimestamp(now.snapshot.epoch + at, UTC))
+            return iso_time(now.snapshot.epoch + at)
 
         return {
             **now.status(),

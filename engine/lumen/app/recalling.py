@@ -1,7 +1,6 @@
 """Steps of a run that is over, or of longer ago than a running one remembers: taken again from the journal."""
 
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import Replayer
 from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
 from lumen.loading.running_project import running_project
@@ -34,7 +34,7 @@ def answer_from_journal(
     """
     root = running_project(project)
     robot = one_robot(root, robot)
-    steps = list(recalled(root, datetime.fromisoformat(at).timestamp() if at else None, robot))
+    steps = list(recalled(root, time_of(at) if at else None, robot))
     if not steps:
         raise UsageError(f"{why}; its journal in {home_of(root, robot) / JOURNAL_FOLDER} has nothing from that time")
     return answer(steps, question, what, at)

@@ -1,11 +1,12 @@
 """How an exhibition is, in one object: for `lumen status`, and for whoever else shows it."""
 
 from collections.abc import Iterator, Mapping
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Any, NamedTuple
 
 from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.nesting import ID_SEPARATOR, active_names
+from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.projects import Project
@@ -59,12 +60,7 @@ def status_of(
 
 
 def _time(snapshot: Snapshot, at: float) -> str:
-    return iso(datetime.fromtimestamp(snapshot.epoch + at, UTC))
-
-
-def iso(moment: datetime) -> str:
-    """`2026-11-22T18:00:00.000Z`."""
-    return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return iso_time(snapshot.epoch + at)
 
 
 def _visitor(project: Project, snapshot: Snapshot) -> str | None:
@@ -92,4 +88,4 @@ def _event(machine: MachineDefinition, timer: Timer) -> str:
 
 
 def _reload(reloaded: LastReload) -> dict[str, Any]:
-    return {**reloaded._asdict(), "at": iso(reloaded.at)}
+    return {**reloaded._asdict(), "at": iso_time(reloaded.at.timestamp())}

@@ -1,11 +1,11 @@
 """`lumen fleet status` for people."""
 
 from collections.abc import Iterator, Mapping
-from datetime import UTC, datetime
 from typing import Any
 
 from lumen.cli.tables import table
 from lumen.language.counts import counted
+from lumen.language.iso_time import iso_time
 
 SHORT = 12
 
@@ -43,7 +43,7 @@ def _trial(trying: Mapping[str, Any] | None) -> Iterator[str]:
 def log_lines(found: Mapping[str, Any]) -> Iterator[str]:
     """The last incidents, how often each kind came, and what was counted with each bundle."""
     for row in found["incidents"]:
-        at = datetime.fromtimestamp(row["at"], UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
+        at = iso_time(row["at"], "seconds")
         yield f"{at}  {row['robot']}: {row['kind']}: {row['text']}"
     yield ", ".join(f"{kind}: {count}" for kind, count in found["kinds"].items()) or "no incidents"
     if found["numbers"]:

@@ -4,7 +4,6 @@ import argparse
 import json
 import os
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 
 from lumen.app.asking import OPERATOR_ANSWERS, ask
@@ -16,6 +15,7 @@ from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.counts import counted
+from lumen.language.iso_time import local_time
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
 from lumen.loading.files import read_files
@@ -168,7 +168,7 @@ def _entry(row: dict[str, object]) -> str:
 
 
 def _when(moment: object) -> str:
-    return datetime.fromtimestamp(float(str(moment))).isoformat(" ", "seconds")
+    return local_time(float(str(moment)))
 
 
 def _plain(text: str) -> str:

@@ -1,8 +1,9 @@
 """`--at T`: a moment as people say it."""
 
-from datetime import UTC, datetime, time, timedelta
+from datetime import UTC, datetime, timedelta
 
 from lumen.errors import UsageError
+from lumen.language.iso_time import time_of_day
 
 
 def moment(text: str, now: datetime) -> str:
@@ -14,7 +15,7 @@ def moment(text: str, now: datetime) -> str:
     try:
         if "-" in text:
             return datetime.fromisoformat(text).astimezone(UTC).isoformat()
-        of_day = time.fromisoformat(text.zfill(5) if text.count(":") == 1 else text.zfill(8))
+        of_day = time_of_day(text)
     except ValueError:
         raise UsageError(f"`{text}` is not a time: write 14:03, 14:03:20, or 2026-11-22T14:03:20") from None
     begin = datetime.combine(now.date(), of_day, now.tzinfo)

@@ -23,6 +23,7 @@ from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import renamed, writable
 from lumen.formats.recordings.rewriting import recover
 from lumen.language.counts import counted
+from lumen.language.iso_time import file_stamp
 from lumen.language.operator_requests import MARK, STATUS
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
@@ -99,7 +100,7 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
     bus = reached.bus
     project, folder = _running_project(root, reached), RecordingsFolder(home_of(root, reached.home))
     view = RobotView(project, lambda text: print(text, file=sys.stderr))
-    path = options.file or folder.path / time.strftime(f"%Y-%m-%dT%H-%M-%SZ-recorded{SUFFIX}", time.gmtime())
+    path = options.file or folder.path / f"{file_stamp(time.time())}-recorded{SUFFIX}"
     try:
         if options.file is None:
             folder.make()

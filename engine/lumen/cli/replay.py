@@ -2,7 +2,6 @@
 
 import argparse
 from collections.abc import Callable, Iterable
-from datetime import datetime
 from pathlib import Path
 
 import lumen
@@ -24,6 +23,7 @@ from lumen.cli.replay_text import replay_lines
 from lumen.cli.transcript import Transcript
 from lumen.cli.workers_option import configure_workers
 from lumen.interpreters.replay.entries import RecordedEntry
+from lumen.language.iso_time import local_time
 from lumen.loading.chosen_robot import as_robot
 
 SMALL = 1_000_000
@@ -102,7 +102,7 @@ def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, op
 
 def _list(root: Path, robot: str) -> int:
     for file, header in listed(root, robot):
-        when = datetime.fromtimestamp(header.began).strftime("%Y-%m-%d %H:%M:%S")
+        when = local_time(header.began)
         what = (
             f"the story {header.story}"
             if header.story

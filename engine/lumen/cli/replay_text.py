@@ -1,10 +1,10 @@
 """What came of a replay, as a person reads it."""
 
 from collections.abc import Iterator
-from datetime import datetime
 
 from lumen.app.replaying.replay_report import ReplayReport
 from lumen.language.counts import counted
+from lumen.language.iso_time import local_time
 
 SHOWN = 10
 """How many differences are shown."""
@@ -21,7 +21,7 @@ def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
         counts.append(f"{report.redacted} redacted, because a visitor was forgotten")
     yield f"{report.visits} visit{'s' * (report.visits != 1)}, {report.steps:,} steps: {', '.join(counts)}"
     for row in report.differ[:SHOWN]:
-        when = datetime.fromtimestamp(row.at).strftime("%Y-%m-%d %H:%M:%S")
+        when = local_time(row.at)
         yield f"  {f'visit {row.visit}' if row.visit else 'between visits'}, {when}: {row.how}"
         yield f"    was  {row.was}"
         yield f"    {'here' if other else 'now '} {row.now}" + (f" ({row.place})" if row.place else "")

@@ -1,7 +1,6 @@
 """`lumen resume`: a robot that a person stopped may move again."""
 
 import argparse
-from datetime import datetime
 from typing import Any
 
 from lumen.app.resting import resume_body
@@ -11,6 +10,7 @@ from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, for_each_robot, reach
 from lumen.errors import UsageError
+from lumen.language.iso_time import local_time, time_of
 
 RESUME_TIMEOUT = 10.0
 
@@ -45,7 +45,7 @@ def _resume(options: argparse.Namespace) -> int:
 def _here(since: object) -> str:
     """A time as the clocks here show it."""
     try:
-        return f"{datetime.fromisoformat(str(since)).astimezone():%Y-%m-%d %H:%M:%S}"
+        return local_time(time_of(str(since)))
     except ValueError:
         return str(since)
 

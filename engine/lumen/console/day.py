@@ -7,7 +7,6 @@ from datetime import date, datetime
 from typing import Any, NamedTuple
 
 from lumen.app.recording.happenings import FALLEN
-from lumen.app.replaying.replay_report import iso
 from lumen.console.entry_words import ENDS, ENGLISH, MARK, OFTEN
 from lumen.console.heard_sentences import HeardSentence, heard_sentence
 from lumen.interpreters.replay.command_data import started
@@ -15,6 +14,7 @@ from lumen.interpreters.replay.entries import JournalInput, JournalJump, Recorde
 from lumen.interpreters.replay.journal_clock import JournalClock
 from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, Replayer
 from lumen.interpreters.replay.visits import VisitWatch
+from lumen.language.iso_time import iso_time
 from lumen.language.modules import VISITOR_KEY
 
 HEARD = "heard"
@@ -42,8 +42,9 @@ class DayVisit:
     def to_json(self) -> dict[str, Any]:
         seconds = round(self.ended - self.began, 1)
         return {
-            "n": self.number, "from": self.first, "to": self.last, "began": iso(self.began), "ended": iso(self.ended),
-            "seconds": seconds, "visitor": self.visitor or None, "language": self.language or None,
+            "n": self.number, "from": self.first, "to": self.last,
+            "began": iso_time(self.began), "ended": iso_time(self.ended), "seconds": seconds,
+            "visitor": self.visitor or None, "language": self.language or None,
             "asked": self.asked, "missed": self.missed,
         }  # fmt: skip
 
@@ -66,7 +67,7 @@ class DayMark(NamedTuple):
     by: str
 
     def to_json(self) -> dict[str, Any]:
-        return {"position": self.position, "at": iso(self.at), "text": self.text, "by": self.by}
+        return {"position": self.position, "at": iso_time(self.at), "text": self.text, "by": self.by}
 
 
 @dataclass
@@ -79,7 +80,7 @@ class QuietStretch:
     ended: float
 
     def to_json(self) -> dict[str, Any]:
-        return {"from": self.first, "to": self.last, "began": iso(self.began), "ended": iso(self.ended)}
+        return {"from": self.first, "to": self.last, "began": iso_time(self.began), "ended": iso_time(self.ended)}
 
 
 @dataclass

@@ -2,10 +2,10 @@
 
 import time
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
 from lumen.language.events import CLOCK_SET
+from lumen.language.iso_time import iso_time
 from lumen.language.numbers import is_number
 
 
@@ -37,10 +37,9 @@ class EntryClock:
         told = _epoch_in(entry)
         self._epoch = told if told is not None else self._epoch or 0.0
         try:
-            moment = datetime.fromtimestamp(self._epoch + _number(entry.get("at")), UTC)
+            return iso_time(self._epoch + _number(entry.get("at")))
         except (ValueError, OverflowError, OSError):
-            moment = datetime.fromtimestamp(0.0, UTC)
-        return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+            return iso_time(0.0)
 
 
 def _epoch_in(entry: Mapping[str, Any]) -> float | None:

@@ -2,13 +2,13 @@
 
 import time
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from typing import Any
 
 import orjson
 
 from lumen.console.entry_ring import EntryRing
 from lumen.console.spoken_names import SpokenNames
+from lumen.language.iso_time import iso_time, time_of
 from lumen.language.numbers import is_number
 from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
 
@@ -58,7 +58,7 @@ class KnownRobot:
 
     def answered(self, said: Mapping[str, Any]) -> None:
         """Its exhibition has said how it is."""
-        self._answered, self._heard = time.monotonic(), iso_now()
+        self._answered, self._heard = time.monotonic(), iso_time(time.time())
         self._names.add(said.get("visitor"))
         told = {**said, "ahead": self._ahead(said.get("time"))}
         if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # it goes on by itself
@@ -106,12 +106,12 @@ class KnownRobot:
         if known is None:
             if len(self._processes) >= MAX_PROCESSES:
                 self._processes.pop(min(self._processes, key=lambda one: self._processes[one]["at"]))
-            known = self._processes[session] = {"parts": parts, "since": iso_now(), "state": ""}
+            known = self._processes[session] = {"parts": parts, "since": iso_time(time.time()), "state": ""}
             known |= {"host": str(body.get("host", ""))[:60], "process": body.get("process")}
         if known["state"] != state or known["parts"] != parts:
             known |= {"state": state, "parts": parts}
             self.version += 1
-        known |= {"heard": iso_now(), "at": time.monotonic()}
+        known |= {"heard": iso_time(time.time()), "at": time.monotonic()}
 
     def lacks(self, part: str) -> bool:
         """Whether a process that was this part has gone, and no other has come."""
@@ -158,14 +158,10 @@ class KnownRobot:
         """How far the exhibition's clock, which a story sets, is ahead of ours [s]; it stays while it is near."""
         before = float(self.said.get("ahead", 0.0))
         try:
-            ahead = datetime.fromisoformat(str(told)).timestamp() - time.time()
-        except (ValueError, OverflowError):
+            ahead = time_of(str(told)) - time.time()
+        except ValueError:
             return before
         return before if abs(ahead - before) < CLOCK_TOLERANCE else round(ahead, 1)
 
     def _away(self, said: Mapping[str, Any]) -> bool:
         return time.monotonic() - float(said["at"]) > LOST_AFTER
-
-
-def iso_now() -> str:
-    return datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -1,6 +1,7 @@
 """The console's paths: pages, what happens, commands, and who is here."""
 
 import re
+import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -17,7 +18,7 @@ from lumen.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFast
 from lumen.console.commands import Commands, PageCommand
 from lumen.console.fleet_pages import FleetPages
 from lumen.console.jobs import Jobs
-from lumen.console.known_robot import KnownRobot, iso_now
+from lumen.console.known_robot import KnownRobot
 from lumen.console.orders import NEEDS, REST
 from lumen.console.past import Past
 from lumen.console.people import Person, Role
@@ -27,6 +28,7 @@ from lumen.console.sights import STREAM, Sights
 from lumen.console.streams import Listener, Streams, positions_in
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
+from lumen.language.iso_time import iso_time
 from lumen.loading.project_folders import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
@@ -79,7 +81,12 @@ class Site:
         person = self.reception.person(request)
         full = person.role > Role.NOBODY
         robots = [view.to_json(full=full) for _, view in sorted(self.watch.robots.items())]
-        told = {"role": person.role.word, "name": person.name, "time": iso_now(), "bus": self.watch.link.trouble}
+        told = {
+            "role": person.role.word,
+            "name": person.name,
+            "time": iso_time(time.time()),
+            "bus": self.watch.link.trouble,
+        }
         return as_json({"robots": robots, **told, "fleet": (self._root / FLEET_FILE).is_file()})
 
     async def _events(self, request: Request) -> Response:

@@ -2,11 +2,12 @@
 
 import json
 import os
+import time
 from collections.abc import Callable, Mapping
-from datetime import UTC, datetime
 from pathlib import Path
 
 from lumen.errors import ModuleError
+from lumen.language.iso_time import iso_time
 from lumen.language.modules import SOCIAL
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
@@ -41,7 +42,7 @@ class Social(Module):
                 pass
             case _:
                 raise ModuleError(f"a message on {message.key} needs a `text`: nothing was posted")
-        date = datetime.now(UTC).isoformat(timespec="seconds")
+        date = iso_time(time.time(), "seconds", offset=True)
         self._write(json.dumps({"date": date, **message.body}, ensure_ascii=False))
         self.publish("social_perception", {"kind": "posted", "text": text, "date": date})
         self.well()

@@ -4,13 +4,14 @@ import json
 import logging
 import os
 import threading
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
+from lumen.language.iso_time import iso_time
 from lumen.language.people import PersonName
 from lumen.loading.json_lines import forget_lines
 
@@ -35,7 +36,7 @@ class Journal:
         """Append an entry, with the date and time (UTC) before it."""
         if self._file is None:
             return
-        line = json.dumps({"time": datetime.now(UTC).isoformat(timespec="milliseconds"), **entry}, ensure_ascii=False)
+        line = json.dumps({"time": iso_time(time.time(), offset=True), **entry}, ensure_ascii=False)
         with self._writing, suppress(OSError):
             if self._file.exists() and self._file.stat().st_size > MAX_JOURNAL_BYTES:
                 os.replace(self._file, self._file.with_suffix(".jsonl.1"))

@@ -1,10 +1,11 @@
 """Something that people who are not there have to know."""
 
 import platform
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Any, NamedTuple
 
 from lumen.language.alerts import KINDS
+from lumen.language.iso_time import iso_time
 
 TEST = "test"
 """The kind of those that are sent to see whether they arrive."""
@@ -47,8 +48,8 @@ class Origin(NamedTuple):
             "robot": self.robot,
             "parts": list(self.parts),
             "host": platform.node(),
-            "at": _date(alert.at),
-            "first": _date(alert.first),
+            "at": iso_time(alert.at, "seconds", offset=True),
+            "first": iso_time(alert.first, "seconds", offset=True),
             "count": alert.times,
         }
 
@@ -61,10 +62,6 @@ class Origin(NamedTuple):
 def one_line(text: str) -> str:
     """The text on one line, without signs that would steer a terminal or a mail's head."""
     return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())[:500]
-
-
-def _date(at: float) -> str:
-    return datetime.fromtimestamp(at, UTC).isoformat(timespec="seconds")
 
 
 def _clock(at: float) -> str:

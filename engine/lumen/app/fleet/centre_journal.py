@@ -2,12 +2,13 @@
 
 import json
 import os
+import time
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from lumen.interpreters.fleet.state import CentreState, state_from_json, state_to_json
+from lumen.language.iso_time import iso_time
 from lumen.upkeep.private_folder import private_folder
 
 FILE = "centre.jsonl"
@@ -50,7 +51,7 @@ class CentreJournal:
 
     def write(self, what: str, state: CentreState) -> str:
         """Add a line, and wait until the disk has it; why that could not be, else empty."""
-        row = {"at": datetime.now(UTC).isoformat(timespec="seconds"), "what": what, "state": state_to_json(state)}
+        row = {"at": iso_time(time.time(), "seconds", offset=True), "what": what, "state": state_to_json(state)}
         try:
             private_folder(self.file.parent)
             with open(self.file, "ab") as opened:

@@ -1,7 +1,6 @@
 """How a fleet is, as `lumen fleet status --format json` prints it."""
 
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from typing import Any
 
 from lumen.interpreters.fleet.counting import rates
@@ -9,6 +8,7 @@ from lumen.interpreters.fleet.rollout import allowed
 from lumen.interpreters.fleet.state import CentreState, HeardPresence, Rollout
 from lumen.interpreters.fleet.trying import FRESH, counted
 from lumen.language.fleet import Fleet
+from lumen.language.iso_time import iso_time
 
 MOST_SKEW = 30.0
 """How wrong a robot's clock may be until that is told [s]."""
@@ -92,4 +92,4 @@ def _rollout(rollout: Rollout, state: CentreState, fleet: Fleet) -> dict[str, An
 
 
 def _iso(at: float) -> str | None:
-    return datetime.fromtimestamp(at, UTC).isoformat(timespec="seconds").replace("+00:00", "Z") if at > 0.0 else None
+    return iso_time(at, "seconds") if at > 0.0 else None

@@ -6,12 +6,12 @@ import time
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from datetime import UTC, datetime
 from pathlib import Path
 
 from lumen.errors import LumenError
 from lumen.formats.recordings.foxglove import NANO
 from lumen.formats.recordings.recorded import RecordedFile, RecordedNotes
+from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.runtime.home import Home, home_of
@@ -35,7 +35,7 @@ def notes_of(project: Project) -> RecordedNotes:
         "behavior": project.behavior,
         "lumen": version("lumen-robot"),
         "python": platform.python_version(),
-        "from": datetime.now(UTC).isoformat(timespec="milliseconds"),
+        "from": iso_time(time.time(), offset=True),
     }
     return RecordedNotes(NOTES, tuple(said.items()))
 

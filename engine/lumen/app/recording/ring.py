@@ -13,6 +13,7 @@ from lumen.errors import LumenError
 from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import RecordingFile, writable
 from lumen.formats.recordings.rewriting import rewrite
+from lumen.language.iso_time import file_stamp
 from lumen.language.people import PersonName
 from lumen.language.retention import RecordingSettings
 
@@ -161,6 +162,5 @@ class RingTape:
 
 def kept_as(folder: RecordingsFolder, at: float, why: str) -> Path:
     """Where a recording of that time [s since 1970] goes, for that reason."""
-    stamp = time.strftime("%Y-%m-%dT%H-%M-%SZ", time.gmtime(at))
     word = re.sub(r"[^\w]+", "-", why.lower()).strip("-")[:40]
-    return writable(folder.path / f"{stamp}-{word or 'mark'}{SUFFIX}")
+    return writable(folder.path / f"{file_stamp(at)}-{word or 'mark'}{SUFFIX}")

@@ -1,11 +1,10 @@
 """What is known here of a robot that does not answer: how its last run ended, and who had stopped it."""
 
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from lumen.app.parts.kept_hold import kept_hold
-from lumen.app.status import iso
+from lumen.language.iso_time import iso_time
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 
@@ -22,7 +21,7 @@ def last_run(root: Path, robot: str) -> dict[str, Any]:
         "robot": robot,
         "running": False,
         "held": home.held(),
-        "ended": iso(datetime.fromtimestamp(kept.ended, UTC)) if kept else None,
+        "ended": iso_time(kept.ended) if kept else None,
         "told": kept is not None and kept.told,
         "stopped": stopped is not None,
         "stopped_by": stopped.by if stopped else None,

@@ -3,11 +3,11 @@
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 from lumen.app.replaying.replay_report import ReplayReport
+from lumen.language.iso_time import local_time
 from lumen.language.projects import Project
 from lumen.language.replay_check import CheckMode
 
@@ -48,7 +48,7 @@ class VisitsCheck:
             yield f"no recorded visit could be played within {self.budget:g} s (`budget` in lumen.yaml)"
         if report.differ:
             first = report.differ[0]
-            when = datetime.fromtimestamp(first.at).strftime("%Y-%m-%d %H:%M:%S")
+            when = local_time(first.at)
             place = f" ({first.place})" if first.place else ""
             was = f"was {first.was}, would be " if first.was else ""
             yield f"the first, {when}: {was}{first.now}{place}"

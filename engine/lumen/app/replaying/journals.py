@@ -8,6 +8,7 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.interpreters.replay.entries import RecordedEntry
 from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.language.iso_time import time_of_day
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
@@ -64,7 +65,7 @@ def listed(root: Path, robot: str = "") -> list[tuple[Path, JournalHeader]]:
 
 def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:
     """The entries up to a time of day, `14:03` or `14:03:20`, where the exhibition was. Raises UsageError."""
-    wanted, clock, limit = time_of_day(text), JournalClock(), None
+    wanted, clock, limit = requested_time(text), JournalClock(), None
     for entry in entries:
         moment = clock.of(entry)
         if limit is None:
@@ -74,10 +75,10 @@ def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry
         yield entry
 
 
-def time_of_day(text: str) -> time:
-    """A time as people write it. Raises UsageError."""
+def requested_time(text: str) -> time:
+    """Return the time of day that a person wrote. Raises UsageError."""
     try:
-        return time.fromisoformat(text.zfill(5) if text.count(":") == 1 else text.zfill(8))
+        return time_of_day(text)
     except ValueError:
         raise UsageError(f"`{text}` is not a time of day: write it as 14:03 or 14:03:20") from None
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
 from lumen.interpreters.replay.against import SAME, VisitVerdict
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, replay
 from lumen.interpreters.replay.visits import RecordedVisit, VisitWatch
+from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition
 
 
@@ -28,7 +28,7 @@ class ReplayDifference(NamedTuple):
 
     def to_json(self) -> dict[str, Any]:
         place = {"place": self.place} if self.place else {}
-        return {"visit": self.visit, "at": iso(self.at), "was": self.was, "is": self.now, "how": self.how, **place}
+        return {"visit": self.visit, "at": iso_time(self.at), "was": self.was, "is": self.now, "how": self.how, **place}
 
 
 @dataclass
@@ -155,8 +155,3 @@ def replayed(entries: Iterable[RecordedEntry], machines: MachineSource) -> Repla
         count.take(row.entry, row.machine, TakenAgain.of(row))
     count.end()
     return count.report
-
-
-def iso(at: float) -> str:
-    """A time [s since 1970] as everything that prints JSON writes it: ISO 8601 in UTC."""
-    return datetime.fromtimestamp(at, UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

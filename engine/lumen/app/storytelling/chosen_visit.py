@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from datetime import datetime, time, timedelta
 from typing import NamedTuple
 
-from lumen.app.replaying.journals import ChosenJournal, time_of_day
+from lumen.app.replaying.journals import ChosenJournal, requested_time
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import with_machines
 from lumen.errors import UsageError
@@ -46,7 +46,7 @@ def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -
 
 
 def _under_way(found: Sequence[ChosenVisit], at: str) -> ChosenVisit:
-    wanted, length = time_of_day(at), timedelta(minutes=1) if at.count(":") == 1 else timedelta(seconds=1)
+    wanted, length = requested_time(at), timedelta(minutes=1) if at.count(":") == 1 else timedelta(seconds=1)
     nearest = min(found, key=lambda one: _distance(one, wanted, length))
     if _distance(nearest, wanted, length):
         raise UsageError(f"no visit was under way at {at}; the nearest was {nearest.when}")

@@ -10,12 +10,13 @@ from lumen.interpreters.explaining.chains import chain
 from lumen.interpreters.explaining.dependence import directly_needed
 from lumen.interpreters.explaining.effects import effect
 from lumen.interpreters.explaining.history import RecordedStep, StepHistory
-from lumen.interpreters.explaining.links import Link, utc
+from lumen.interpreters.explaining.links import Link
 from lumen.interpreters.explaining.names import KnownNames, state_named
 from lumen.interpreters.explaining.refusals import ORDER, Reason, TransitionRefusals
 from lumen.interpreters.explaining.ways import deeds, ways
 from lumen.interpreters.explaining.words import of_event
 from lumen.interpreters.statechart.nesting import active_names
+from lumen.language.iso_time import iso_time
 
 LOOKED_BACK = 60.0
 """How long before the moment asked about something may have been decided against what is asked for [s]."""
@@ -37,7 +38,7 @@ class WhyAnswer:
     def to_json(self) -> dict[str, Any]:
         """The object of `lumen why --format json`."""
         chain, needs = ([link.to_json() for link in links] for links in (self.links, self.needs))
-        return {"what": self.what, "at": utc(self.at), "chain": chain, "needs": needs}
+        return {"what": self.what, "at": iso_time(self.at), "chain": chain, "needs": needs}
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +51,7 @@ class WhyNotAnswer:
 
     def to_json(self) -> dict[str, Any]:
         """The object of `lumen why-not --format json`."""
-        return {"what": self.what, "at": utc(self.at), "reasons": [reason.to_json() for reason in self.reasons]}
+        return {"what": self.what, "at": iso_time(self.at), "reasons": [reason.to_json() for reason in self.reasons]}
 
 
 def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = None) -> WhyAnswer:

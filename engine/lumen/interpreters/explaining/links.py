@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from typing import Any, Literal
 
 from lumen.language.diagnostics import Place
+from lumen.language.iso_time import iso_time
 
 LinkKind = Literal["command", "activity", "transition", "event", "timer", "message", "person", "file", "start"]
 
@@ -31,14 +31,9 @@ class Link:
         return {
             "kind": self.kind,
             "text": self.text,
-            "at": utc(self.at),
+            "at": iso_time(self.at),
             "file": self.place.file if self.place else None,
             "line": self.place.line if self.place else None,
             "id": self.id,
             "values": dict(self.values),
         }
-
-
-def utc(at: float) -> str:
-    """`2026-11-22T18:00:00.000Z` for a time [s since 1970]."""
-    return datetime.fromtimestamp(at, UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.iso_time import iso_time
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
 from lumen.modules.ears.active_states import ActiveStates
@@ -121,7 +121,7 @@ class Ears(Module):
             raise ModuleError(f"the ears understand only {known}, not `{language[:20]}`: type what was said")
         found = self._heard(sound_of(body.get("content")))
         if found:
-            date = datetime.now(UTC).isoformat(timespec="seconds")
+            date = iso_time(time.time(), "seconds", offset=True)
             about = {"name": str(body.get("name", "")), "date": date, "language": language}
             best, *others = [_row(one) for one in found]
             self.publish("heard", {**about, **best, **({"alternatives": others} if others else {})})

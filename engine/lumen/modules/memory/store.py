@@ -5,11 +5,11 @@ import os
 import sqlite3
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
+from lumen.language.iso_time import iso_time
 from lumen.language.people import PersonName, name_key
 from lumen.modules.memory.tables import NEWER_TABLES, check, prepare
 from lumen.modules.memory.visit import JournalEnd
@@ -72,7 +72,15 @@ class Store:
         """Write all of them, or (ModuleError) none."""
         rows = [
             (
-                *(e.time, _date(e.time), e.robot, _sound(e.visitor), _sound(e.kind), _sound(e.text), _json(e.data)),
+                *(
+                    e.time,
+                    iso_time(e.time, offset=True),
+                    e.robot,
+                    _sound(e.visitor),
+                    _sound(e.kind),
+                    _sound(e.text),
+                    _json(e.data),
+                ),
                 *(name_key(e.visitor), e.visit),
             )
             for e in entries
@@ -213,10 +221,6 @@ def _delete(db: sqlite3.Connection, key: str) -> Forgotten:
     rows = db.execute(_THEIRS, {"key": key}).fetchall()
     db.executemany("DELETE FROM journal WHERE id = ?", [(row["id"],) for row in rows])
     return Forgotten(gone, len(rows), frozenset(int(row["visit"]) for row in rows), tuple(others.values()))
-
-
-def _date(time: float) -> str:
-    return datetime.fromtimestamp(time, UTC).isoformat(timespec="milliseconds")
 
 
 def _visitor(row: sqlite3.Row) -> dict[str, Any]:

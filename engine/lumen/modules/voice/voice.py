@@ -1,9 +1,10 @@
 """The text-to-speech module: texts come in, sounds go out."""
 
+import time
 from collections.abc import Callable, Mapping
-from datetime import UTC, datetime
 
 from lumen.errors import ModuleError
+from lumen.language.iso_time import iso_time
 from lumen.language.modules import VOICE
 from lumen.language.projects import Project
 from lumen.modules.module import Module
@@ -30,7 +31,7 @@ class Voice(Module):
             case _:
                 raise ModuleError(f"a message on {message.key} needs a `text`")
         sound = self._espeak.speak(text, str(rest.get("language") or self.project.languages[0]))
-        date = datetime.now(UTC).isoformat(timespec="seconds")
+        date = iso_time(time.time(), "seconds", offset=True)
         body = {"name": str(rest.get("name", "")), "sound": sound.text(), "date": date}
         self.publish("text_to_speech", body)
         self.reply(message, body)

@@ -1,13 +1,13 @@
 """The files of a journal of inputs: in a folder, in the order of their positions, and no more than are wanted."""
 
 import os
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from lumen.errors import JournalError
+from lumen.language.iso_time import file_stamp
 from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
 from lumen.upkeep.private_folder import private_folder
 
@@ -42,8 +42,7 @@ class JournalFolder:
     def open(self, header: JournalHeader) -> BinaryIO:
         """A new file that begins with this header; one of this run that has no entry yet gives way. Raises OSError."""
         private_folder(self.folder)
-        stamp = time.strftime("%Y-%m-%dT%H-%M-%SZ", time.gmtime(header.began))
-        name = f"{header.first:012d}-{stamp}-{header.run[:8]}{JOURNAL_SUFFIX}"
+        name = f"{header.first:012d}-{file_stamp(header.began)}-{header.run[:8]}{JOURNAL_SUFFIX}"
         handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | _NO_LINK, 0o600)
         file = open(handle, "wb", buffering=0)  # noqa: SIM115  it is closed where it is written
         file.write(header.line())
