@@ -5,6 +5,7 @@ import signal
 import socket
 from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -60,6 +61,23 @@ def test_a_line_that_it_repeats_is_told_once() -> None:
         part._lines += lines
         part.tick(0.0, ())
     assert told == ["one", "two", "one"]
+
+
+def test_it_restarts_after_a_second_then_after_two(monkeypatch: pytest.MonkeyPatch) -> None:
+    told, moments = list[str](), iter((1.0, 2.0, 3.0, 4.0))
+
+    class Ended:
+        stdout = stdin = None
+
+        def poll(self) -> int:
+            return 3
+
+    monkeypatch.setattr("subprocess.Popen", lambda *_, **__: Ended())
+    monkeypatch.setattr(console, "time", SimpleNamespace(monotonic=lambda: next(moments)))
+    part = ConsolePart(Path(), "memory://", told.append)
+    for _ in range(4):
+        part.tick(0.0, ())
+    assert told == [f"the console has ended (exit code 3); it restarts in {pause} s" for pause in (1, 2)]
 
 
 @pytest.mark.slow

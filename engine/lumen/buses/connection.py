@@ -12,6 +12,7 @@ from pika.exceptions import AMQPError, ChannelClosedByBroker
 
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.polled import PolledConnection
+from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MIN_RECONNECT_DELAY = 0.2
@@ -102,7 +103,7 @@ class BrokerConnection:
         self.ending = threading.Event()
         self._opened: Future[None] = Future()
         self._thread = WatchedThread(f"lumen-bus-{name}", self._run, vital=True)
-        self._delay = MIN_RECONNECT_DELAY
+        self._backoff = Backoff(MIN_RECONNECT_DELAY, MAX_RECONNECT_DELAY)
 
     def open(self) -> None:
         """Connect; raises BusError with what to do where that fails."""
@@ -176,12 +177,11 @@ class BrokerConnection:
             self.ending.set()
             return
         if time.monotonic() - since > STABLE_TIME:
-            self._delay = MIN_RECONNECT_DELAY
+            self._backoff.reset()
         if not self.ending.is_set():
             what = "refuses" if isinstance(error, ChannelClosedByBroker) else "is lost"
             self._outage.lost(self.name, what, error)
             self._pause()
 
     def _pause(self) -> None:
-        self.ending.wait(self._delay * random.uniform(0.5, 1.0))
-        self._delay = min(2 * self._delay, MAX_RECONNECT_DELAY)
+        self.ending.wait(self._backoff.next() * random.uniform(0.5, 1.0))

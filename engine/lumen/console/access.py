@@ -15,6 +15,7 @@ from lumen.console.people import ROLES, Person, Role
 from lumen.errors import UsageError
 from lumen.loading.regular_files import read_regular
 from lumen.runtime.home import Home, home_of
+from lumen.upkeep.backoff import pause_after
 
 COOKIE = "lumen_session"
 SESSION_TIME = 16 * 3600.0
@@ -106,7 +107,7 @@ class PinGuard:
         """Raises TooFastError where it is too early."""
         now = time.monotonic()
         count, at = self._wrong.get(address, (0, 0.0))
-        pause = min(FIRST_PAUSE * 2.0 ** min(count - FREE_TRIES, 10), LONGEST_PAUSE) if count >= FREE_TRIES else 0.0
+        pause = pause_after(count - FREE_TRIES + 1, FIRST_PAUSE, LONGEST_PAUSE)
         if (left := at + pause - now) > 0:
             raise TooFastError(left)
         self._tries = min(ALL_TRIES, self._tries + (now - self._since) / ALL_PERIOD)

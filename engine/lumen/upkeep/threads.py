@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from weakref import WeakSet
 
+from lumen.upkeep.backoff import pause_after
 from lumen.upkeep.drops import DropLog
 
 MAX_FAULTS = 5
@@ -103,7 +104,7 @@ class WatchedThread:
             )
             _log.error("%s", self.lost)
             return False
-        return not self._ending.wait(FIRST_PAUSE * 2 ** (recent - 1))
+        return not self._ending.wait(pause_after(recent, FIRST_PAUSE))
 
 
 def _all() -> list[WatchedThread]:

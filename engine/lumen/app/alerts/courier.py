@@ -11,6 +11,7 @@ from lumen.app.alerts.alert import Alert
 from lumen.app.alerts.ration import Ration
 from lumen.errors import UndeliveredError
 from lumen.language.alerts import Recipient
+from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MAX_PENDING_ALERTS = 100
@@ -96,7 +97,7 @@ class Courier:
         return list(self._ration.due(self._clock(), quiet=quiet))
 
     def _tell_until_told(self, alert: Alert) -> None:
-        began, pause = self._clock(), FIRST_RETRY
+        began, backoff = self._clock(), Backoff(FIRST_RETRY, LONGEST_RETRY)
         while True:
             try:
                 self._deliver(alert)
@@ -104,9 +105,8 @@ class Courier:
                 if not self._failing:
                     self._failing = True
                     self._tell(str(error))
-                if error.final or self._clock() - began > RETRY_FOR or not self._paused(pause):
+                if error.final or self._clock() - began > RETRY_FOR or not self._paused(backoff.next()):
                     return
-                pause = min(2 * pause, LONGEST_RETRY)
             else:
                 self._failing = False
                 return

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from lumen.app.parts.part import Part
 from lumen.language.events import Event
+from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
@@ -31,7 +32,8 @@ class ConsolePart(Part):
         self._process: subprocess.Popen[str] | None = None
         self._lines: deque[str] = deque(maxlen=20)
         self._last, self._said = "", ""
-        self._pause, self._next, self._began, self._looked = FIRST_PAUSE, 0.0, 0.0, 0.0
+        self._backoff = Backoff(FIRST_PAUSE, LONGEST_PAUSE)
+        self._next, self._began, self._looked = 0.0, 0.0, 0.0
 
     @property
     def pid(self) -> int | None:
@@ -50,9 +52,11 @@ class ConsolePart(Part):
         self._looked = here
         if self._process is not None and (code := self._process.poll()) is not None:
             self._process = None
-            self._pause = FIRST_PAUSE if here - self._began > STABLE else min(2 * self._pause, LONGEST_PAUSE)
-            self._next = here + self._pause
-            self._tell(f"the console has ended (exit code {code}); it restarts in {self._pause:g} s")
+            if here - self._began > STABLE:
+                self._backoff.reset()
+            pause = self._backoff.next()
+            self._next = here + pause
+            self._tell(f"the console has ended (exit code {code}); it restarts in {pause:g} s")
         if self._process is None and here >= self._next:
             self._begin(here)
 
@@ -84,8 +88,7 @@ class ConsolePart(Part):
                 errors="replace", env=environment, start_new_session=True,
             )  # fmt: skip
         except OSError as error:
-            self._pause = min(2 * self._pause, LONGEST_PAUSE)
-            self._next = now + self._pause
+            self._next = now + self._backoff.next()
             self._tell(f"the console can't start: {error.strerror or error}")
             return
         self._began = now
