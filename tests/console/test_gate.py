@@ -10,9 +10,10 @@ import pytest
 from lumen.console.access import Access, TooFastError
 from lumen.console.gate import MAX_BODY
 from lumen.console.people import Person, Role
-from lumen.console.ration import MAX_REQUESTS
+from lumen.console.requests import REQUESTS_PER_SECOND
 from lumen.console.serving import Console
 from lumen.errors import UsageError
+from lumen.upkeep.ratelimit import BURST
 from tests.console.pages import Browser, Served, Stream
 from tests.waiting import until
 
@@ -161,7 +162,7 @@ def test_pins_cannot_be_guessed_at_speed() -> None:
 
 
 def test_rest_is_never_rationed(open_to_all: Browser) -> None:
-    statuses = [open_to_all.get("/api/now").status for _ in range(int(2 * MAX_REQUESTS))]
+    statuses = [open_to_all.get("/api/now").status for _ in range(int(2 * BURST * REQUESTS_PER_SECOND))]
     assert 429 in statuses
     assert {open_to_all.command("rest", robot="NAO").status for _ in range(20)} == {200}
 

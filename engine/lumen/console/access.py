@@ -16,6 +16,7 @@ from lumen.errors import UsageError
 from lumen.loading.regular_files import read_regular
 from lumen.runtime.home import Home, home_of
 from lumen.upkeep.backoff import pause_after
+from lumen.upkeep.ratelimit import TokenBucket
 
 COOKIE = "lumen_session"
 SESSION_TIME = 16 * 3600.0
@@ -101,7 +102,7 @@ class PinGuard:
 
     def __init__(self) -> None:
         self._wrong: OrderedDict[str, tuple[int, float]] = OrderedDict()
-        self._tries, self._since = float(ALL_TRIES), time.monotonic()
+        self._all = TokenBucket(ALL_TRIES, time.monotonic())
 
     def check(self, address: str) -> None:
         """Raises TooFastError where it is too early."""
@@ -110,17 +111,15 @@ class PinGuard:
         pause = pause_after(count - FREE_TRIES + 1, FIRST_PAUSE, LONGEST_PAUSE)
         if (left := at + pause - now) > 0:
             raise TooFastError(left)
-        self._tries = min(ALL_TRIES, self._tries + (now - self._since) / ALL_PERIOD)
-        self._since = now
-        if self._tries < 1.0:
-            raise TooFastError((1.0 - self._tries) * ALL_PERIOD)
+        if left := self._all.wait(now, 1.0 / ALL_PERIOD, ALL_TRIES):
+            raise TooFastError(left)
 
     def note(self, address: str, *, right: bool) -> None:
         """A PIN was tried."""
         if right:
             self._wrong.pop(address, None)
             return
-        self._tries -= 1.0
+        self._all.tokens -= 1.0
         self._wrong[address] = self._wrong.pop(address, (0, 0.0))[0] + 1, time.monotonic()
         while len(self._wrong) > MAX_ADDRESSES:
             self._wrong.popitem(last=False)

@@ -11,10 +11,12 @@ from lumen.console.access import COOKIE, Access, TooFastError
 from lumen.console.gate import json_object, refused
 from lumen.console.known_robot import KnownRobot
 from lumen.console.people import Person, Role
-from lumen.console.ration import RequestRation
 from lumen.console.watch import Watch
+from lumen.upkeep.ratelimit import RateLimiter
 
 NO_STORE = {"Cache-Control": "no-store"}
+REQUESTS_PER_SECOND = 60.0
+"""How many requests an address may send; what lets a robot rest is never counted."""
 ALL = "*"
 """Instead of a robot's name: all of them."""
 
@@ -31,12 +33,12 @@ class Reception:
     """Says who asks and what about. Everything here raises DeniedError."""
 
     def __init__(self, watch: Watch, access: Access) -> None:
-        self.watch, self.access, self.ration = watch, access, RequestRation()
+        self.watch, self.access, self._limiter = watch, access, RateLimiter()
 
     def person(self, request: Request, needs: Role = Role.NOBODY) -> Person:
         """Who asks, who has to be at least `needs`."""
         address = address_of(request)
-        if not self.ration.take(address):
+        if self._limiter.wait(address, REQUESTS_PER_SECOND):
             raise DeniedError(429, "too many requests: wait a second. Rest always works", **{"Retry-After": "1"})
         try:
             person = self._known(request, address)

@@ -22,7 +22,6 @@ from lumen.console.known_robot import KnownRobot
 from lumen.console.orders import NEEDS, REST
 from lumen.console.past import Past
 from lumen.console.people import Person, Role
-from lumen.console.ration import MAX_STREAMS
 from lumen.console.requests import ALL, NO_STORE, DeniedError, Reception, address_of, as_json, say_why_not
 from lumen.console.sights import STREAM, Sights
 from lumen.console.streams import Listener, Streams, positions_in
@@ -32,6 +31,8 @@ from lumen.language.iso_time import iso_time
 from lumen.loading.project_folders import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
+MAX_STREAMS = 300
+"""Streams that are open at a time, of all pages together."""
 _ID = re.compile(r"[A-Za-z0-9._:-]{1,100}")
 
 

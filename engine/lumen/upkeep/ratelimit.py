@@ -1,14 +1,29 @@
-"""How many messages a second are taken under one key, known before anything of a body is read."""
+"""Limits on messages or requests per second, counted by key."""
 
 import time
+from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import dataclass
 
 BURST = 5.0
 """For how long a silence counts [s]."""
 MAX_KEYS = 10_000
-"""Keys that are counted at a time; beyond that counting begins anew."""
+"""The most keys that are counted at a time: those that were used last."""
 MAX_SENDERS = 16
 """The most senders of a key that are counted separately at a time; further ones are counted as one."""
+
+
+@dataclass(slots=True)
+class TokenBucket:
+    """Tokens that are taken one by one and come back with time. Times are those of one clock [s]."""
+
+    tokens: float
+    since: float
+
+    def wait(self, now: float, rate: float, most: float) -> float:
+        """Return the time until there is a token [s], 0 if there is one; `rate` per second come back, up to `most`."""
+        self.tokens, self.since = min(most, self.tokens + rate * (now - self.since)), now
+        return 0.0 if self.tokens >= 1.0 else (1.0 - self.tokens) / rate
 
 
 class RateLimiter:
@@ -16,7 +31,7 @@ class RateLimiter:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._buckets: dict[str, list[float]] = {}
+        self._buckets: OrderedDict[str, TokenBucket] = OrderedDict()
         self._senders: dict[str, dict[str, float]] = {}
 
     def apart(self, key: str, sender: str) -> str:
@@ -33,15 +48,15 @@ class RateLimiter:
         return f"{key} {sender}"
 
     def wait(self, key: str, rate: float) -> float:
-        """0 where one more is not too much, and counts; else how long it is until the next is not [s]."""
+        """Count one and return 0 if it is within `rate` per second; else return the time until the next one is [s]."""
         now, most = self._clock(), max(BURST * rate, 1.0)
-        if len(self._buckets) > MAX_KEYS:
-            self._buckets.clear()
-        bucket = self._buckets.setdefault(key, [most, now])
-        tokens = min(most, bucket[0] + rate * (now - bucket[1]))
-        bucket[1] = now
-        if tokens >= 1.0:
-            bucket[0] = tokens - 1.0
-            return 0.0
-        bucket[0] = tokens
-        return (1.0 - tokens) / rate
+        if (bucket := self._buckets.get(key)) is None:
+            bucket = self._buckets[key] = TokenBucket(most, now)
+            if len(self._buckets) > MAX_KEYS:
+                self._buckets.popitem(last=False)
+        else:
+            self._buckets.move_to_end(key)
+        if left := bucket.wait(now, rate, most):
+            return left
+        bucket.tokens -= 1.0
+        return 0.0
