@@ -19,7 +19,8 @@ from lumen.bus import connect
 from lumen.language.projects import Project
 from lumen.language.routes import Carried, Direction, Route
 from lumen.language.show import AddressMapping, DmxLink, MqttLink, OscLink, Show, TopicMapping
-from lumen.modules.show import ShowControl, health, mqtt, refusals
+from lumen.modules.show import ShowControl, health, mqtt
+from lumen.upkeep.drops import MAX_KEYS, TELL_PERIOD, Drops
 from tests.modules.conftest import Stand
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, Collector, until
@@ -158,7 +159,7 @@ def test_a_lamp_and_a_button_by_mqtt(
     for payload in ("no json", '{"number": 10}', '{"number": "x"}', "9" * (mqtt.MAX_PAYLOAD + 1)):
         there.send("hall/button", payload)
     until(lambda: module.refused == before + 4)
-    assert any("hall/button (MQTT) is dropped: it is not JSON" in line for line in here.told)
+    assert any("`hall/button (MQTT)` are dropped: it is not JSON" in line for line in here.told)
     assert len([line for line in here.told if "hall/button" in line]) == 1
     for _ in range(200):
         there.send("hall/button", '{"number": 4}')
@@ -190,7 +191,7 @@ def test_a_broker_that_is_away_is_told_once_and_comes_back(
         here.bus.publish(LAMP, {"level": 1.0})
         here.bus.publish("museum.mood", {"name": "late"})
         here.settle()
-        assert here.told[1:] == ["a message on lamp (MQTT) is dropped: the broker is away"]
+        assert here.told[1:] == ["messages on `lamp (MQTT)` are dropped: the broker is away"]
         assert module.refused == 1
         rabbitmq.start()
         until(lambda: here.told[2:] == [f"{name} is back"])
@@ -252,7 +253,7 @@ def test_a_wrong_password_is_told_and_no_device_stops_the_robot(
     there.send("hall/stop", '{"type": "motion", "method": "rest"}')
     until(lambda: module.refused == 1)
     assert stops.bodies == []
-    assert here.told == ["a message on hall/stop (MQTT) is dropped: devices may not send to the route `stop`"]
+    assert here.told == ["messages on `hall/stop (MQTT)` are dropped: devices may not send to the route `stop`"]
     (tmp_path / "mqtt").write_text("guest:wrong")
     other = stand(here.project)
     added(other)
@@ -323,7 +324,7 @@ def test_a_sound_desk_by_osc(desk: tuple[int, list[Any]], museum: Callable[..., 
     until(lambda: module.refused >= before + 6 + 4)
     sender.send_message("/b", 4)
     assert pressed.wait(2)[1] == {"number": 4}
-    assert "a message on lamp (OSC) is dropped: the body has no `on`" in here.told
+    assert "messages on `lamp (OSC)` are dropped: the body has no `on`" in here.told
     assert any("127.0.0.2 is not 127.0.0.1" in line or "no route has the address" in line for line in here.told)
 
 
@@ -414,18 +415,18 @@ def test_a_device_that_has_no_name_is_told_once(museum: Callable[..., Project], 
 
 def test_a_flood_is_a_line_and_then_a_count() -> None:
     told, now = list[str](), [0.0]
-    found = refusals.Refusals(told.append, lambda: now[0])
+    found = Drops(told.append, clock=lambda: now[0])
     for _ in range(500):
         found.add("hall/button (MQTT)", "it is not JSON")
-        found.tick()
-    now[0] = refusals.TELL_PERIOD
-    found.tick()
+        found.tell()
+    now[0] = TELL_PERIOD
+    found.tell()
     assert told == [
-        "a message on hall/button (MQTT) is dropped: it is not JSON",
-        "Lumen dropped 499 more messages on hall/button (MQTT): it is not JSON",
+        "messages on `hall/button (MQTT)` are dropped: it is not JSON",
+        "more messages on `hall/button (MQTT)` were dropped (499 in 10 s): it is not JSON",
     ]
-    for i in range(2 * refusals.MAX_PLACES):
+    for i in range(2 * MAX_KEYS):
         found.add(f"topic {i}", "it is no JSON")
-    found.tick(all=True)
-    assert len(told) == 2 + refusals.MAX_PLACES + 1
-    assert found.count == 500 + 2 * refusals.MAX_PLACES
+    found.tell(all=True)
+    assert len(told) == 2 + MAX_KEYS + 1
+    assert sum(found.counts.values()) == 500 + 2 * MAX_KEYS

@@ -1,4 +1,4 @@
-"""What is dropped, counted under each key and told: a flood is known by its key, and costs no line for each message."""
+"""Counts of what is dropped, by key, and lines about them: a flood costs a line and a count, not a line each."""
 
 import logging
 import re
@@ -11,7 +11,7 @@ from math import inf
 from typing import TypeVar
 
 TELL_PERIOD = 10.0
-"""How long after a line about a key the next one comes at the earliest [s]."""
+"""The least time between two lines about a key [s]."""
 MAX_KEYS = 1_000
 """Keys that are counted apart; what is dropped under further ones is counted as `OTHERS`."""
 OTHERS = "other keys"
@@ -20,17 +20,17 @@ T = TypeVar("T")
 _DIGITS = re.compile(r"\d+")
 
 
-class DropLog:
-    """Counts what is dropped (`counts`, by key) and logs it: the first at once, then each ten seconds how many.
+class Drops:
+    """Counts what is dropped (`counts`, by key), and writes lines: the first at once, then a count every ten seconds.
 
-    Safe from any thread. Whoever owns it calls `tell` now and then, and at its end: what nothing follows is told then.
-    Where `untold` is empty there is nothing to tell.
+    Safe from any thread. The owner calls `tell` now and then, and at its end, so that the last ones are reported too.
+    If `untold` is empty there is nothing to report.
     """
 
     def __init__(
-        self, log: logging.Logger, what: str = "messages", clock: Callable[[], float] = time.monotonic
+        self, write: Callable[[str], None], what: str = "messages", clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._log, self._what, self._clock = log, what, clock
+        self._write, self._what, self._clock = write, what, clock
         self._counts: dict[str, int] = {}
         self.untold: dict[str, tuple[int, str]] = {}
         self._told: dict[str, float] = {}
@@ -38,7 +38,7 @@ class DropLog:
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """How many were dropped under each key."""
+        """The number of drops under each key."""
         with self._changing:
             return dict(self._counts)
 
@@ -53,17 +53,17 @@ class DropLog:
             else:
                 self.untold[key] = (self.untold.get(key, (0, ""))[0] + count, why)
         if first:
-            self._log.warning("%s on `%s` are dropped: %s", self._what, key, why)
+            self._write(f"{self._what} on `{key}` are dropped: {why}")
 
     def push(self, waiting: deque[T], item: T, key_of: Callable[[T], str], why: str) -> None:
-        """Append to a bounded queue; where that is full the oldest gives way, and is counted under its key."""
+        """Append to a bounded queue; if it is full, drop the oldest item and count it under its key."""
         if len(waiting) == waiting.maxlen:
-            with suppress(IndexError):  # somebody has just taken it
+            with suppress(IndexError):  # another thread has just removed it
                 self.add(key_of(waiting[0]), why)
         waiting.append(item)
 
     def tell(self, *, all: bool = False) -> None:
-        """Log what was dropped since the last line about its key, where that was long enough ago, or `all`."""
+        """Report what was dropped since the last line about its key, if that was ten seconds ago, or `all` of it."""
         if not self.untold:
             return
         now = self._clock()
@@ -72,7 +72,16 @@ class DropLog:
             told = [(key, *self.untold.pop(key), now - self._told[key]) for key in due]
             self._told.update(dict.fromkeys(due, now))
         for key, count, why, seconds in told:
-            self._log.warning("more %s on `%s` were dropped (%d in %.0f s): %s", self._what, key, count, seconds, why)
+            self._write(f"more {self._what} on `{key}` were dropped ({count} in {seconds:.0f} s): {why}")
+
+
+class DropLog(Drops):
+    """Drops whose lines are warnings of a logger."""
+
+    def __init__(
+        self, log: logging.Logger, what: str = "messages", clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        super().__init__(log.warning, what, clock)
 
 
 class ReasonLog:

@@ -1,7 +1,6 @@
 """Show control: routes of the exhibition to lamps, screens and sound desks that speak MQTT, OSC or DMX, and back.
 
 show_control.py   the module: what goes out and what comes in, limited and checked
-refusals.py       what is refused or dropped, counted and told
 health.py         whether a device is there, said once
 mqtt.py           a broker of MQTT          payloads.py   bodies as its payloads
 osc.py            a device that takes OSC   arguments.py  bodies as its arguments

@@ -17,7 +17,7 @@ from lumen.language.show import MqttLink
 from lumen.modules.show.device_link import TakeFromDevice
 from lumen.modules.show.health import LinkHealth
 from lumen.modules.show.payloads import body_of_payload, payload_of
-from lumen.modules.show.refusals import Refusals
+from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 
 CREDENTIALS_VARIABLE = "LUMEN_MQTT_CREDENTIALS"
@@ -47,13 +47,13 @@ class MqttBroker:
         fields: Mapping[str, SchemaField | None],
         incoming: Sequence[str],
         deliver: TakeFromDevice,
-        refusals: Refusals,
+        drops: Drops,
         health: LinkHealth,
         name: str = "lumen",
     ) -> None:
         self._link, self._routes, self._fields, self._deliver = link, routes, fields, deliver
         self._incoming = {link.routes[route].topic: route for route in incoming}
-        self._refusals, self._health = refusals, health
+        self._drops, self._health = drops, health
         self._retained: dict[str, bytes] = {}
         self._closing = False
         self._client = self._made(f"{name}-{secrets.token_hex(4)}")
@@ -155,7 +155,7 @@ class MqttBroker:
             return
         place, payload, field = f"{message.topic} (MQTT)", bytes(message.payload), self._fields[route]
         if len(payload) > MAX_PAYLOAD:
-            self._refusals.add(place, f"it is longer than {MAX_PAYLOAD} bytes")
+            self._drops.add(place, f"it is longer than {MAX_PAYLOAD} bytes")
             return
         self._deliver(route, place, lambda: body_of_payload(payload, field))
 

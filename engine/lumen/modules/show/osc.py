@@ -12,7 +12,7 @@ from lumen.language.show import OscLink
 from lumen.modules.show.arguments import body_of_arguments, message_of, messages_of
 from lumen.modules.show.device_link import TakeFromDevice
 from lumen.modules.show.health import LinkHealth
-from lumen.modules.show.refusals import Refusals
+from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 
 POLL = 0.5
@@ -36,12 +36,12 @@ class OscDevice:
         fields: Mapping[str, Sequence[SchemaField]],
         incoming: Sequence[str],
         deliver: TakeFromDevice,
-        refusals: Refusals,
+        drops: Drops,
         health: LinkHealth,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._link, self._fields, self._deliver, self._clock = link, fields, deliver, clock
-        self._refusals, self._health = refusals, health
+        self._drops, self._health = drops, health
         self._routes = {link.routes[route].address: route for route in incoming}
         self._socket: socket.socket | None = None
         self._device: Any = None
@@ -116,7 +116,7 @@ class OscDevice:
                     return
                 continue  # what was sent before met nobody
             if sender[0] != self._device[0]:
-                self._refusals.add(f"the port {self._link.listen} (OSC)", f"{sender[0]} is not {self._link.host}")
+                self._drops.add(f"the port {self._link.listen} (OSC)", f"{sender[0]} is not {self._link.host}")
                 continue
             self._take(data)
 
@@ -124,12 +124,12 @@ class OscDevice:
         try:
             messages = messages_of(data)
         except ModuleError as error:
-            self._refusals.add(f"the port {self._link.listen} (OSC)", str(error))
+            self._drops.add(f"the port {self._link.listen} (OSC)", str(error))
             return
         for address, arguments in messages:
             route = self._routes.get(address)
             if route is None:
-                self._refusals.add(f"the port {self._link.listen} (OSC)", f"no route has the address {address[:80]}")
+                self._drops.add(f"the port {self._link.listen} (OSC)", f"no route has the address {address[:80]}")
                 continue
             fields = self._fields[route]
             self._deliver(route, f"{address} (OSC)", lambda a=arguments, f=fields: body_of_arguments(a, f))  # type: ignore[misc]

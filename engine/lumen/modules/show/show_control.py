@@ -16,8 +16,8 @@ from lumen.language.show import MqttLink, Show, TopicMapping, may_come_from_devi
 from lumen.modules.module import Module
 from lumen.modules.show.device_link import DeviceLink
 from lumen.modules.show.health import LinkHealth
-from lumen.modules.show.refusals import Refusals
 from lumen.ports import Bus, Message, MessageHandler, UsesBroker
+from lumen.upkeep.drops import Drops
 from lumen.upkeep.ratelimit import RateLimiter
 
 LACKING = "MQTT and OSC need two libraries: run `pip install 'lumen-robot[show]'`"
@@ -36,14 +36,14 @@ class ShowControl(Module):
 
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
         super().__init__(project, bus, tell)
-        self._refusals = Refusals(self.tell)
+        self._refused = Drops(self.tell)
         self._limiter, self._counting = RateLimiter(), threading.Lock()
         self._links: dict[str, DeviceLink] = {}
         self._linked: Project | None = None
 
     @property
     def refused(self) -> int:
-        return self._refusals.count
+        return sum(self._refused.counts.values())
 
     def hears(self) -> Mapping[str, MessageHandler]:
         show, routes = self.project.show, self.project.routes
@@ -54,12 +54,12 @@ class ShowControl(Module):
         self._link()
         for link in self._links.values():
             link.tick()
-        self._refusals.tick()
+        self._refused.tell()
         return TICK
 
     def end(self) -> None:
         self._unlink()
-        self._refusals.tick(all=True)
+        self._refused.tell(all=True)
 
     def _send(self, route: str, message: Message) -> None:
         self._link()
@@ -68,24 +68,24 @@ class ShowControl(Module):
                 try:
                     link.send(route, message.body)
                 except ModuleError as error:
-                    self._refusals.add(f"{route} ({name.upper()})", str(error))
+                    self._refused.add(f"{route} ({name.upper()})", str(error))
 
     def _deliver(self, route: str, place: str, make: Callable[[], Any]) -> None:
         """What a device sent; called on the threads of the links."""
         row = self.project.routes.get(route)
         if row is None or not may_come_from_devices(row):
-            self._refusals.add(place, f"devices may not send to the route `{route}`")
+            self._refused.add(place, f"devices may not send to the route `{route}`")
             return
         with self._counting:
             rate = row.rate
             if rate and self._limiter.wait(route, rate):
-                self._refusals.add(place, f"more than {rate:g} messages a second")
+                self._refused.add(place, f"more than {rate:g} messages a second")
                 return
             self.handled += 1
         try:
             self.bus.publish(row.key_for(self.project.robot), make(), ttl=row.ttl)
         except (ModuleError, BusError) as error:
-            self._refusals.add(place, str(error))
+            self._refused.add(place, str(error))
 
     def _link(self) -> None:
         """Open what lumen.yaml says now, where that is not what is open."""
@@ -119,7 +119,7 @@ class ShowControl(Module):
             {name: self._fields(name).get(row.field) for name, row in link.routes.items()},
             self._incoming(link.routes),
             self._deliver,
-            self._refusals,
+            self._refused,
             self._health(f"the MQTT broker {link.host}:{link.port}"),
             f"lumen-{self.project.robot}",
         )
@@ -135,7 +135,7 @@ class ShowControl(Module):
             known = self._fields(name)
             fields[name] = [known[field] for field in (known if row.fields is None else row.fields) if field in known]
         health = self._health(f"the OSC device {link.host}:{link.port}")
-        return OscDevice(link, fields, self._incoming(link.routes), self._deliver, self._refusals, health)
+        return OscDevice(link, fields, self._incoming(link.routes), self._deliver, self._refused, health)
 
     def _dmx(self, show: Show) -> DeviceLink | None:
         if show.dmx is None:
