@@ -1,5 +1,6 @@
 """A run's home may hold what nobody of us wrote: whoever sends a project may send a `.lumen/` with it."""
 
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -24,6 +25,22 @@ def test_a_link_in_a_home_leads_nowhere(tmp_path: Path, name: str) -> None:
         home.hold()
     home.release()
     assert precious.read_text() == "{}"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="files have no limit of size there")
+def test_a_disk_that_takes_a_part_of_a_file_leaves_the_one_before(tmp_path: Path) -> None:
+    import resource
+
+    home = Home(tmp_path)
+    assert home.write_json("trials.json", {"a": 1}) == ""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, hard))
+    try:
+        why = home.write_json("trials.json", {"a": "x" * 200})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert why == "file too large"
+    assert home.read_json("trials.json") == {"a": 1}
 
 
 def test_a_home_that_is_a_link_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -43,7 +43,7 @@ class KeptExplorations:
                 old.unlink()
         except OSError:
             return
-        self._home.write(self._name(explored.behavior, bound, home), json.dumps(asdict(explored)).encode())
+        self._home.write_json(self._name(explored.behavior, bound, home), asdict(explored))
 
     def _name(self, behavior: str, bound: int, home: str) -> str:
         return f"{name_of(json.dumps([*self._content, behavior, bound, home]).encode())}.json"

@@ -1,6 +1,5 @@
 """Whether the language model may speak: switched by people, and kept until somebody switches it again."""
 
-import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -51,6 +50,6 @@ class ModelSwitch:
         if self._home and on:
             self._home.remove(SILENCED_FILE)
         elif self._home:
-            why = self._home.write(SILENCED_FILE, json.dumps({"by": by}).encode())
+            why = self._home.write_json(SILENCED_FILE, {"by": by})
         kept = {"text": f"until the next start only: {why}"} if why else {}
         return {"verdict": "done", "model": self.state, **kept}

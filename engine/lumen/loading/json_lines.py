@@ -1,11 +1,11 @@
 """Files of lines of JSON that may name people: what names one of them is taken out."""
 
 import json
-import os
 from pathlib import Path
 
 from lumen.errors import ModuleError
 from lumen.language.people import PersonName
+from lumen.upkeep.private_folder import write_private
 
 
 def forget_lines(file: Path, person: PersonName) -> int:
@@ -17,10 +17,7 @@ def forget_lines(file: Path, person: PersonName) -> int:
         lines = file.read_bytes().splitlines(keepends=True)
         kept = [line for line in lines if not line_names(line, person)]
         if len(kept) < len(lines):
-            draft = file.with_name(f"{file.name}.new")
-            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as written:
-                written.write(b"".join(kept))
-            os.replace(draft, file)
+            write_private(file, b"".join(kept))
     except FileNotFoundError:
         return 0
     except OSError as error:

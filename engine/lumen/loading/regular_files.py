@@ -5,6 +5,8 @@ import os
 import stat
 from pathlib import Path
 
+from lumen.upkeep.private_folder import NO_LINK
+
 MEGABYTE = 1_000_000
 
 
@@ -14,7 +16,7 @@ def read_regular(path: Path, most: int, *, follow: bool = True) -> bytes:
     Nothing is waited for: of what is no plain file nothing is read. Without `follow` a link is refused, too.
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    handle = os.open(path, flags if follow else flags | getattr(os, "O_NOFOLLOW", 0))
+    handle = os.open(path, flags if follow else flags | NO_LINK)
     try:
         mode = os.fstat(handle).st_mode
         if stat.S_ISDIR(mode):

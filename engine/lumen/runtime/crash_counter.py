@@ -1,7 +1,5 @@
 """Which bundles were begun with and have not lasted: a crash loop is noticed by the start that comes after it."""
 
-import json
-
 from lumen.runtime.home import Home
 
 CRASH_COUNTS_FILE = "trials.json"
@@ -54,4 +52,4 @@ class CrashCounter:
 
     def _write(self, counts: dict[str, int]) -> None:
         latest = dict(list(counts.items())[-MAX_KNOWN_BUNDLES:])
-        self._home.write(CRASH_COUNTS_FILE, json.dumps({"version": CRASH_COUNTS_VERSION, "bundles": latest}).encode())
+        self._home.write_json(CRASH_COUNTS_FILE, {"version": CRASH_COUNTS_VERSION, "bundles": latest})

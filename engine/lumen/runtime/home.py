@@ -11,7 +11,7 @@ from typing import Any
 from lumen.errors import UsageError
 from lumen.loading.packaged import PACKAGE
 from lumen.loading.regular_files import read_regular
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.private_folder import NO_LINK, private_folder, write_private
 from lumen.upkeep.state_folder import state_folder
 
 STATE_FOLDER = ".lumen"
@@ -20,8 +20,6 @@ ROBOTS_FOLDER = "robots"
 """Where the robots of `robots:` have a home each."""
 MAX_RECORD_BYTES = 64_000_000
 """Of one file of a home; where a behaviour stands takes some thousands."""
-_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
-"""A link in the folder may lead to any file of the user: whoever sent the project may have put it there."""
 
 
 class Home:
@@ -41,7 +39,7 @@ class Home:
         """
         try:
             private_folder(self.folder)
-            lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT | _NO_LINK, 0o600)
+            lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT | NO_LINK, 0o600)
         except OSError as error:
             raise UsageError(f"{self.folder} can't be written: {error.strerror}") from None
         if not _locked(lock):
@@ -53,7 +51,7 @@ class Home:
     def held(self) -> bool:
         """Whether some process has it now."""
         try:
-            lock = os.open(self.folder / "lock", os.O_RDWR | _NO_LINK)
+            lock = os.open(self.folder / "lock", os.O_RDWR | NO_LINK)
         except OSError:
             return False
         free = _locked(lock)
@@ -66,19 +64,16 @@ class Home:
             self._lock = None
 
     def write(self, name: str, data: bytes) -> str:
-        """Write a file as a whole or not at all, for its owner alone; empty, or why it could not be.
-
-        It is not forced to the disk: a crash of the process loses nothing, a power cut may bring back the file before.
-        """
-        draft = self.folder / f"{name}.new"
+        """Write a file as `write_private` does; return why that was impossible, empty if it was done."""
         try:
-            handle = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | _NO_LINK, 0o600)
-            with open(handle, "wb", buffering=0) as file:
-                file.write(data)
-            os.replace(draft, self.folder / name)
+            write_private(self.folder / name, data)
         except OSError as error:
             return (error.strerror or str(error)).lower()
         return ""
+
+    def write_json(self, name: str, data: Any) -> str:
+        """Write data as a file of JSON; return why that was impossible, empty if it was done."""
+        return self.write(name, json.dumps(data).encode())
 
     def read(self, name: str) -> bytes | None:
         """What is in a file, None where there is none that can be read."""

@@ -1,7 +1,6 @@
 """What an exhibition needs to go on after a crash: where its behaviour stood, and the very files it ran on."""
 
 import io
-import json
 import time
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -79,17 +78,17 @@ class SnapshotStore:
             "rests": rests,
             "snapshot": frozen,
         }
-        self._wrote(self._home.write(SNAPSHOT_FILE, json.dumps(data).encode()))
+        self._wrote(self._home.write_json(SNAPSHOT_FILE, data))
         self._last = snapshot
         self.count += 1
 
     def beat(self) -> None:
         """The run lives: where its behaviour stands is as true as when it was written."""
-        self._wrote(self._home.write(ALIVE_FILE, json.dumps({"time": time.time()}).encode()))
+        self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time()}))
 
     def leave(self) -> None:
         """The run was told to end: the next one goes on where its behaviour stands."""
-        self._wrote(self._home.write(ALIVE_FILE, json.dumps({"time": time.time(), "told": True}).encode()))
+        self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time(), "told": True}))
 
     def kept(self) -> StoredSnapshot | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""
@@ -149,9 +148,7 @@ class SnapshotStore:
 
     def approve(self, hash: str) -> None:
         """This bundle has proved itself: it is the last good one."""
-        self._wrote(
-            self._home.write(LAST_GOOD_FILE, json.dumps({"version": SNAPSHOT_VERSION, "bundle": hash}).encode())
-        )
+        self._wrote(self._home.write_json(LAST_GOOD_FILE, {"version": SNAPSHOT_VERSION, "bundle": hash}))
 
     def good(self) -> str:
         """The hash of the last good bundle, empty where there is none."""

@@ -1,4 +1,4 @@
-"""Folders of ours that hold names, pictures or keys: whoever makes one makes it here."""
+"""Folders and files of ours that hold names, pictures or keys."""
 
 import os
 from contextlib import suppress
@@ -6,6 +6,9 @@ from pathlib import Path
 
 IGNORE_FILE = ".gitignore"
 _IGNORING = b"# Written by Lumen: here are names, pictures and keys.\n*\n"
+
+NO_LINK = getattr(os, "O_NOFOLLOW", 0)
+"""The flag that refuses a link: one in a project may lead to any file of the user, and a stranger may have sent it."""
 
 
 def private_folder(folder: Path) -> None:
@@ -18,3 +21,14 @@ def private_folder(folder: Path) -> None:
         handle = os.open(folder / IGNORE_FILE, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
         with open(handle, "wb", buffering=0) as file:
             file.write(_IGNORING)
+
+
+def write_private(path: Path, content: bytes) -> None:
+    """Write a file for its owner alone, as a whole or not at all. Raises OSError.
+
+    It is not forced to the disk: a crash of the process loses nothing, a power cut may bring back the file before.
+    """
+    draft = path.with_name(f"{path.name}.new")
+    with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | NO_LINK, 0o600), "wb") as file:
+        file.write(content)
+    os.replace(draft, path)

@@ -1,6 +1,5 @@
 """Incidents and numbers of a fleet at its centre, each counted once: kept together with how far the stream was read."""
 
-import json
 import time
 from collections import deque
 from collections.abc import Mapping
@@ -93,4 +92,4 @@ class FleetLog:
             "ids": list(self._ids),
             "numbers": self._numbers,
         }
-        return self._home.write(FILE, json.dumps(data).encode())
+        return self._home.write_json(FILE, data)

@@ -1,6 +1,5 @@
 """What a robot's agent keeps on its disk, so that a crash changes nothing of what it has promised."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -67,4 +66,4 @@ def remember(home: Home, robot: str) -> AgentMemory:
 
 def keep(home: Home, robot: str, memory: AgentMemory) -> str:
     """Write it; why that could not be, else empty."""
-    return home.write(memory_file(robot), json.dumps(asdict(memory)).encode())
+    return home.write_json(memory_file(robot), asdict(memory))

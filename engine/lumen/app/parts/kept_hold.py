@@ -1,6 +1,5 @@
 """That a person stopped the robot, kept for a run after a crash."""
 
-import json
 from datetime import datetime
 from pathlib import Path
 
@@ -16,7 +15,7 @@ def keep_hold(hold: PersonHold, folder: Path) -> None:
 
     def keep(stopped: StoppedBy | None) -> None:
         if stopped:
-            home.write(STOPPED_FILE, json.dumps({"by": stopped.by, "since": stopped.since.isoformat()}).encode())
+            home.write_json(STOPPED_FILE, {"by": stopped.by, "since": stopped.since.isoformat()})
         else:
             home.remove(STOPPED_FILE)
 

@@ -1,6 +1,5 @@
 """A brain whose robot is in another process: the robot is on the bus."""
 
-import json
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -119,7 +118,7 @@ class RemoteBrainPart(BrainPart):
         super().begin(now)
         if self._home:
             said = {"session": self.robot.session, "earlier": self._earlier}
-            self._home.write(SESSION, json.dumps(said).encode())
+            self._home.write_json(SESSION, said)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Live through a tick. Raises BusRefusedError where the robot follows another brain."""

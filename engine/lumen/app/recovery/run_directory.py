@@ -1,6 +1,5 @@
 """What a run has in the home of its project: the door to its bus, its records, and what the run before left there."""
 
-import json
 import logging
 import os
 from collections.abc import Mapping
@@ -118,7 +117,7 @@ class RunDirectory:
             "port": address.port if address else 0,
             "key": address.key if address else "",
         }
-        self.home.write(ADDRESS_FILE, json.dumps(data).encode())
+        self.home.write_json(ADDRESS_FILE, data)
 
     def close(self, *, forget: bool) -> None:
         """Give it back; `forget` where the run has ended as it should, and there is nothing to go on with."""

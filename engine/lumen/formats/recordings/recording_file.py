@@ -9,6 +9,7 @@ from typing import Any, assert_never
 from lumen.errors import RecordingError
 from lumen.extras import demand
 from lumen.formats.recordings.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
+from lumen.upkeep.private_folder import NO_LINK
 
 CHUNK_BYTES = 64_000
 """After which a piece is closed, which can be read from then on: with the library's 1 MB a kill left nothing."""
@@ -18,7 +19,6 @@ SYNC_PERIOD = 2.0
 """How often the system is asked to bring it to the disk [s]."""
 MAX_CHANNELS = 60_000
 """MCAP counts channels with 16 bits; what comes on further ones is left out."""
-_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
 
 def demand_recording() -> None:
@@ -38,7 +38,7 @@ class RecordingFile:
         from mcap.writer import Writer  # 0.4 s, and only who records needs it
 
         self.path, self.messages = path, 0
-        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | _NO_LINK, 0o600)
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | NO_LINK, 0o600)
         self._file: Any = open(handle, "wb")  # noqa: SIM115  it is closed by `finish`
         self._writer: Any = Writer(self._file, chunk_size=CHUNK_BYTES)
         self._writer.start(profile="", library="lumen")

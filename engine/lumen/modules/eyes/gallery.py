@@ -1,7 +1,6 @@
 """Whose face it is: local binary patterns of the faces that were shown together with a name."""
 
 import io
-import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from lumen.errors import ModuleError
 from lumen.language.people import name_key
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.private_folder import private_folder, write_private
 
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
@@ -105,16 +104,14 @@ class FaceGallery:
             return
         import numpy as np
 
-        data, draft = io.BytesIO(), self._file.with_suffix(".new")
+        data = io.BytesIO()
         names = np.array([name for name, _, _ in self._faces], dtype=np.str_)
         times = np.array([time for _, time, _ in self._faces], dtype=np.float64)
         faces = np.array([face for _, _, face in self._faces], dtype=np.uint8).reshape(-1, FACE_SIZE, FACE_SIZE)
         np.savez_compressed(data, names=names, times=times, faces=faces)
         try:
             private_folder(self._file.parent)
-            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-                file.write(data.getvalue())
-            os.replace(draft, self._file)
+            write_private(self._file, data.getvalue())
         except OSError as error:
             raise ModuleError(f"{self._file} cannot be written: {error.strerror}") from None
 

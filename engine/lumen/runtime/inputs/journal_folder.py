@@ -9,14 +9,13 @@ from typing import BinaryIO
 from lumen.errors import JournalError
 from lumen.language.iso_time import file_stamp
 from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.private_folder import NO_LINK, private_folder
 
 JOURNAL_FOLDER = "journal"
 REHEARSED_FOLDER = "rehearsed"
 """Below it: the runs of stories and programs, which push out no visit."""
 DAY = 86400.0
 MEGABYTE = 1_000_000
-_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
 
 class JournalFolder:
@@ -43,7 +42,7 @@ class JournalFolder:
         """A new file that begins with this header; one of this run that has no entry yet gives way. Raises OSError."""
         private_folder(self.folder)
         name = f"{header.first:012d}-{file_stamp(header.began)}-{header.run[:8]}{JOURNAL_SUFFIX}"
-        handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | _NO_LINK, 0o600)
+        handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | NO_LINK, 0o600)
         file = open(handle, "wb", buffering=0)  # noqa: SIM115  it is closed where it is written
         file.write(header.line())
         return file
