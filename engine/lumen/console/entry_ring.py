@@ -1,7 +1,9 @@
 """The latest entries of a robot's journal, each encoded once for all who listen."""
 
+from bisect import bisect_right
 from collections import deque
 from collections.abc import Sequence
+from itertools import islice
 from typing import NamedTuple
 
 import orjson
@@ -54,14 +56,8 @@ class EntryRing:
         """Some of those after a position, the oldest first; None where not all of them are kept any more."""
         if position < self.first:
             return None
-        skip = 0
-        if self._kept and position >= self._kept[0].position:
-            low, high = 0, len(self._kept)
-            while low < high:
-                middle = (low + high) // 2
-                low, high = (middle + 1, high) if self._kept[middle].position <= position else (low, middle)
-            skip = low
-        return [self._kept[at] for at in range(skip, min(skip + PAGE, len(self._kept)))]
+        begin = bisect_right(self._kept, position, key=lambda entry: entry.position)
+        return list(islice(self._kept, begin, begin + PAGE))
 
     def encoded(self, page: ToldPage) -> list[EncodedEntry]:
         """The entries of a page, each with its robot, its time (ISO 8601), a line for people and its kind."""
