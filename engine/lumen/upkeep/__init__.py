@@ -1,1 +1,1 @@
-"""What keeps an exhibition going: threads that are begun again, a count of what is dropped, limits of rate."""
+"""What keeps an exhibition going: watched threads, counts of drops, limits of rate, pauses between attempts."""
