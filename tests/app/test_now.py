@@ -10,12 +10,15 @@ import pytest
 
 import lumen
 from lumen.app.asking import operator_key
+from lumen.app.doings import Doings
 from lumen.app.exhibition import Exhibition
 from lumen.app.raised_events import person_in
 from lumen.bus import Bus, connect
 from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.commands import Look, Play, Say, Start
 from lumen.language.events import Event
 from lumen.ports import Message
+from tests import ROOT
 from tests.tables import for_each
 from tests.waiting import until
 
@@ -209,3 +212,13 @@ def test_a_text_of_somebody_else_is_told_as_long_as_it_takes(copy: Path) -> None
         exhibition.run(20.0)
         said = exhibition.view()["saying"]
         assert said is None or said["text"] != "The museum closes soon."
+
+
+def test_a_command_waits_until_it_is_answered() -> None:
+    doings = Doings(lambda: lumen.load(ROOT), lambda: None, lambda: 0.0)
+    for id, command in (("c1", Look()), ("c2", Play("wave")), ("c3", Say("Hello!"))):
+        doings.performing(Start(id, command), 0.0)
+    assert doings.commands == 3
+    for left, id in ((2, "c1"), (1, "c2"), (0, "c3")):
+        doings.answered(Event(f"done.command.{id}", None, 1.0))
+        assert doings.commands == left

@@ -46,6 +46,17 @@ def test_what_led_to_it_and_the_minute_after_it_are_kept(folder: RecordingsFolde
     assert folder.files() == [path]
 
 
+def test_a_recording_holds_what_begins_each_of_its_pieces(folder: RecordingsFolder) -> None:
+    tape = RingTape(folder, RecordingSettings(ring=120.0), first=lambda: encoded(said("lumen.first", {"at": -1})))
+    live(tape, 0, 100)
+    pieces = len(folder.parts())
+    assert pieces > 1
+    tape.mark("mark", BEGAN + 90)
+    tape.close()
+    (path,) = folder.files()
+    assert [topic for topic, _ in bodies(path)].count("lumen.first") == pieces
+
+
 def test_what_happens_meanwhile_makes_it_longer_but_not_endless(folder: RecordingsFolder) -> None:
     kept = list[Path]()
     tape = RingTape(folder, RecordingSettings(ring=120.0), kept=kept.append)

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from lumen.language.commands import Look
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.model import load
+from lumen.robots.simulation.model_terms import Variation
 from tests.simulation.conftest import MODELS
 from tests.simulation.published import JOINTS, LINKS, TOTAL_MASS
 
@@ -92,6 +94,15 @@ def composed(model: mujoco.MjModel, parts: list[str]) -> tuple[float, NDArray[np
 
 def test_the_robot_weighs_what_was_published(model: mujoco.MjModel) -> None:
     assert model.body("nao/").subtreemass[0] == pytest.approx(TOTAL_MASS, rel=1e-4)
+
+
+@pytest.mark.once
+def test_a_heavier_brother_is_heavier_in_all_its_links(body: Body) -> None:
+    worlds = [load(body, MODELS, "hall.xml", variation) for variation in (None, Variation(mass=1.1))]
+    usual, heavy = ({link: world.find("body", f"nao/{link}").inertial for link in LINKS} for world in worlds)
+    for link, inertial in heavy.items():
+        assert inertial.mass == pytest.approx(1.1 * usual[link].mass), link
+        assert inertial.fullinertia == pytest.approx(1.1 * usual[link].fullinertia), link
 
 
 def test_nothing_helps_the_robot_to_stand(robot: SimulatedRobot) -> None:

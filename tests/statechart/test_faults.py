@@ -134,6 +134,14 @@ def test_an_endless_chain_ends_in_an_error_that_names_the_states() -> None:
         step(machine, initial(machine).snapshot, Event("go"))
 
 
+def test_an_endless_chain_names_the_states_of_its_loop_and_not_those_before() -> None:
+    way = {f"way{i}": {"always": f"way{i + 1}"} for i in range(20)}
+    states = {"a": {"on": {"go": "way0"}}, **way, "way20": {"always": "b"}, "b": {"always": "c"}, "c": {"always": "b"}}
+    machine = Machine.from_dict({"states": states})
+    with pytest.raises(LumenError, match="goes through `b`, `c`; "):
+        step(machine, initial(machine).snapshot, Event("go"))
+
+
 def test_nesting_without_end_is_a_diagnostic() -> None:
     data: dict[str, Any] = {"states": {"a": None}}
     for _ in range(200):

@@ -7,7 +7,10 @@ from lumen.language.events import Event
 from lumen.statechart import Machine, Snapshot, Step, initial, step
 
 WORDS = {
-    "fillers": {"en": ["please", "well", "um", "oh", "can't you", "why not", "Lumen"], "id": ["dong", "ya"]},
+    "fillers": {
+        "en": ["please", "well", "um", "oh", "can't you", "why not", "well then", "Lumen"],
+        "id": ["dong", "ya"],
+    },
     "small_words": {
         "en": ["no", "not", "nothing", "that", "is", "all", "i", "am", "the", "a", "it", "do"],
         "id": ["tidak", "sudah"],

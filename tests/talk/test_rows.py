@@ -37,6 +37,7 @@ OFFER = {
         ("I have a question: why do you sing", "asked_it"),
         ("No.", "ends"),
         ("well, no, please", "ends"),
+        ("well then no", "ends"),
         ("no no no", "ends"),
         ("no idea what you mean", "answers"),
         ("kamu sudah makan", "answers"),
