@@ -3,9 +3,8 @@
 from typing import Any
 
 from lumen.app.narrator import Narrator
-from lumen.language.commands import Look, Play, Start
+from lumen.language.commands import BodyCommand, Look, Play, Start
 from lumen.language.events import Event
-from lumen.ports import RobotCommand
 from lumen.statechart import Machine
 from tests.tables import for_each
 
@@ -31,7 +30,7 @@ class Lines(Narrator):
         (Play("wave"), "cancelled", None, ("robot", "ends early: plays wave")),
     ],
 )
-def test_an_answer_adds_its_line(command: RobotCommand, answer: str, data: Any, line: tuple[str, str] | None) -> None:
+def test_an_answer_adds_its_line(command: BodyCommand, answer: str, data: Any, line: tuple[str, str] | None) -> None:
     narrator = Lines()
     narrator.performing(Start("c1", command), 0.0)
     narrator.lines.clear()

@@ -7,9 +7,6 @@ import pytest
 
 from lumen.app.model_switch import SILENCED_FILE, UNREADABLE, ModelSwitch
 from lumen.bus import connect
-from lumen.console.orders import order_of
-from lumen.console.robot_keys import RobotKeys
-from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.runtime.questions import Questions
 from tests.conversation.conftest import with_model
@@ -51,10 +48,3 @@ def test_where_it_can_not_be_kept_that_is_said(project: Project, tmp_path: Path)
 def test_without_a_model_there_is_nothing_to_switch(project: Project, tmp_path: Path) -> None:
     made, _ = switch(project, tmp_path, [])
     assert (made.state, made.switch("ada", on=False)["verdict"]) == (None, "refused")
-
-
-def test_the_console_sends_it() -> None:
-    keys = RobotKeys("operator", "config", "command", "stop", "image")
-    assert order_of("model", {"on": False}, keys, "ada").body == {"ask": "model", "on": False, "by": "ada"}
-    with pytest.raises(UsageError):
-        order_of("model", {"on": "no"}, keys, "ada")

@@ -70,6 +70,7 @@ def test_why_is_said_in_words() -> None:
                         "go": "b",
                         "more": [{"target": "b", "guard": "context.n > 3 && event.data.k == 1"}, {"target": "b"}],
                         "said": {"target": "b", "guard": "context.n == 1 && event.data.k == 1"},
+                        "told": {"target": "b", "guard": "context.n == 1"},
                     },
                     "after": {"5s": "b"},
                     "always": {"target": "b", "guard": "context.n > 8"},
@@ -84,6 +85,8 @@ def test_why_is_said_in_words() -> None:
     assert told["said", True].guard
     assert told["said", True].guard.holds is None
     assert told["said", True].guard.values == {"context.n": 1}
+    assert told["told", True].guard
+    assert told["told", True].guard.holds is True
     assert told["after 5 s", True].why == "in 5 s"
     assert told["after 5 s", True].due == 5.0
     assert told["", False].why == "context.n > 8 is false: context.n is 1"

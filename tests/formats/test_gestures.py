@@ -221,6 +221,7 @@ def test_what_only_a_run_would_tell_is_listed() -> None:
         ("a.motion", "", "does not begin with"),
         ("a.motion", "#WEBOTS_MOTION,V2.0,HeadYaw\n", "only V1.0 and V1.1 can be read"),
         ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw,HeadYaw\n", "listed twice"),
+        ("a.motion", "#WEBOTS_MOTION,V1.1,HeadYaw%HeadYaw\n", "the joint `HeadYaw` is listed twice"),
         ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n", "the file moves no joint of NAO"),
         ("a.motion", "#WEBOTS_MOTION,V1.0\n00:00:100,a,1\n", "contains no joint names"),
         (

@@ -94,6 +94,17 @@ def test_parallel_history_final_and_deep_initial() -> None:
     assert said == []
 
 
+def test_a_final_state_of_a_parallel_one_is_written_as_a_state_that_is_at_its_end() -> None:
+    regions = {"r": {"states": {"f": {"type": "final"}}}, "s": {"type": "final", "entry": {"log": "x"}}}
+    text, said = write_scxml(Machine.from_dict({"states": {"p": {"type": "parallel", "states": regions}}}), dotted("m"))
+    assert [d.message for d in said] == [
+        "`p.s` is a final state in a parallel state: it becomes a state with an inner final state"
+    ]
+    data, _ = read_scxml("m.scxml", text.encode(), "m")
+    found = data["states"]["p"]["states"]["s"]
+    assert found == {"initial": "_end", "entry": [{"log": "x"}], "states": {"_end": {"type": "final"}}}
+
+
 def test_values_that_change_their_kind_are_of_any() -> None:
     data, _ = read('<datamodel><data id="x" expr="0"/><data id="y" expr="x + 1"/>'
                    '<data id="z">[1, "a"]</data></datamodel>'

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lumen.errors import ModuleError
 from lumen.interpreters.explaining.sayings import path_of
 from lumen.interpreters.explaining.sentences import explained, first_context
 from lumen.language.projects import Project
@@ -18,7 +19,7 @@ from lumen.modules.ears.expected import expected, heard_names
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
 from lumen.modules.ears.sphinx import MAX_MODELS, Sphinx
-from lumen.modules.sound import Sound
+from lumen.modules.sound import Sound, sound_of
 from lumen.modules.voice import espeak
 from tests.modules.conftest import Stand
 from tests.tables import for_each
@@ -114,6 +115,13 @@ def test_a_sound_that_is_none_is_one_line(stand: Make, content: str, said: str) 
     assert said in here.told[0]
     here.bus.publish(RECORDING, {"name": "r2", "content": Sound(16_000, b"\x01\x00" * 8_000).text()})
     assert heard.wait(1)[0]["name"] == "r2"
+
+
+@for_each("content", [None, 5, ["UklGRg=="]])
+def test_a_sound_that_is_no_text_is_a_module_error(content: object) -> None:
+    """The schema of the message refuses it first, unless the project has its own."""
+    with pytest.raises(ModuleError, match="a sound must be a text"):
+        sound_of(content)
 
 
 def test_a_language_that_nobody_understands(stand: Make) -> None:

@@ -10,6 +10,7 @@ from lumen.app.versions import version
 from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
+from lumen.interpreters.changes.machines import machine_changes
 from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -20,6 +21,7 @@ from lumen.project import load
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.statechart import Machine
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.provided import program
@@ -170,6 +172,17 @@ def test_a_change_is_told(edits: list[tuple[str, str, str]], told: list[str], gr
     found = changes(PLAIN, edited(*edits))
     assert [change.sentence for change in found] == told
     assert risk(found) is greatest
+
+
+def test_another_time_of_day_is_told() -> None:
+    early, late = (
+        Machine.from_dict({"id": "m", "states": {"open": {"at": {time: "shut"}}, "shut": {}}})
+        for time in ("10:00", "11:30")
+    )
+    assert [change.sentence for change in machine_changes("m", early, late)] == [
+        "state `open` no longer goes to `shut` at 10:00",
+        "state `open` now goes to `shut` at 11:30",
+    ]
 
 
 def test_all_changes_in_one_line() -> None:

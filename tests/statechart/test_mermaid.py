@@ -55,6 +55,11 @@ def test_a_diagram() -> None:
     assert mermaid(Machine.from_dict(CHART)) == DIAGRAM
 
 
+def test_an_arrow_without_event_and_guard_has_no_caption() -> None:
+    text = mermaid(Machine.from_dict({"states": {"a": {"always": "b"}, "b": None}}))
+    assert text.splitlines()[-1] == "  s1 --> s2"
+
+
 def test_a_parallel_root_stands_in_a_frame() -> None:
     text = mermaid(Machine.from_dict({"id": "tour", "type": "parallel", "states": {"a": None, "b": None}}))
     assert text.splitlines()[1:] == [
