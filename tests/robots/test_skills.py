@@ -1,6 +1,7 @@
 """What a body lacks for a command: robots refuse it, behaviours leave it out, and say so in the same words."""
 
 from dataclasses import replace
+from math import inf, nan
 from pathlib import Path
 
 import pytest
@@ -8,11 +9,15 @@ import pytest
 import lumen
 from lumen.errors import BadCommandError
 from lumen.language.commands import GoTo, Leds, Look, Move, Posture, Rest, Say, Walk
+from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.roles import Base, BaseKind, Roles
 from lumen.language.skills import lack_of, tracking_lack
+from lumen.ports import Aim, Perform, RobotCommand, Sense
 from lumen.robots.command_table import check_command
+from lumen.robots.recording import RecordingRobot
 from tests import ROOT
 from tests.exhibits import BODY
+from tests.tables import for_each
 
 STUMP = replace(BODY, name="Stump", roles=Roles())
 SHIPPED = ROOT
@@ -52,6 +57,38 @@ def test_robots_refuse_what_the_body_lacks_in_lint_s_words(command: object, lack
     with pytest.raises(BadCommandError, match=lacks):
         check_command(command, STUMP)  # type: ignore[arg-type]
     assert lack_of(command, BODY) is None
+
+
+def motion(**tracks: tuple[Keyframe, ...]) -> Perform:
+    return Perform(MotionDefinition("nod", 1.0, tracks))
+
+
+@for_each(
+    ("command", "reason"),
+    [
+        (Look(nan, 0.0), "`HeadYaw` cannot move to nan"),
+        (Look(0.0, inf), "`HeadPitch` cannot move to inf"),
+        (Aim({"HaedYaw": 0.1}), "`HaedYaw` is not a joint of this robot: did you mean `HeadYaw`"),
+        (Aim({"HeadYaw": nan}), "`HeadYaw` cannot move to nan"),
+        (Aim({"HeadYaw": 0.1}, 0.0), "a speed must be above 0 and at most 1, not 0"),
+        (Aim({"HeadYaw": 0.1}, nan), "a speed must be above 0 and at most 1, not nan"),
+        (motion(HaedYaw=(Keyframe(1.0, 0.1),)), "`HaedYaw` is not a joint of this robot: did you mean `HeadYaw`"),
+        (motion(HeadYaw=(Keyframe(1.0, nan),)), "`nod` has an angle or a time that is not a number"),
+        (motion(HeadYaw=(Keyframe(1.0, 0.1, handle_in=(0.1, inf)),)), "`nod` has an angle or a time"),
+        (Perform(MotionDefinition("nod", inf, {})), "`nod` has an angle or a time that is not a number"),
+        (motion(HeadYaw=(Keyframe(0.0, 0.1),)), "the times of the keys of `HeadYaw` must be above 0 and increase"),
+        (motion(HeadYaw=(Keyframe(1.0, 0.1), Keyframe(1.0, 0.2))), "the times of the keys of `HeadYaw` must"),
+    ],
+)
+def test_every_robot_refuses_what_is_no_goal_for_its_joints(command: RobotCommand, reason: str) -> None:
+    with pytest.raises(BadCommandError) as refused:
+        check_command(command, BODY)
+    assert reason in str(refused.value)
+    robot = RecordingRobot(BODY)
+    robot.start("a", command)
+    robot.advance(1.0)
+    assert [event.name for event in robot.poll()] == ([] if isinstance(command, Aim) else ["error.command.a"])
+    assert robot.read(Sense.JOINT) == replace(RecordingRobot(BODY).read(Sense.JOINT), time=1.0)
 
 
 def test_what_every_body_can_do_lacks_nothing() -> None:

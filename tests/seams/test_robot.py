@@ -12,9 +12,10 @@ from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake
 from lumen.language.events import Event
+from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Hall, Joints, Perform, Record, Robot, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Hall, Joints, Perform, Record, Robot, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteHall, RemoteRobot, RobotHost
 from lumen.robots.simulation import SimulatedRobot
@@ -115,6 +116,13 @@ def test_what_it_can_not_do_is_an_answer_and_not_an_exception(robot: Body) -> No
     [answer] = live(robot, 0.2)
     assert answer.name == "error.command.a"
     assert "Handstand" in answer.data["reason"]
+
+
+@pytest.mark.parametrize("command", [Look(nan), Perform(MotionDefinition("m", 1.0, {"Nose": (Keyframe(1.0, 0.1),)}))])
+def test_what_is_no_goal_for_its_joints_is_refused(robot: Body, command: RobotCommand) -> None:
+    robot.start("a", command)
+    [answer] = live(robot, 6.0)
+    assert answer.name == "error.command.a"
 
 
 def test_its_volume_is_set_while_it_speaks(robot: Body) -> None:

@@ -6,7 +6,8 @@ takes, and how it crosses the bus. Robots that move perform it in their `skills.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import hypot, inf
+from itertools import pairwise
+from math import hypot, inf, isfinite
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
@@ -96,6 +97,36 @@ def _check_posture(command: Posture, body: Body) -> None:
     if command.name not in body.postures:
         hint = did_you_mean(command.name, body.postures, "it knows")
         raise BadCommandError(f"no posture `{command.name}`: {hint}")
+
+
+def _check_joints(angles: Mapping[str, float], body: Body) -> None:
+    for name, angle in angles.items():
+        if name not in body.joints:
+            raise BadCommandError(f"`{name}` is not a joint of this robot: {did_you_mean(name, body.joints)}")
+        if not isfinite(angle):
+            raise BadCommandError(f"`{name}` cannot move to {angle}")
+
+
+def _check_aim(command: Aim, body: Body) -> None:
+    _check_joints(command.angles, body)
+    if not command.speed > 0:
+        raise BadCommandError(f"a speed must be above 0 and at most 1, not {command.speed}")
+
+
+def _check_look(command: Look, body: Body) -> None:
+    _check_joints(body.roles.head_joints(command.yaw, command.pitch), body)
+
+
+def _check_motion(command: Perform, body: Body) -> None:
+    motion = command.motion
+    _check_joints(dict.fromkeys(motion.tracks, 0.0), body)
+    keys = [key for track in motion.tracks.values() for key in track]
+    numbers = (x for key in keys for x in (key.time, key.angle, *key.handle_in, *key.handle_out))
+    if not (isfinite(motion.duration) and all(map(isfinite, numbers))):
+        raise BadCommandError(f"`{motion.name}` has an angle or a time that is not a number")
+    for joint, track in motion.tracks.items():
+        if any(after <= before for before, after in pairwise([0.0, *(key.time for key in track)])):
+            raise BadCommandError(f"the times of the keys of `{joint}` must be above 0 and increase")
 
 
 def _check_lights(command: Leds, body: Body) -> None:
@@ -245,6 +276,7 @@ _PERFORM = CommandRow(
     lambda c, body: parts_of_motion(c.motion, body),
     lambda c: c.motion.duration,
     channel="play",
+    check=_check_motion,
 )
 _RECORD = CommandRow(
     Record,
@@ -268,6 +300,7 @@ _LOOK = CommandRow(
     lambda p: Look(p.number("yaw", 0.0), p.number("pitch", 0.0)),
     owns(HEAD),
     lambda c: LOOK_DURATION,
+    check=_check_look,
 )
 _LEDS = CommandRow(
     Leds,
@@ -319,6 +352,7 @@ _AIM = CommandRow(
     lambda c: {"jointNames": list(c.angles), "angles": list(c.angles.values()), "speed": c.speed},
     lambda p: aimed(p, p.joints()),
     owns(),
+    check=_check_aim,
 )
 """Nobody waits for an aim, and it moves what no command owns."""
 

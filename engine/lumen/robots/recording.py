@@ -1,10 +1,11 @@
 """A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
 
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, inf, isfinite
+from math import hypot, inf
 
-from lumen.errors import RobotFailedError, UsageError
+from lumen.errors import RobotError, RobotFailedError, UsageError
 from lumen.interpreters.bounds import nearest_angles
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
@@ -30,6 +31,9 @@ PODIUM_HEIGHT = 0.5
 
 FACE_HEIGHT_FRACTION = 0.93
 """Where a visitor's face is, as a fraction of their height."""
+
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass
@@ -105,6 +109,11 @@ class RecordingRobot:
         if isinstance(command, Live):
             self._life.live(command)
         elif isinstance(command, Aim):
+            try:
+                check_command(command, self.body)
+            except RobotError as error:
+                _log.warning("an aim was refused: %s", error)
+                return
             self._life.led(command.angles, self.time)
             self._turn({n: a for n, a in command.angles.items() if self._free(n)})
         else:
@@ -221,13 +230,10 @@ class RecordingRobot:
         return offsets
 
     def _free(self, joint: str) -> bool:
-        """Whether no command owns that joint, or the robot has none of that name."""
+        """Whether no command owns that joint."""
         return not self._executor.owner(self._part.get(joint, ""))
 
     def _turn(self, angles: Mapping[str, float]) -> None:
-        joints = self.body.joints
-        if any(name not in joints or not isfinite(angle) for name, angle in angles.items()):
-            return
         self._angles.update(nearest_angles(angles, self.body))
 
 

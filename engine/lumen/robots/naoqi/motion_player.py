@@ -2,14 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from math import isfinite
 
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.choreography import joined
 from lumen.interpreters.limits import LIMIT_SLACK
 from lumen.interpreters.postures import UPRIGHT
 from lumen.interpreters.trajectory import JointTrack, Trajectory
-from lumen.language.diagnostics import did_you_mean
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.robots.cues import EventSink
@@ -30,15 +28,8 @@ APPROACH_SPEED = 0.8
 def fitted(motion: MotionDefinition, body: Body, start: Mapping[str, float]) -> MotionDefinition:
     """The motion from these angles on [rad], begun so much later that no joint has to hurry to its first key.
 
-    Raises RobotError for joints that the body lacks, and for angles and speeds that it can't have.
+    Raises RobotError for angles and speeds that the body can't have.
     """
-    for joint, keys in motion.tracks.items():
-        if joint not in body.joints:
-            raise BadCommandError(f"`{joint}` is not a joint of this robot: {did_you_mean(joint, body.joints)}")
-        if not all(isfinite(x) for key in keys for x in (key.time, key.angle, *key.handle_in, *key.handle_out)):
-            raise BadCommandError(f"`{motion.name}` has an angle or a time that is not a number")
-    if not isfinite(motion.duration):
-        raise BadCommandError(f"`{motion.name}` has no duration")
     late = max((_late(track, motion, body) for track in Trajectory(motion, start).tracks), default=0.0)
     if not late:
         return motion

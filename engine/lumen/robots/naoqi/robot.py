@@ -9,7 +9,7 @@ from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.ports import Aim, Battery, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import parts_of
+from lumen.robots.command_table import check_command, parts_of
 from lumen.robots.executor import Executor
 from lumen.robots.naoqi.call_sequence import CallSequence
 from lumen.robots.naoqi.hardware import hardware_of
@@ -72,7 +72,7 @@ class NaoqiRobot:
             self._executor.start(id, command)
             return
         try:
-            self._skills.inside(command.angles)
+            check_command(command, self.body)
         except RobotError as error:
             _log.warning("an aim was refused: %s", error)
         else:

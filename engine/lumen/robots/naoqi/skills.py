@@ -2,13 +2,12 @@
 
 import logging
 from collections.abc import Callable, Mapping
-from math import inf, isfinite
+from math import inf
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
 from lumen.interpreters.bounds import nearest_angles
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
-from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
@@ -89,12 +88,7 @@ class NaoqiSkills:
                 assert_never(command)
 
     def inside(self, angles: Mapping[str, float]) -> dict[str, float]:
-        """The nearest angles inside the joints' limits. Raises RobotError for what is no joint, or no angle."""
-        for name, angle in angles.items():
-            if name not in self._body.joints:
-                raise BadCommandError(f"`{name}` is not a joint of this robot: {did_you_mean(name, self._body.joints)}")
-            if not isfinite(angle):
-                raise BadCommandError(f"`{name}` cannot move to {angle}")
+        """The nearest angles inside the joints' limits."""
         return nearest_angles({name: float(angle) for name, angle in angles.items()}, self._body)
 
     def _say(self, said: Say) -> CallSteps:

@@ -31,7 +31,6 @@ class JointTransition:
         seconds: float,
         after: Callable[[], None] | None = None,
     ) -> None:
-        motors.check(targets)
         self._motors, self._begin, self._after = motors, now, after
         self._start = motors.wanted(targets)
         self._way = {name: targets[name] - angle for name, angle in self._start.items()}

@@ -1,9 +1,7 @@
 """What the robot does while it plays a motion or speaks."""
 
 from collections.abc import Mapping
-from math import isfinite
 
-from lumen.errors import BadCommandError
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
@@ -27,7 +25,6 @@ class MotionPlayback:
     """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
 
     `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` gets words and sounds.
-    Raises RobotError for a motion that names other joints than the robot's, or angles that are no numbers.
     """
 
     def __init__(
@@ -39,7 +36,6 @@ class MotionPlayback:
         now: float,
         notice: EventSink = lambda _: None,
     ) -> None:
-        _check(motors, motion)
         self._motors, self._lights, self._motion, self._home = motors, lights, motion, home
         self._begin = self._now = now
         self._cues = sorted(motion.cues, key=lambda cue: cue.time)
@@ -140,10 +136,3 @@ class SpeechActivity:
     def cancel(self) -> None:
         self._until = 0.0
         self._voice.end(self._now)
-
-
-def _check(motors: Motors, motion: MotionDefinition) -> None:
-    numbers = (x for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle))
-    if not (isfinite(motion.duration) and all(map(isfinite, numbers))):
-        raise BadCommandError(f"`{motion.name}` has an angle or a time that is not a number")
-    motors.check(dict.fromkeys(motion.tracks, 0.0))

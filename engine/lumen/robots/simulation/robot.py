@@ -22,6 +22,7 @@ from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
+from lumen.robots.command_table import check_command
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation.aim_controller import AimController
@@ -175,6 +176,7 @@ class SimulatedRobot:
             self._executor.start(id, command)
             return
         try:
+            check_command(command, self.body)
             if self.awake and not self.fallen:
                 self._aiming.aim(command)
                 self._life.led(command.angles, self.time)

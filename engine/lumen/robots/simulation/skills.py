@@ -210,13 +210,7 @@ class SimulatedSkills:
         return self._way
 
     def _look(self, yaw: float, pitch: float, now: float) -> Activity:
-        roles = self._world.body.roles
-        angles = {
-            role.joint: role.sign * a for name, a in (("yaw", yaw), ("pitch", pitch)) if (role := roles.head.get(name))
-        }
-        if not angles:
-            raise RobotRefusedError("the robot has no head to turn")
-        self._motors.check(angles)
+        angles = self._world.body.roles.head_joints(yaw, pitch)
         target = {name: self._motors.inside(name, angle) for name, angle in angles.items()}
         wanted = self._motors.wanted(target)
         farthest = max(abs(target[name] - wanted[name]) for name in target)
