@@ -10,6 +10,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock, Robot
 from lumen.project import load
+from lumen.robots.bounded_robot import BoundedRobot
 
 
 def open(
@@ -61,7 +62,7 @@ def _setup(project: Project, robot: str | Robot, clock: Clock | None, speed: str
     except ValueError:
         raise UsageError(f'`speed` must be a multiple of real time or "max", not `{speed}`') from None
     if not isinstance(robot, str):
-        return set_up_with(robot, clock, pace)
+        return set_up_with(BoundedRobot(robot, project.body), clock, pace)
     real = robot in ("naoqi", "none")
     setup = set_up(robot, project, "1" if real and speed == "max" else speed, story)
     return setup if clock is None else set_up_with(setup.robot, clock)

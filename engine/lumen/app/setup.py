@@ -12,6 +12,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.lending import model_files
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, MeetsVisitors, Robot
+from lumen.robots.bounded_robot import ability
 from lumen.runtime.tracking import TrackingService
 
 ROBOTS = ("simulation", "naoqi", "recording", "remote", "none")
@@ -91,8 +92,9 @@ def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = N
     A robot that can `advance` lives through the time that passes; one that has a face before it (`face`) is its own
     hall. One that can neither has the time of the world outside.
     """
-    hall: Any = robot if isinstance(robot, MeetsVisitors) else None
-    advance = robot.advance if isinstance(robot, Advances) else None
+    hall: Any = ability(robot, MeetsVisitors)
+    living = ability(robot, Advances)
+    advance = living.advance if living else None
     if clock is None:
         return Setup(robot, SimulatedClock(advance, pace) if advance else RealClock(), hall)
     return Setup(robot, _DrivenClock(clock, advance) if advance else clock, hall)

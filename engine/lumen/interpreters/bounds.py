@@ -22,7 +22,8 @@ SPEED_MARGIN = 1.005
 
 
 class BoundedCommand(NamedTuple):
-    """A command that a body can perform, and the changes, for the log; without changes it is the same command."""
+    """A command that a body can perform, and the changes, for the log: those of an aim, which streams in, are not
+    listed. A command that needs no change is the same object."""
 
     command: RobotCommand
     changes: tuple[str, ...] = ()
@@ -43,16 +44,19 @@ def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
             turned = {path: near[i] for i, path in enumerate(("head.yaw", "head.pitch")) if body.roles.joint(path)}
             look = Look(turned.get("head.yaw", yaw), turned.get("head.pitch", pitch))
             return BoundedCommand(look, _changed("look", wanted, angles, body))
-        case Aim(wanted, speed):
-            angles, slower = nearest_angles(wanted, body), min(speed, 1.0)
-            if angles == wanted and slower == speed:
-                return BoundedCommand(command)
-            return BoundedCommand(Aim(angles, slower), _changed("aim", wanted, angles, body))
+        case Aim():
+            return BoundedCommand(aim_within(command, body))
         case Perform(motion):
             inside, changes = _kept(motion, body)
             return BoundedCommand(Perform(inside) if changes else command, changes)
         case _:
             return BoundedCommand(command)
+
+
+def aim_within(aim: Aim, body: Body) -> Aim:
+    """The nearest aim that keeps the limits of the joints, coupled ones included, at most at their greatest speed."""
+    angles, speed = nearest_angles(aim.angles, body), min(aim.speed, 1.0)
+    return aim if angles == aim.angles and speed == aim.speed else Aim(angles, speed)
 
 
 def analyse(motions: Iterable[MotionDefinition], body: Body) -> None:
@@ -104,7 +108,7 @@ _analyses: dict[int, _Analysis] = {}
 def _kept(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
     """The motion within the limits and the changes, analysed once for each motion object and body."""
     found = _analyses.get(id(motion))
-    if found is None or found.body is not body:
+    if found is None or (found.body is not body and found.body != body):
         inside, changes = _analysed(motion, body)
         if found is None:
             weakref.finalize(motion, _analyses.pop, id(motion), None).atexit = False

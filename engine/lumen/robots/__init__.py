@@ -5,10 +5,12 @@
     remote/               a robot in another process, on the bus
     recording.py          performs nothing and remembers everything: for stories and tests
     none.py               no robot: every command is refused
+    bounded_robot.py      a robot that a user wrote, given only commands that its body can perform
 
 How a command is performed:
 
     command_table.py      what every robot knows of each command: a row for each
+    command_bounds.py     each command is brought within the limits and speeds of the body
     body_parts.py         which parts of the body a command owns
     executor.py           a command waits until its parts are free, then runs until it is done
     person_hold.py        a robot that a person stopped moves for nobody, until a person lets it

@@ -12,7 +12,6 @@ from math import isfinite
 from typing import Any, NamedTuple
 
 from lumen.errors import BusError, RobotError, RobotRefusedError
-from lumen.interpreters.bounds import within_limits
 from lumen.language.commands import Language, Rest, Say, Stop, Wake
 from lumen.language.events import MISSED, Event
 from lumen.language.motions import MotionDefinition
@@ -34,7 +33,6 @@ from lumen.robots.robot_routes import (
     publish_on,
 )
 from lumen.upkeep.drops import DropLog, ReasonLog
-from lumen.upkeep.once_log import OnceLog
 from lumen.upkeep.threads import MessageGuard
 
 MAX_WAITING_COMMANDS = 1_000
@@ -107,7 +105,6 @@ class CommandReceiver:
         self.guard = MessageGuard(_log, "the robot's server")
         self.drops = DropLog(_log, "commands")
         self._unfit = ReasonLog(_log, "a command was refused: %(reason)s", self.drops, clock)
-        self._log_of_changes = OnceLog(_log)
         self._reports = CommandReports(self._tell, self._reply)
         self._queries = CommandQueries(robot, self._reports, self.hold, self._reply, self.resume)
         self._numbers, self._own_numbers = count(1), count(1)
@@ -299,9 +296,6 @@ class CommandReceiver:
             raise RobotRefusedError(reason)
         if isinstance(command, Perform):
             command = Perform(self._remembered(command.motion))
-        bounded = within_limits(command, self._project.body)
-        command = bounded.command
-        self._log_of_changes(bounded.changes)
         if isinstance(command, Rest) and command.by:
             self.hold.stop(command.by)
         if isinstance(command, Say) and not command.language:

@@ -1,12 +1,10 @@
 """A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
 
-import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf
 
-from lumen.errors import RobotError, RobotFailedError, UsageError
-from lumen.interpreters.bounds import nearest_angles
+from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.language.causes import VISITOR, Cause
@@ -17,7 +15,8 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import LEGS, WHOLE_BODY, part_of
-from lumen.robots.command_table import check_command, parts_of, row_of
+from lumen.robots.command_bounds import CommandBounds
+from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
@@ -31,9 +30,6 @@ PODIUM_HEIGHT = 0.5
 
 FACE_HEIGHT_FRACTION = 0.93
 """Where a visitor's face is, as a fraction of their height."""
-
-
-_log = logging.getLogger(__name__)
 
 
 @dataclass
@@ -104,18 +100,15 @@ class RecordingRobot:
         self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
         self._life = LifeLayer(body)
+        self._bounds = CommandBounds(body)
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
             self._life.live(command)
         elif isinstance(command, Aim):
-            try:
-                check_command(command, self.body)
-            except RobotError as error:
-                _log.warning("an aim was refused: %s", error)
-                return
-            self._life.led(command.angles, self.time)
-            self._turn({n: a for n, a in command.angles.items() if self._free(n)})
+            if aim := self._bounds.aim(command):
+                self._life.led(aim.angles, self.time)
+                self._angles.update({n: a for n, a in aim.angles.items() if self._free(n)})
         else:
             self._executor.start(id, command)
 
@@ -199,16 +192,16 @@ class RecordingRobot:
         self._noticed.append(event)
 
     def _begin(self, command: RobotCommand, now: float) -> Activity:
+        command = self._bounds.fit(command)
         self.performed.append((now, command))
         row = row_of(command)
         behaves = self._behaves.get(row.verb)
         if behaves == "fails":
             raise RobotFailedError(f"{row.verb} fails in this story")
-        check_command(command, self.body)
         if isinstance(command, Posture):
             self._angles.update(self.body.postures[command.name])
         elif isinstance(command, Look):
-            self._turn(self.body.roles.head_joints(command.yaw, command.pitch))
+            self._angles.update(self.body.roles.head_joints(command.yaw, command.pitch))
         usual = row.duration(command)
         until = now + (inf if behaves == "hangs" else usual if behaves is None else float(behaves))
         if isinstance(command, Say):
@@ -232,9 +225,6 @@ class RecordingRobot:
     def _free(self, joint: str) -> bool:
         """Whether no command owns that joint."""
         return not self._executor.owner(self._part.get(joint, ""))
-
-    def _turn(self, angles: Mapping[str, float]) -> None:
-        self._angles.update(nearest_angles(angles, self.body))
 
 
 def _face_of(visitor: Visitor) -> Vector3:

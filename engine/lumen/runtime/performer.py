@@ -5,7 +5,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.errors import BusError
-from lumen.interpreters.bounds import within_limits
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import (
     Ask,
@@ -27,7 +26,6 @@ from lumen.language.commands import (
 )
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.robots import Body
 from lumen.language.routes import DEFAULT_COMMAND_TTL
 from lumen.language.routing_keys import TOLD, key_of_robot
 from lumen.language.skills import lack_of, tracked, tracking_lack
@@ -36,7 +34,6 @@ from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.runtime.navigator import Navigator
 from lumen.runtime.questions import Questions
 from lumen.runtime.sending import send
-from lumen.upkeep.once_log import OnceLog
 
 LEFT_OUT = "left_out"
 """The field of an answer that says what the body lacks for a command, which was left out."""
@@ -59,7 +56,6 @@ class Performer:
         self.navigator = Navigator(robot, self._begin)
         self.questions = Questions(bus)
         self.refuse: Callable[[RobotCommand], str] = lambda _: ""
-        self._log_of_changes = OnceLog(_log)
 
     def refusal(self, project: Project, command: Command) -> str:
         """Return the reason why the robot may not begin a command; empty if it may, or if no robot performs it."""
@@ -105,7 +101,7 @@ class Performer:
             return
         match wanted:
             case Play(name) if name in project.motions:
-                self._begin(id, self._within_limits(Perform(project.motions[name]), body), now)
+                self._begin(id, Perform(project.motions[name]), now)
             case Play(name):
                 self._answer("error", id, now, f"there is no motion `{name}`")
             case PlaySound(file):
@@ -123,13 +119,7 @@ class Performer:
             case Ask():
                 raise TypeError("a robot can't perform a question")
             case _:
-                self._begin(id, self._within_limits(wanted, body), now)
-
-    def _within_limits(self, command: RobotCommand, body: Body) -> RobotCommand:
-        """The nearest command that this body can perform; robots get only such commands."""
-        bounded = within_limits(command, body)
-        self._log_of_changes(bounded.changes)
-        return bounded.command
+                self._begin(id, wanted, now)
 
     def _sound(self, project: Project, id: str, file: str, now: float) -> None:
         """A sound takes as long as its file says."""

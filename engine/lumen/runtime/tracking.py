@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from lumen.interpreters.bounds import within_limits
 from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
 from lumen.language.numbers import is_number
@@ -81,8 +80,7 @@ class LocalTracking:
         for name, tracker in self._trackers.items():
             target = seen.get(name) or tracker.idle(now)
             if target:
-                aim = Aim(target, tracker.controller.tracking.speed)
-                self._robot.start("", within_limits(aim, self._project.body).command)
+                self._robot.start("", Aim(target, tracker.controller.tracking.speed))
 
     def _listen(self) -> None:
         """Hear the poses and the routes of all controllers."""

@@ -12,6 +12,7 @@ from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.ports import Bus, HasSpeed, Idles, Sense
+from lumen.robots.bounded_robot import ability
 from lumen.robots.sense_publisher import PublishCounts
 from lumen.robots.server import RobotServer
 from lumen.runtime.loop import Observer
@@ -43,7 +44,7 @@ class RobotPart(Part, Observer):
     ) -> None:
         self._silent, self._presence = silent, presence
         self.robot = setup.robot
-        self._idles = setup.robot if isinstance(setup.robot, Idles) else None
+        self._idles = ability(setup.robot, Idles)
         self.foreign = foreign
         self.server = server or RobotServer(
             self._sensed(project),

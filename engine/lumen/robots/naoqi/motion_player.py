@@ -63,11 +63,7 @@ class MotionPlayer:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
 
     def begin(self, motion: MotionDefinition, owned: Sequence[str]) -> CallSequence:
-        """The motion under way; `owned` are the joints that it may bring to its posture before and after.
-
-        Raises RobotError, and moves nothing, for a motion that this body can't play.
-        """
-        fitted(motion, self._body, {})
+        """The motion under way; `owned` are the joints that it may bring to its posture before and after."""
         start, shared = self._body.postures.get(motion.start, {}), self._body.shared
         home = {joint: start[joint] for joint in owned if joint in start and joint not in shared}
         joints = list(dict.fromkeys(shared.get(joint, joint) for joint in (*motion.tracks, *home)))

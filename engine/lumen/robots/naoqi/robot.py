@@ -1,15 +1,16 @@
 """A real NAO or Pepper behind the `Robot` seam."""
 
-import logging
 from collections.abc import Callable, Sequence
 
-from lumen.errors import RobotError, RobotLostError
+from lumen.errors import RobotLostError
+from lumen.interpreters.bounds import nearest_angles
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.ports import Aim, Battery, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import check_command, parts_of
+from lumen.robots.command_bounds import CommandBounds
+from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
 from lumen.robots.naoqi.call_sequence import CallSequence
 from lumen.robots.naoqi.hardware import hardware_of
@@ -22,8 +23,6 @@ from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
 from lumen.robots.naoqi.skills import NaoqiSkills
 from lumen.robots.naoqi.walking_area import WalkingArea
-
-_log = logging.getLogger(__name__)
 
 
 class NaoqiRobot:
@@ -43,7 +42,7 @@ class NaoqiRobot:
         stage: Stage | None = None,
         patience: float = CALL_TIMEOUT,
     ) -> None:
-        self.body = body
+        self.body, self._bounds = body, CommandBounds(body)
         self._clock = clock
         self._session = NaoqiSession(url, lambda reason: self._reconnector.lose(reason), patience)
         self._naoqi_events = NaoqiEvents(body.tactile)
@@ -71,13 +70,9 @@ class NaoqiRobot:
         if not isinstance(command, Aim):
             self._executor.start(id, command)
             return
-        try:
-            check_command(command, self.body)
-        except RobotError as error:
-            _log.warning("an aim was refused: %s", error)
-        else:
-            self._aim = command
-            self._life.led(command.angles, self._clock())
+        if aim := self._bounds.aim(command):
+            self._aim = aim
+            self._life.led(aim.angles, self._clock())
             self._turn()
 
     def cancel(self, id: str) -> None:
@@ -113,6 +108,7 @@ class NaoqiRobot:
     def _begin(self, command: RobotCommand, now: float) -> CallSequence:
         if not self._session.ready:
             raise RobotLostError(CONNECTION_LOST)
+        command = self._bounds.fit(command)
         activity = self._skills.begin(command, now)
         self._life.begins(command, now)
         return activity
@@ -165,9 +161,8 @@ class NaoqiRobot:
         self._aim = None
         free = {n: a for n, a in aim.angles.items() if not self._executor.owner(self._part.get(n, ""))}
         if free and self._session.ready:
-            inside = self._skills.inside(self._life.alive(free))
-            speed = min(max(aim.speed, 0.01), 1.0)
-            self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)
+            inside = nearest_angles(self._life.alive(free), self.body)
+            self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), aim.speed)
 
     def _live(self, now: float) -> None:
         """Move a little what nothing else moves."""

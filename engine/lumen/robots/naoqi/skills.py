@@ -6,12 +6,11 @@ from math import inf
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
-from lumen.interpreters.bounds import nearest_angles
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.robots import Body
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import check_command, parts_of
+from lumen.robots.command_table import parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
 from lumen.robots.naoqi.hardware import hardware_of
@@ -54,7 +53,6 @@ class NaoqiSkills:
 
     def begin(self, command: RobotCommand, now: float) -> CallSequence:
         """The command under way. Raises RobotError where the robot can't."""
-        check_command(command, self._body)
         match command:
             case Say():
                 return CallSequence(self._say(command), lambda: [self._post("ALTextToSpeech", "stopAll")])
@@ -81,15 +79,11 @@ class NaoqiSkills:
                 owned = parts_of(command, self._body)
                 return self._player.begin(motion, [j for j in self._body.joints if self._part.get(j) in owned])
             case Look(yaw, pitch):
-                return self._look(self.inside(self._body.roles.head_joints(yaw, pitch)))
+                return self._look(self._body.roles.head_joints(yaw, pitch))
             case Walk() | Move():
                 return self._walks.begin(command)
             case _:
                 assert_never(command)
-
-    def inside(self, angles: Mapping[str, float]) -> dict[str, float]:
-        """The nearest angles inside the joints' limits."""
-        return nearest_angles({name: float(angle) for name, angle in angles.items()}, self._body)
 
     def _say(self, said: Say) -> CallSteps:
         text, language = said.text, said.language

@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from lumen.errors import BusError
+from lumen.errors import BadCommandError, BusError
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, MISSED, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Live, Message, Perform, Reading, RobotCommand, Sense
+from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_codec import encode_command
 from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN_COMMAND
 from lumen.robots.robot_routes import (
@@ -86,7 +87,7 @@ class RemoteRobot:
     ) -> None:
         self.session = session or uuid.uuid4().hex[:12]
         self._project, self._bus, self._clock, self._patience = project, bus, clock, patience
-        self._delegate = delegate
+        self._delegate, self._bounds = delegate, CommandBounds(project.body)
         self._pending: dict[str, _Pending] = {}
         self._forsaken: deque[str] = deque(maxlen=1_000)
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REPORTS)
@@ -110,7 +111,13 @@ class RemoteRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
-            self._send(AIM_ROUTE, encode_command(command), AIM_TTL)
+            if aim := self._bounds.aim(command):
+                self._send(AIM_ROUTE, encode_command(aim), AIM_TTL)
+            return
+        try:
+            command = self._bounds.fit(command)
+        except BadCommandError as error:
+            self._events.append(Event(f"error.command.{id}", {"reason": str(error)}, self._clock()))
             return
         if isinstance(command, Live):
             self._send(COMMAND_ROUTE, encode_command(command), COMMAND_TTL)

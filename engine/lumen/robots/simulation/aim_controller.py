@@ -18,7 +18,7 @@ class AimController:
         speeds = self._motors.envelope.speed
         for name, angle in aim.angles.items():
             speed = float(speeds[self._motors.index[name]]) * aim.speed
-            self._aims[name] = self._motors.inside(name, angle), speed
+            self._aims[name] = angle, speed
 
     def advance(self, dt: float, free: Callable[[str], bool]) -> None:
         """Live `dt` [s]; an aim ends where it is reached, or where its joint is not free any more."""

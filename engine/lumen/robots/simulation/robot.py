@@ -1,6 +1,5 @@
 """The simulated NAO behind the `Robot` seam, in a hall behind the `Hall` seam."""
 
-import logging
 from collections.abc import Collection, Sequence
 from math import degrees
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import assert_never
 
 import numpy as np
 
-from lumen.errors import RobotError, RobotRefusedError, UsageError
+from lumen.errors import RobotRefusedError, UsageError
 from lumen.interpreters.life import vigour
 from lumen.interpreters.projection import centring
 from lumen.language.causes import VISITOR, Cause
@@ -22,7 +21,7 @@ from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
-from lumen.robots.command_table import check_command
+from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation.aim_controller import AimController
@@ -47,8 +46,6 @@ from lumen.robots.simulation.tactile_sensors import TactileSensors
 from lumen.robots.simulation.visitor_figure import VisitorFigure
 from lumen.robots.simulation.wheels import Wheels
 from lumen.robots.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
-
-_log = logging.getLogger(__name__)
 
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""
@@ -92,6 +89,7 @@ class SimulatedRobot:
         self.lights = Lights(self.world.model, body.roles.lights, prefix)
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
+        self._bounds = CommandBounds(body)
         self._aiming = AimController(self.motors)
         self._life = LifeLayer(body, seed)
         self._vigour = dict.fromkeys(body.parts, 1.0)
@@ -175,13 +173,10 @@ class SimulatedRobot:
         if not isinstance(command, Aim):
             self._executor.start(id, command)
             return
-        try:
-            check_command(command, self.body)
-            if self.awake and not self.fallen:
-                self._aiming.aim(command)
-                self._life.led(command.angles, self.time)
-        except RobotError as error:
-            _log.warning("an aim was refused: %s", error)
+        aim = self._bounds.aim(command)
+        if aim and self.awake and not self.fallen:
+            self._aiming.aim(aim)
+            self._life.led(aim.angles, self.time)
 
     def cancel(self, id: str) -> None:
         self._executor.cancel(id)
@@ -260,7 +255,7 @@ class SimulatedRobot:
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         if self.condition.empty and not isinstance(command, Rest):
             raise RobotRefusedError("the battery is empty: plug the robot in")
-        activity = self._skills.begin(command, now)
+        activity = self._skills.begin(self._bounds.fit(command), now)
         if isinstance(command, Say) and isinstance(activity, SpeechActivity):
             self._life.say(command, activity.duration, now, activity.words)
         return activity

@@ -10,7 +10,7 @@ from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, 
 from lumen.language.roles import BaseKind
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import check_command, parts_of, row_of
+from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
 from lumen.robots.silent_recording import SilentRecording
@@ -107,7 +107,6 @@ class SimulatedSkills:
 
     def begin(self, command: RobotCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
-        check_command(command, self._world.body)
         if row_of(command).moves and not isinstance(command, Wake | Posture):
             self._ready()
         match command:

@@ -1,0 +1,39 @@
+"""The limits and speeds of a body's joints, kept by each robot for all its commands, whoever sent them."""
+
+import logging
+
+from lumen.errors import BadCommandError
+from lumen.interpreters.bounds import aim_within, within_limits
+from lumen.language.robots import Body
+from lumen.ports import Aim, RobotCommand
+from lumen.robots.command_table import check_command
+from lumen.upkeep.once_log import OnceLog
+
+_log = logging.getLogger(__name__)
+
+
+class CommandBounds:
+    """Brings commands within the limits and speeds of a body, and refuses what no robot of that body can perform.
+
+    Each change of a command is logged once, but those of aims: a stream of them would fill the log.
+    """
+
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        self._log_of_changes = OnceLog(_log)
+
+    def fit(self, command: RobotCommand) -> RobotCommand:
+        """Return the nearest command that the body can perform. Raises BadCommandError if no robot of it can."""
+        check_command(command, self._body)
+        bounded = within_limits(command, self._body)
+        self._log_of_changes(bounded.changes)
+        return bounded.command
+
+    def aim(self, aim: Aim) -> Aim | None:
+        """Return the nearest aim that the body can perform. Log a warning and return None if no robot of it can."""
+        try:
+            check_command(aim, self._body)
+        except BadCommandError as error:
+            _log.warning("an aim was refused: %s", error)
+            return None
+        return aim_within(aim, self._body)
