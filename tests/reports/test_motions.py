@@ -666,7 +666,7 @@ def test_a_motion_is_analysed_once_for_each_body(monkeypatch: pytest.MonkeyPatch
     calls: list[tuple[str, Body]] = []
     analysed = bounds._analysed
 
-    def counted(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
+    def counted(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...], bool]:
         calls.append((motion.name, body))
         return analysed(motion, body)
 

@@ -3,20 +3,23 @@
 import re
 import shutil
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import nan
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import lumen
 from lumen import Exhibition
 from lumen.buses.memory import MemoryBus
+from lumen.interpreters import bounds
 from lumen.interpreters.bounds import nearest_angles
 from lumen.interpreters.limits import COUPLED_TOLERANCE, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Language, Look, Posture
 from lumen.language.events import Event
-from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.ports import Aim, Joints, Live, Perform, RobotCommand, Sense
 from lumen.robots.bounded_robot import BoundedRobot
@@ -150,6 +153,50 @@ def test_a_robot_of_ones_own_is_told_no_command_beyond_its_limits(command: Robot
     BoundedRobot(own, NAO).start("a", command)
     assert [type(told) for _, told in own.told] == [type(command)]
     assert not faults(own)
+
+
+def test_a_motion_is_delayed_until_the_joints_can_reach_its_first_key() -> None:
+    own = Obedient()
+    robot = BoundedRobot(own, NAO)
+    robot.start("a", Look(-2.0))
+    nod = MotionDefinition("nod", 1.0, {"HeadYaw": (Keyframe(0.2, 2.0), Keyframe(1.0, 0.0))}, (Cue(0.2, "say", "now"),))
+    robot.start("b", Perform(nod))
+    [_, (here, command)] = own.told
+    assert isinstance(command, Perform)
+    [way] = Trajectory(command.motion, here).tracks
+    assert here["HeadYaw"] == -2.0
+    assert max(segment.peak_speed() for segment in way.segments) <= NAO.joints["HeadYaw"].speed
+    assert command.motion.cues[0].time == way.ends[0] > 0.2
+    assert command.motion.duration == pytest.approx(way.ends[0] + 0.8)
+
+
+@for_each(
+    ("before", "aim", "angles"),
+    [
+        (Look(0.0, 0.5), Aim({"HeadYaw": 2.0}), {"HeadYaw", "HeadPitch"}),
+        (Look(2.0, 0.0), Aim({"HeadPitch": 0.5}), {"HeadPitch"}),
+        (Look(0.0, 0.1), Aim({"HeadYaw": 0.1}), {"HeadYaw"}),
+    ],
+)
+def test_an_aim_keeps_limits_that_depend_on_another_joint(before: Look, aim: Aim, angles: set[str]) -> None:
+    own = Obedient()
+    robot = BoundedRobot(own, NAO)
+    robot.start("a", before)
+    robot.start("", aim)
+    [_, (_, told)] = own.told
+    assert isinstance(told, Aim)
+    assert told.angles.keys() == angles
+    head = {name: own.angles[name] for name in ("HeadYaw", "HeadPitch")}
+    assert nearest_angles(head, NAO) == head
+
+
+def test_a_motion_that_no_change_brings_within_the_limits_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounds, "MAX_FITS", 1)
+    own = Obedient()
+    robot = BoundedRobot(own, NAO)
+    robot.start("a", Perform(replace(FAR_MOTION, tracks={**FAR_MOTION.tracks, "HeadYaw": SWUNG})))
+    assert [event.name for event in robot.poll()] == ["error.command.a"]
+    assert not own.told
 
 
 def test_what_it_can_not_perform_is_refused_and_not_told() -> None:

@@ -196,3 +196,16 @@ def test_interpolation_is_the_motion_s_business(robot: SimulatedRobot, do: Do) -
     keys = tuple(Keyframe(0.2 * k, 0.2 * (-1) ** k, Interpolation.LINEAR) for k in range(1, 6))
     assert do(Perform(MotionDefinition("nod", 1.0, {"HeadYaw": keys}))) == "done"
     assert robot.greatest_tilt < 5
+
+
+def test_a_first_key_that_is_too_soon_comes_later(robot: SimulatedRobot, body: Body) -> None:
+    """As on NAOqi: the words wait with the joints, and no joint misses its key."""
+    robot.start("look", Look(-2.0, 0.0))
+    until_answered(robot, "look")
+    keys = (Keyframe(0.1, 2.0), Keyframe(1.0, 0.0))
+    begun = robot.time
+    robot.start("m", Perform(MotionDefinition("hasty", 1.0, {"HeadYaw": keys}, (Cue(0.1, "say", "now"),))))
+    events = until_answered(robot, "m")
+    assert [event.data for event in events if event.name == "done.command.m"] == [None]
+    [cue] = [event for event in events if event.name == "cue"]
+    assert cue.at - begun >= 4.0 / body.joints["HeadYaw"].speed

@@ -6,8 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from math import degrees, isfinite
+from types import MappingProxyType
 from typing import NamedTuple
 
+from lumen.errors import BadCommandError
 from lumen.interpreters.limits import LIMIT_SLACK, Excess, beyond_limits, coupled_range, overspeed
 from lumen.language.commands import Look
 from lumen.language.motions import Keyframe, MotionDefinition
@@ -21,6 +23,10 @@ SPEED_MARGIN = 1.005
 """The factor on the time that a joint needs: rounding must not make it too fast again."""
 
 
+NOWHERE: Mapping[str, float] = MappingProxyType({})
+"""The present angles of joints while no angle is known."""
+
+
 class BoundedCommand(NamedTuple):
     """A command that a body can perform, and the changes, for the log: those of an aim, which streams in, are not
     listed. A command that needs no change is the same object."""
@@ -32,7 +38,8 @@ class BoundedCommand(NamedTuple):
 def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
     """The nearest command that keeps the limits of the joints, coupled ones included, and their speeds.
 
-    Joints that the body lacks, and values that are not numbers, are left to the robot, which refuses them.
+    Joints that the body lacks, and values that are not numbers, are left as they are. Raises BadCommandError for a
+    motion that is still beyond the limits after `MAX_FITS` rounds of changes.
     """
     match command:
         case Look(yaw, pitch):
@@ -47,15 +54,20 @@ def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
         case Aim():
             return BoundedCommand(aim_within(command, body))
         case Perform(motion):
-            inside, changes = _kept(motion, body)
-            return BoundedCommand(Perform(inside) if changes else command, changes)
+            kept = _kept(motion, body)
+            if not kept.fits:
+                raise BadCommandError(f"`{motion.name}` can't be brought within the limits and speeds of the body")
+            return BoundedCommand(Perform(kept.inside) if kept.inside else command, kept.changes)
         case _:
             return BoundedCommand(command)
 
 
-def aim_within(aim: Aim, body: Body) -> Aim:
-    """The nearest aim that keeps the limits of the joints, coupled ones included, at most at their greatest speed."""
-    angles, speed = nearest_angles(aim.angles, body), min(aim.speed, 1.0)
+def aim_within(aim: Aim, body: Body, here: Mapping[str, float] = NOWHERE) -> Aim:
+    """The nearest aim that keeps the limits of the joints, coupled ones included, at most at their greatest speed.
+
+    `here` are the present angles of joints [rad], as far as they are known.
+    """
+    angles, speed = nearest_angles(aim.angles, body, here), min(aim.speed, 1.0)
     return aim if angles == aim.angles and speed == aim.speed else Aim(angles, speed)
 
 
@@ -65,18 +77,23 @@ def analyse(motions: Iterable[MotionDefinition], body: Body) -> None:
         _kept(motion, body)
 
 
-def nearest_angles(wanted: Mapping[str, float], body: Body) -> dict[str, float]:
-    """The nearest angles [rad] inside the limits of these joints, and inside the coupled ones among them."""
+def nearest_angles(wanted: Mapping[str, float], body: Body, here: Mapping[str, float] = NOWHERE) -> dict[str, float]:
+    """The nearest angles [rad] inside the limits of these joints, and inside the coupled ones among them.
+
+    `here` are the present angles of other joints, as far as they are known. One that would be beyond a coupled limit is
+    added to the result.
+    """
     near = dict(wanted)
     for name in near.keys() & body.joints.keys():
         joint = body.joints[name]
         if isfinite(near[name]):
             near[name] = min(max(near[name], joint.minimum), joint.maximum)
     for limit in body.coupled:
-        if limit.joint in near and limit.on in near:
-            low, high = coupled_range(limit, near[limit.on])
-            if isfinite(near[limit.joint]):
-                near[limit.joint] = min(max(near[limit.joint], low), high)
+        angle, on = (near.get(name, here.get(name)) for name in (limit.joint, limit.on))
+        if angle is not None and on is not None and isfinite(angle) and near.keys() & {limit.joint, limit.on}:
+            low, high = coupled_range(limit, on)
+            if limit.joint in near or not low <= angle <= high:
+                near[limit.joint] = min(max(angle, low), high)
     return near
 
 
@@ -99,27 +116,28 @@ class _Analysis(NamedTuple):
     body: Body
     inside: MotionDefinition | None
     changes: tuple[str, ...]
+    fits: bool
 
 
 _analyses: dict[int, _Analysis] = {}
 """The newest analysis of each motion that exists, by its identity: its tracks can't be hashed."""
 
 
-def _kept(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
-    """The motion within the limits and the changes, analysed once for each motion object and body."""
+def _kept(motion: MotionDefinition, body: Body) -> _Analysis:
+    """The analysis of a motion, made once for each motion object and body."""
     found = _analyses.get(id(motion))
     if found is None or (found.body is not body and found.body != body):
-        inside, changes = _analysed(motion, body)
+        inside, changes, fits = _analysed(motion, body)
         if found is None:
             weakref.finalize(motion, _analyses.pop, id(motion), None).atexit = False
-        found = _analyses[id(motion)] = _Analysis(body, inside if changes else None, changes)
-    return found.inside or motion, found.changes
+        found = _analyses[id(motion)] = _Analysis(body, inside if changes else None, changes, fits)
+    return found
 
 
-def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...]]:
-    """The motion within the limits, slower if a joint needs more time; and the changes, once for each joint."""
+def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...], bool]:
+    """The motion within the limits, slower if a joint needs more time; the changes, once for each joint; and `fits`."""
     if not all(isfinite(x) for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle)):
-        return motion, ()
+        return motion, (), True
     changes: dict[str, str] = {}
     for _ in range(MAX_FITS):
         if not (far := beyond_limits(motion, body)):
@@ -140,7 +158,8 @@ def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, t
             change = f"`{motion.name}` takes longer: `{excess.joint}` needs more time to reach its key at {at:g} s"
             changes.setdefault(f"fast {excess.joint}", change)
         motion = slowed(motion, fast)
-    return motion, tuple(changes.values())
+    fits = not changes or not (beyond_limits(motion, body) or overspeed(motion, body))
+    return motion, tuple(changes.values()), fits
 
 
 def _cut(keys: tuple[Keyframe, ...], excess: Excess) -> tuple[Keyframe, ...]:

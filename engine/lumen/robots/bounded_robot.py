@@ -6,27 +6,33 @@ from typing import TypeVar
 from lumen.errors import BadCommandError
 from lumen.language.events import Event
 from lumen.language.robots import Body
-from lumen.ports import Aim, Reading, Robot, RobotCommand, Sense
+from lumen.ports import Aim, Joints, Perform, Reading, Robot, RobotCommand, Sense
 from lumen.robots.command_bounds import CommandBounds
+from lumen.robots.joint_ways import begun_from
 
 Ability = TypeVar("Ability")
 
 
 class BoundedRobot:
-    """Passes commands to `robot` within the limits and speeds of `body`, and refuses those that it can't perform."""
+    """Passes commands to `robot` within the limits and speeds of `body`, and refuses those that it can't perform.
+
+    If the robot senses its joints, a motion is delayed until they can reach its first key in time.
+    """
 
     def __init__(self, robot: Robot, body: Body) -> None:
-        self.robot = robot
+        self.robot, self._body = robot, body
         self._bounds = CommandBounds(body)
         self._refusals: list[Event] = []
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
-            if aim := self._bounds.aim(command):
+            if aim := self._bounds.aim(command, self._angles()):
                 self.robot.start(id, aim)
             return
         try:
             fit = self._bounds.fit(command)
+            if isinstance(fit, Perform):
+                fit = Perform(begun_from(fit.motion, self._body, self._angles()))
         except BadCommandError as error:
             self._refusals.append(Event(f"error.command.{id}", {"reason": str(error)}))
         else:
@@ -47,6 +53,13 @@ class BoundedRobot:
 
     def close(self) -> None:
         self.robot.close()
+
+    def _angles(self) -> dict[str, float]:
+        """The present angles [rad] of the body's joints; empty if the robot does not sense them."""
+        joints = self.robot.read(Sense.JOINT)
+        if not isinstance(joints, Joints):
+            return {}
+        return {name: a for name, a in zip(joints.names, joints.angles, strict=True) if name in self._body.joints}
 
 
 def ability(robot: Robot, kind: type[Ability]) -> Ability | None:

@@ -1,9 +1,10 @@
 """The limits and speeds of a body's joints, kept by each robot for all its commands, whoever sent them."""
 
 import logging
+from collections.abc import Mapping
 
 from lumen.errors import BadCommandError
-from lumen.interpreters.bounds import aim_within, within_limits
+from lumen.interpreters.bounds import NOWHERE, aim_within, within_limits
 from lumen.language.robots import Body
 from lumen.ports import Aim, RobotCommand
 from lumen.robots.command_table import check_command
@@ -29,11 +30,14 @@ class CommandBounds:
         self._log_of_changes(bounded.changes)
         return bounded.command
 
-    def aim(self, aim: Aim) -> Aim | None:
-        """Return the nearest aim that the body can perform. Log a warning and return None if no robot of it can."""
+    def aim(self, aim: Aim, here: Mapping[str, float] = NOWHERE) -> Aim | None:
+        """Return the nearest aim that the body can perform from `here` [rad], the joints' angles that are known.
+
+        Log a warning and return None if no robot of it can.
+        """
         try:
             check_command(aim, self._body)
         except BadCommandError as error:
             _log.warning("an aim was refused: %s", error)
             return None
-        return aim_within(aim, self._body)
+        return aim_within(aim, self._body, here)

@@ -1,59 +1,22 @@
 """Motions: checked, begun where the robot stands, and sent as one call."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Mapping, Sequence
 
-from lumen.errors import BadCommandError, RobotRefusedError
-from lumen.interpreters.choreography import joined
-from lumen.interpreters.limits import LIMIT_SLACK
+from lumen.errors import RobotRefusedError
 from lumen.interpreters.postures import UPRIGHT
 from lumen.interpreters.trajectory import JointTrack, Trajectory
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.robots.cues import EventSink
+from lumen.robots.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from, home_angles, way_duration
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
 from lumen.robots.naoqi.cue_player import CuePlayer
 from lumen.robots.naoqi.curves import curves
 from lumen.robots.naoqi.session import NaoqiCall
 from lumen.robots.naoqi.walks import PostCall, grounded
 
-APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
-"""How long it takes to the posture that a motion begins in, and back to it from a cancelled one [s]."""
 START_POSTURE_TOLERANCE = 0.1
 """Legs that are nearer than this to the posture that a motion begins in need no way there [rad]."""
-APPROACH_SPEED = 0.8
-"""Which part of its greatest speed a joint uses at most on the ways that are ours."""
-
-
-def fitted(motion: MotionDefinition, body: Body, start: Mapping[str, float]) -> MotionDefinition:
-    """The motion from these angles on [rad], begun so much later that no joint has to hurry to its first key.
-
-    Raises RobotError for angles and speeds that the body can't have.
-    """
-    late = max((_late(track, motion, body) for track in Trajectory(motion, start).tracks), default=0.0)
-    if not late:
-        return motion
-    later = joined([(late, motion)], motion.duration + late)
-    return replace(motion, duration=later.duration, tracks=later.tracks, cues=later.cues)
-
-
-def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
-    """How much more time the joint needs to its first key [s]. Raises RobotError for what it can't do later on."""
-    limit, late = body.joints[track.joint], 0.0
-    for i, segment in enumerate(track.segments):
-        low, high = segment.extremes()
-        if low < limit.minimum - LIMIT_SLACK or high > limit.maximum + LIMIT_SLACK:
-            raise BadCommandError(
-                f"`{motion.name}` moves {track.joint} to {low if low < limit.minimum else high:.3f} rad,"
-                f" but its limits are {limit.minimum:.3f} and {limit.maximum:.3f} rad"
-            )
-        if (speed := segment.peak_speed()) > limit.speed * (1 + LIMIT_SLACK):
-            if i:
-                raise BadCommandError(
-                    f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s: at most {limit.speed:.1f} is allowed"
-                )
-            late = segment.duration * (speed / (APPROACH_SPEED * limit.speed) - 1.0)
-    return late
 
 
 class MotionPlayer:
@@ -62,10 +25,10 @@ class MotionPlayer:
     def __init__(self, post: PostCall, body: Body, notice: EventSink, clock: Callable[[], float]) -> None:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
 
-    def begin(self, motion: MotionDefinition, owned: Sequence[str]) -> CallSequence:
-        """The motion under way; `owned` are the joints that it may bring to its posture before and after."""
-        start, shared = self._body.postures.get(motion.start, {}), self._body.shared
-        home = {joint: start[joint] for joint in owned if joint in start and joint not in shared}
+    def begin(self, motion: MotionDefinition, owned: Collection[str]) -> CallSequence:
+        """The motion under way; joints in the parts `owned` may be brought to its posture before and after."""
+        shared = self._body.shared
+        home = {name: angle for name, angle in home_angles(motion, self._body, owned).items() if name not in shared}
         joints = list(dict.fromkeys(shared.get(joint, joint) for joint in (*motion.tracks, *home)))
 
         def abort() -> list[NaoqiCall]:
@@ -76,11 +39,11 @@ class MotionPlayer:
     def _perform(self, motion: MotionDefinition, home: Mapping[str, float], joints: list[str]) -> CallSteps:
         yield from self._ready(motion)
         here = yield from self._stand(joints)
-        if self._away(home, here):
+        if away(home, here, self._body, START_POSTURE_TOLERANCE):
             yield self._go(home, here, APPROACH_TIME)
             here = yield from self._stand(joints)
         start = self._inside(motion, here)
-        motion = fitted(motion, self._body, start)
+        motion = begun_from(motion, self._body, start)
         beside = CuePlayer(self._post, motion, self._body, self._notice)
         way = curves(self._driven(Trajectory(motion, start).tracks))
         begin = self._clock()
@@ -110,11 +73,6 @@ class MotionPlayer:
         angles = yield self._post("ALMotion", "getAngles", joints, False)
         return dict(zip(joints, angles, strict=True))
 
-    def _away(self, home: Mapping[str, float], here: Mapping[str, float]) -> bool:
-        return any(
-            abs(here[j] - home[j]) > START_POSTURE_TOLERANCE for j in self._body.parts.get("legs", ()) if j in home
-        )
-
     def _recover(self, home: Mapping[str, float]) -> CallSteps:
         """Back to where it began: killed on its way, a joint stops where it is."""
         if home:
@@ -123,8 +81,8 @@ class MotionPlayer:
 
     def _go(self, goal: Mapping[str, float], here: Mapping[str, float], seconds: float) -> NaoqiCall:
         """Straight there, in that time or as long as the slowest joint needs."""
-        needed = max(abs(goal[j] - here[j]) / (APPROACH_SPEED * self._body.joints[j].speed) for j in goal)
-        times = [[max(seconds, needed)]] * len(goal)
+        way = {joint: angle - here[joint] for joint, angle in goal.items()}
+        times = [[way_duration(way, self._body, seconds)]] * len(goal)
         return self._post("ALMotion", "angleInterpolation", list(goal), [[a] for a in goal.values()], times, True)
 
     def _inside(self, motion: MotionDefinition, here: Mapping[str, float]) -> dict[str, float]:

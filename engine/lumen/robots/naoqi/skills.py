@@ -9,9 +9,9 @@ from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.robots import Body
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
-from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import parts_of
 from lumen.robots.cues import EventSink
+from lumen.robots.joint_ways import LOOK_SPEED
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
 from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.lights import fades
@@ -22,8 +22,6 @@ from lumen.robots.naoqi.speech import language_of, words
 from lumen.robots.naoqi.walking_area import WalkingArea
 from lumen.robots.naoqi.walks import NaoqiWalks
 
-LOOK_SPEED = 1.5
-"""How fast the head turns [rad/s]."""
 LOOK_TOLERANCE = 0.03
 """A head that is nearer than this to where it should look is there [rad]."""
 LOOK_GRACE = 1.0
@@ -46,7 +44,6 @@ class NaoqiSkills:
         self._microphones = Microphones(session, notice, clock)
         self._walks = NaoqiWalks(post, area)
         self._player = MotionPlayer(post, body, notice, clock)
-        self._part = part_of(body)
         self._unspoken: set[str] = set()
         self.fallen = False
         self.body_language = False
@@ -76,8 +73,7 @@ class NaoqiSkills:
             raise RobotRefusedError("the robot has fallen: `wake` it first")
         match command:
             case Perform(motion):
-                owned = parts_of(command, self._body)
-                return self._player.begin(motion, [j for j in self._body.joints if self._part.get(j) in owned])
+                return self._player.begin(motion, parts_of(command, self._body))
             case Look(yaw, pitch):
                 return self._look(self._body.roles.head_joints(yaw, pitch))
             case Walk() | Move():

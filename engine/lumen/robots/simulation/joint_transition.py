@@ -2,13 +2,12 @@
 
 from collections.abc import Callable, Mapping
 
+from lumen.robots.joint_ways import way_duration
 from lumen.robots.simulation.motors import Motors
 
 MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0
 """How long a change of posture takes [s] at speed 1 and when slow: between these it never fell."""
 
-_MARGIN = 0.8
-_PEAK = 1.5
 _HALT = 0.4
 
 
@@ -34,8 +33,7 @@ class JointTransition:
         self._motors, self._begin, self._after = motors, now, after
         self._start = motors.wanted(targets)
         self._way = {name: targets[name] - angle for name, angle in self._start.items()}
-        slowest = max((abs(d) / motors.envelope.speed[motors.index[n]] for n, d in self._way.items()), default=0.0)
-        self._seconds = max(seconds, float(slowest) * _PEAK / _MARGIN)
+        self._seconds = way_duration(self._way, motors.body, seconds)
         self._now = now
         self._halt: tuple[float, float, float] | None = None
 

@@ -25,7 +25,8 @@ class Motors:
     """
 
     def __init__(self, world: World, lacking: Imperfections | None = None) -> None:
-        body, lacking = world.body, lacking or Imperfections()
+        self.body, lacking = world.body, lacking or Imperfections()
+        body = self.body
         self._world = world
         self.names = tuple(body.joints)
         self.index = {name: i for i, name in enumerate(self.names)}

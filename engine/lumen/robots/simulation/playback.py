@@ -6,13 +6,11 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.robots.cues import CueNotifier, EventSink
+from lumen.robots.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from
 from lumen.robots.simulation.joint_transition import JointTransition
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.speech_playback import SpeechPlayback
-
-APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
-"""How long it takes to the posture that a motion begins in, and back to it from a cancelled one [s]."""
 
 _START_POSTURE_TOLERANCE = 0.05
 
@@ -38,12 +36,14 @@ class MotionPlayback:
     ) -> None:
         self._motors, self._lights, self._motion, self._home = motors, lights, motion, home
         self._begin = self._now = now
-        self._cues = sorted(motion.cues, key=lambda cue: cue.time)
+        self._notice = notice
+        self._cues: list[Cue] = []
         self._prompter = CueNotifier(motion, notice)
         self._trajectory: Trajectory | None = None
-        self._approach = JointTransition(motors, home, now, APPROACH_TIME) if self._away() else None
+        far = away(home, motors.wanted(home), motors.body, _START_POSTURE_TOLERANCE)
+        self._approach = JointTransition(motors, home, now, APPROACH_TIME) if far else None
         self._recovery: JointTransition | None = None
-        self._keys = sorted((key.time, joint) for joint, keys in motion.tracks.items() for key in keys)
+        self._keys: list[tuple[float, str]] = []
         self._missed: dict[str, tuple[float, float]] = {}
 
     @property
@@ -67,8 +67,7 @@ class MotionPlayback:
                 return False
             self._approach = None
         if self._trajectory is None:
-            self._begin = now
-            self._trajectory = Trajectory(self._motion, self._motors.wanted(self._motion.tracks))
+            self._trajectory = self._begun(now)
         return self._play(self._trajectory, now - self._begin)
 
     def cancel(self) -> None:
@@ -79,10 +78,14 @@ class MotionPlayback:
         self._lights.hold(())
         self._recovery = JointTransition(self._motors, self._home, self._now, RECOVERY_TIME)
 
-    def _away(self) -> bool:
-        wanted = self._motors.wanted(self._home)
-        legs = (n for n in self._home if "Hip" in n or "Knee" in n or "Ankle" in n)
-        return any(abs(wanted[n] - self._home[n]) > _START_POSTURE_TOLERANCE for n in legs)
+    def _begun(self, now: float) -> Trajectory:
+        """Return the way from the present angles. Raises BadCommandError if no delay makes it slow enough."""
+        here = self._motors.wanted(self._motion.tracks)
+        self._motion, self._begin = begun_from(self._motion, self._motors.body, here), now
+        self._cues = sorted(self._motion.cues, key=lambda cue: cue.time)
+        self._prompter = CueNotifier(self._motion, self._notice)
+        self._keys = sorted((key.time, joint) for joint, keys in self._motion.tracks.items() for key in keys)
+        return Trajectory(self._motion, here)
 
     def _play(self, trajectory: Trajectory, t: float) -> bool:
         while self._cues and self._cues[0].time <= t:

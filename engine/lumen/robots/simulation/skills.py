@@ -13,6 +13,7 @@ from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
+from lumen.robots.joint_ways import LOOK_SPEED, home_angles
 from lumen.robots.silent_recording import SilentRecording
 from lumen.robots.simulation.base import RobotBase
 from lumen.robots.simulation.joint_transition import JointTransition
@@ -49,7 +50,6 @@ BACKWARDS = 0.3
 FULL_VOLUME = 1.0
 """How loud a robot speaks that nobody has told."""
 
-_LOOK_SPEED = 1.5
 _REST_SPEED, _WAKE_SPEED = 0.3, 0.4
 _UPRIGHT = pi / 9
 
@@ -72,7 +72,6 @@ class SimulatedSkills:
     ) -> None:
         self._world, self._motors, self._lights, self._base = world, motors, lights, base
         self._sensors, self._notice = sensors, notice
-        self._postures = world.body.postures
         self._part = part_of(world.body)
         self._standing = standing(world.body)
         self._posture_state = PostureState(posture, self._standing)
@@ -165,9 +164,8 @@ class SimulatedSkills:
             raise RobotRefusedError("the motors are off: `wake` first")
 
     def _perform(self, command: Perform, now: float) -> Activity:
-        motion, owned = command.motion, self.parts(command)
-        start = self._postures.get(motion.start, {})
-        home = {name: angle for name, angle in start.items() if self._part[name] in owned}
+        motion = command.motion
+        home = home_angles(motion, self._world.body, self.parts(command))
         here = self._posture_state.posture
         if motion.start and motion.start != here and not (self.upright and motion.start in self._standing):
             raise RobotRefusedError(
@@ -210,10 +208,9 @@ class SimulatedSkills:
 
     def _look(self, yaw: float, pitch: float, now: float) -> Activity:
         angles = self._world.body.roles.head_joints(yaw, pitch)
-        target = {name: self._motors.inside(name, angle) for name, angle in angles.items()}
-        wanted = self._motors.wanted(target)
-        farthest = max(abs(target[name] - wanted[name]) for name in target)
-        return JointTransition(self._motors, target, now, max(0.3, farthest / _LOOK_SPEED))
+        wanted = self._motors.wanted(angles)
+        farthest = max(abs(angle - wanted[name]) for name, angle in angles.items())
+        return JointTransition(self._motors, angles, now, max(0.3, farthest / LOOK_SPEED))
 
     def _rest(self, now: float) -> Activity:
         if self.fallen or not self.awake or self._world.body.roles.base.kind is not BaseKind.BIPED:
