@@ -5,7 +5,8 @@ from itertools import chain
 
 import pytest
 
-from lumen.language.commands import Leds, Posture, Rest, Say
+from lumen.interpreters.bounds import nearest_angles
+from lumen.language.commands import Leds, Look, Posture, Rest, Say
 from lumen.language.gestures import merged
 from lumen.language.life import STILL_STYLE
 from lumen.language.projects import Project
@@ -34,6 +35,20 @@ def test_head_and_arms_move_and_legs_do_not(standing: Lockstep, live: LiveFor, p
     moved = {joint for joint in before if abs(before[joint] - after[joint]) > 0.002}
     assert moved & set(project.body.parts["arms"])
     assert not set(chain.from_iterable(sent(standing))) & set(project.body.parts["legs"])
+
+
+def test_it_keeps_limits_that_depend_on_another_joint(standing: Lockstep, live: LiveFor, project: Project) -> None:
+    """A head that is turned and lowered as far as it can be is moved no farther by its glances."""
+    standing.start("b", Look(1.5, 0.3))
+    live(3.0)
+    calls = len(standing.nao.world.called("setAngles"))
+    live(20.0)
+    goals = [
+        dict(zip(names, angles, strict=True)) for names, angles, _ in standing.nao.world.called("setAngles")[calls:]
+    ]
+    heads = [{name: goal[name] for name in ("HeadYaw", "HeadPitch")} for goal in goals if "HeadYaw" in goal]
+    assert len({head["HeadPitch"] for head in heads}) > 10, "it is alive"
+    assert [head for head in heads if nearest_angles(head, project.body) != head] == []
 
 
 def test_arms_accompany_what_it_says(standing: Lockstep, live: LiveFor) -> None:

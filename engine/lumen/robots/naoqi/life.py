@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from lumen.errors import RobotError
+from lumen.interpreters.bounds import nearest_angles
 from lumen.interpreters.life import vigour
 from lumen.language.commands import Posture, Rest, Say, Wake
 from lumen.language.gestures import NO_GESTURES
@@ -113,8 +114,9 @@ class NaoqiLife:
         led = self._body.parts.get(HEAD, ()) if self.layer.leading(now) else ()
         barred = {*led, *(() if OWN_LEGS in self.layer.style.naoqi else self._legs)}
         own = {joint: stands for joint, stands in self._stands.items() if joint in offsets and joint not in barred}
-        goals = {joint: self._inside(joint, stands + offsets[joint]) for joint, stands in own.items()}
-        if goals:
+        if own:
+            near = nearest_angles({joint: a + offsets[joint] for joint, a in own.items()}, self._body, self._stands)
+            goals = {joint: near[joint] for joint in own}
             self._sent = self._post("ALMotion", "setAngles", list(goals), list(goals.values()), SPEED)
 
     def _look(self, now: float) -> None:
@@ -154,7 +156,3 @@ class NaoqiLife:
     def _ours(self, free: Collection[str]) -> Collection[str]:
         """The parts that we move: the head alone where NAOqi breathes."""
         return {HEAD} & set(free) if self._breathes else free
-
-    def _inside(self, joint: str, angle: float) -> float:
-        limits = self._body.joints[joint]
-        return min(max(angle, limits.minimum), limits.maximum)
