@@ -15,7 +15,7 @@ from lumen.language.events import Event
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Hall, Joints, Perform, Record, Robot, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Hall, Joints, Live, Perform, Record, Robot, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteHall, RemoteRobot, RobotHost
 from lumen.robots.simulation import SimulatedRobot
@@ -250,6 +250,28 @@ def test_no_aim_leaves_the_limits(robot: Body, project: Project, angle: float) -
     limit = project.body.joints["HeadPitch"]
     measured = joints.angles[joints.names.index("HeadPitch")]
     assert limit.minimum - 0.05 <= measured <= limit.maximum + 0.05
+
+
+BEYOND = (
+    Look(9.0, 9.0),
+    Perform(MotionDefinition("far", 0.5, {"HeadYaw": (Keyframe(0.3, -9.0),), "LHand": (Keyframe(0.3, 3.0),)})),
+    Perform(MotionDefinition("hasty", 0.2, {"HeadYaw": (Keyframe(0.1, 2.0), Keyframe(0.2, -2.0))})),
+)
+
+
+@pytest.mark.parametrize("command", BEYOND, ids=["look", "far", "hasty"])
+def test_no_command_leaves_the_limits(robot: Body, project: Project, command: RobotCommand) -> None:
+    """With its life beside; a robot with a body may sag or swing by 0.05 rad."""
+    robot.start("", Live(project.life["lively"]))
+    robot.start("a", command)
+    answers: list[str] = []
+    for _ in range(20):
+        answers += names(live(robot, 0.2))
+        joints = robot.read(Sense.JOINT)
+        assert isinstance(joints, Joints)
+        for name, angle in zip(joints.names, joints.angles, strict=True):
+            assert project.body.joints[name].minimum - 0.05 <= angle <= project.body.joints[name].maximum + 0.05, name
+    assert answers == ["done.command.a"]
 
 
 @pytest.mark.slow
