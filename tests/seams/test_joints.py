@@ -12,6 +12,7 @@ import pytest
 
 import lumen
 from lumen import Exhibition
+from lumen.app.setup import set_up_with
 from lumen.buses.memory import MemoryBus
 from lumen.interpreters import bounds
 from lumen.interpreters.bounds import nearest_angles
@@ -21,9 +22,10 @@ from lumen.language.commands import Language, Look, Posture
 from lumen.language.events import Event
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
-from lumen.ports import Aim, Joints, Live, Perform, RobotCommand, Sense
-from lumen.robots.bounded_robot import BoundedRobot
+from lumen.ports import Aim, Idles, Joints, Live, Perform, RobotCommand, Sense
+from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.robots.command_codec import decode_command, encode_command
+from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteRobot
 from lumen.statechart import VirtualClock
 from tests import ROOT
@@ -242,3 +244,16 @@ def test_a_brain_elsewhere_sends_no_command_beyond_the_limits() -> None:
     sent = [decode_command(body, project) for body in bodies]
     assert [type(command) for command in sent] == [type(command) for command in COMMANDS]
     assert not [fault for command in sent if not isinstance(command, Language) for fault in outside(command, NAO)]
+
+
+def test_a_wrapped_robot_has_the_abilities_of_the_one_within() -> None:
+    recording = RecordingRobot(NAO)
+    wrapped = BoundedRobot(recording, NAO)
+    assert ability(wrapped, Idles) is ability(recording, Idles) is recording
+    assert ability(BoundedRobot(Obedient(), NAO), Idles) is None
+    setup = set_up_with(wrapped)
+    setup.clock.wait(1.0)
+    assert setup.robot is wrapped
+    assert setup.hall is recording
+    assert recording.time == pytest.approx(1.0)
+    assert set_up_with(BoundedRobot(Obedient(), NAO)).hall is None
