@@ -206,8 +206,8 @@ def test_drops_are_told_at_once_then_every_ten_seconds_with_their_key(caplog: py
     drops.tell(all=True)
     assert [record.getMessage() for record in caplog.records] == [
         "messages on `face` are dropped: too many",
-        "2 more messages on `face` were dropped in 10 s: too many",
-        "1 more messages on `face` were dropped in 0 s: too many",
+        "more messages on `face` were dropped (2 in 10 s): too many",
+        "more messages on `face` were dropped (1 in 0 s): too many",
     ]
     for n in range(2 * MAX_KEYS):
         drops.add(f"key {n}", "too many")

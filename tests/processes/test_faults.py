@@ -145,7 +145,7 @@ def test_a_robot_that_hangs_is_lost_and_does_nothing_late_when_it_goes_on(
     troupe.ear.publish("avatar.NAO.command", {"id": "late", "type": "motion", "method": "goodbye"}, ttl=2.0)
     troupe.until(lambda: "robot_lost" in brain.states)
     main(["doctor", str(troupe.folder), "--bus", troupe.url])
-    assert "?? robot: a process receives `command`, but NAO does not report its presence" in capsys.readouterr().out
+    assert "?? robot: a process receives `command`, but NAO shows no sign of life" in capsys.readouterr().out
     os.kill(robot.pid, signal.SIGCONT)
     troupe.until(lambda: b'"late"' in dead.next())
     troupe.until(lambda: "idle" in brain.states)

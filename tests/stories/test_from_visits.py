@@ -147,7 +147,7 @@ def test_a_story_is_written_passes_and_fails_once_the_robot_says_something_else(
     assert ask(folder, "-o", str(output), "--force", "--format", "json") == 1, "it says something else now"
     said = json.loads(capsys.readouterr().out)
     assert (said["same"], said["was"], said["is"]) == (False, "“Goodbye!” (en)", "“So long!” (en)")
-    assert "# The robot does something else with the files of today" in output.read_text("utf-8")
+    assert "# With today's files, the robot does something else" in output.read_text("utf-8")
     assert main(["test", str(folder), "kept"]) == 0, "what it does now is what is expected"
 
 
@@ -158,7 +158,7 @@ def test_a_story_is_written_passes_and_fails_once_the_robot_says_something_else(
         (["--at", "25:00"], "`25:00` is not a time of day"),
         (["--name", "Budi"], "write two names, such as `--name Budi=Ani`"),
         (["--at", "10:00", "-o", "/dev/null/x/y.yaml"], "can't write"),
-        (["2001-01-01"], "nothing of 2001-01-01"),
+        (["2001-01-01"], "there is no journal of 2001-01-01"),
     ],
 )
 def test_what_can_not_be(folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], told: str) -> None:
