@@ -12,6 +12,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
 from lumen.app.setup import Setup, set_up
+from lumen.clocks import bell
 from lumen.clocks.real import RealClock
 from lumen.runtime.loop import TICK_PERIOD
 
@@ -32,6 +33,29 @@ states:
   dreaming: {}
   awake: {}
 """
+
+
+class StoppedTime:
+    """Stands for the module `time`: it passes only while one sleeps."""
+
+    def __init__(self) -> None:
+        self.now, self.slept = 100.0, list[float]()
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.slept.append(seconds)
+        self.now += seconds
+
+
+def test_who_rings_all_the_time_is_heard_fifty_times_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    time, rung = StoppedTime(), bell.Bell()
+    monkeypatch.setattr(bell, "time", time)
+    for _ in range(3):
+        rung.ring()
+        rung.sleep(1.0)
+    assert time.slept == pytest.approx([0.02, 0.02])
 
 
 def project(root: Path, robot: str = "robot: {name: NAO, model: nao}") -> Path:

@@ -215,6 +215,12 @@ def test_what_only_a_run_would_tell_is_listed() -> None:
     assert said(diagnostics)[-1] == "13:14 not-carried-over `compute()` is known only when the file runs"
 
 
+def test_of_what_only_a_run_would_tell_sixty_characters_are_shown() -> None:
+    long = f"compute({'a' * 100})"
+    _, diagnostics = read("keys.py", EXPORT.replace("[[0.3, [3, -0.5, 0], [3, 0, 0]]]", f"[{long}]"))
+    assert said(diagnostics)[-1] == f"13:14 not-carried-over `{long[:60]}` is known only when the file runs"
+
+
 @for_each(
     ("file", "text", "message"),
     [

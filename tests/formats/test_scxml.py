@@ -94,6 +94,12 @@ def test_parallel_history_final_and_deep_initial() -> None:
     assert said == []
 
 
+def test_what_an_editor_has_in_its_own_element_may_be_an_action_elsewhere() -> None:
+    box = '<e:box xmlns:e="urn:e"><e:turn/></e:box>'
+    _, said = read(f'<state id="a">{box}<onentry>\n<e:turn xmlns:e="urn:e"/></onentry></state>')
+    assert said == ["2: `<box>` of the namespace `urn:e` is ignored", "3: `<turn>` has no counterpart in Lumen"]
+
+
 def test_a_final_state_of_a_parallel_one_is_written_as_a_state_that_is_at_its_end() -> None:
     regions = {"r": {"states": {"f": {"type": "final"}}}, "s": {"type": "final", "entry": {"log": "x"}}}
     text, said = write_scxml(Machine.from_dict({"states": {"p": {"type": "parallel", "states": regions}}}), dotted("m"))

@@ -61,6 +61,7 @@ def test_consequents_and_weight() -> None:
         ("if a is x then b is y with 0.5 0.5", 31, "expected the end of the rule, `and` or `with` here, not `0.5`"),
         ("if a is x then b is any", 23, "expected a term of `b` here, but the rule ends"),
         ("if " + "(" * 60, 53, "the rule is nested too deeply"),
+        ("if " + "(a is x) or " * 20 + "(" * 60, 293, "the rule is nested too deeply"),
     ],
 )
 def test_where_a_rule_stops_being_one(text: str, offset: int, message: str) -> None:

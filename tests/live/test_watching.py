@@ -280,6 +280,7 @@ def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path, clock: 
     (root / TOUR).write_text("new", "utf-8")
     until(lambda: not watcher.results.empty(), meanwhile=lambda: passing(clock), what="a verdict")
     watcher.close()
+    assert not any(thread.is_alive() for thread in watcher._threads)
     assert order == ["noticed", "judged"]
 
 

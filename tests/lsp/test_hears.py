@@ -139,6 +139,7 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
         (T, "my_¦name:", ""),
         (T, "words: [comm¦on", ""),
         (T, "el¦se: .", ""),
+        (W, "any¦how: true", ""),
     ],
 )
 def test_definition(file: str, text: str, where: str) -> None:

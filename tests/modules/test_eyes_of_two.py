@@ -37,7 +37,7 @@ def test_each_robot_hears_what_its_own_camera_sees(two: Project, photographed: P
     part.tick(0.1, [])
     until(lambda: len(seen.messages) == 2)
     assert seen.messages[1].key == "lumen.Ana.visual.face.detection"
-    assert there.bodies[0]["parts"] == [EYES]
+    assert (there.bodies[0]["parts"], there.bodies[0]["state"]) == ([EYES], "here")
     assert sorted(line.split(":")[0] for line in part.summary()) == ["eyes of Ana", "eyes of Ben"]
     part.close()
     bus.close()

@@ -21,7 +21,8 @@ def test_every_motion_and_every_passage_is_a_case() -> None:
     found = cases(project)
     played = [case for case in found if not (case.passage or case.living)]
     assert {case.motion.name for case in played} == set(SHIPPED)
-    assert [case.motion for case in found if case.passage] == list(project.body.passages)
+    passages = project.body.passages
+    assert [(case.motion, case.way) for case in found if case.passage] == [(p, f"from {p.start}") for p in passages]
     assert all(case.way == "from Stand" for case in played)
     assert {case.file for case in found if case.living} == {f"motions/life/{name}.yaml" for name in project.life}
 
