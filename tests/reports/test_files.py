@@ -387,9 +387,19 @@ def test_a_repaired_file_keeps_its_owner_its_rights_and_its_link(tmp_path: Path)
 def test_a_file_of_another_owner_is_written_to(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "a"
     file.write_bytes(b"a longer text")
-    number = file.stat().st_ino
-    monkeypatch.setattr(replacing, "_inherits", lambda draft, target, there: False)
-    replace_file(file, b"new")
+    number, stat = file.stat().st_ino, os.stat
+
+    def of_another(path: Path, **options: bool) -> os.stat_result:
+        found = stat(path, **options)
+        return os.stat_result((*found[:4], found.st_uid + (path == file), *found[5:]))
+
+    def refused(*given: object) -> None:
+        raise PermissionError(errno.EPERM, os.strerror(errno.EPERM))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "stat", of_another)
+        patch.setattr(os, "chown", refused)
+        replace_file(file, b"new")
     assert (file.read_bytes(), file.stat().st_ino) == (b"new", number)
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 

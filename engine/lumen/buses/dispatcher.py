@@ -151,7 +151,7 @@ class Dispatcher:
             self._drop(delivery, str(error))
             return
         origin = believed(properties.message_id, properties.app_id, properties.timestamp, properties.headers)
-        message = Message(delivery.key, body, properties.reply_to or "", properties.correlation_id or "", *origin)
+        message = Message(delivery.key, body, properties.reply_to, properties.correlation_id, *origin)
         self._hand(subscription, delivery, message)
 
     def _hand(self, subscription: Subscription, delivery: Delivery, message: Message) -> None:

@@ -139,6 +139,10 @@ class ValidatedBus(Bus):
         return "" if known else "no route in lumen.yaml has this key, and it does not begin with `avatar` or `lumen`"
 
 
+def _nothing() -> None:
+    """Ends a subscription that there is not; nobody waits for what arrives."""
+
+
 @dataclass(eq=False)
 class _Listening:
     """A subscription, and the one under the alias of its key."""
@@ -147,11 +151,7 @@ class _Listening:
     handler: MessageHandler
     undo: Callable[[], None]
     alias: str = ""
-    undo_alias: Callable[[], None] = lambda: None
-
-
-def _nothing() -> None:
-    """Ends a subscription that there is not; nobody waits for what arrives."""
+    undo_alias: Callable[[], None] = _nothing
 
 
 def by_key(project: Project) -> dict[str, Route]:

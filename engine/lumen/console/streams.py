@@ -39,7 +39,7 @@ class Listener(NamedTuple):
     robot: str
     after: Mapping[str, int]
     full: bool
-    once: bool = False
+    once: bool
 
 
 def positions_in(text: str, robot: str) -> dict[str, int]:

@@ -108,8 +108,7 @@ def _state(draft: ProjectDraft, use: NameUse) -> str:
 
 
 def _joint(draft: ProjectDraft, name: str) -> str:
-    joint = draft.body.joints.get(name) if draft.body else None
-    if joint is None or draft.body is None:
+    if draft.body is None or (joint := draft.body.joints.get(name)) is None:
         return ""
     if name in draft.body.hands:
         return "a hand: 0 is closed, 1 open"

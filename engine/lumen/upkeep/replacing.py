@@ -33,14 +33,13 @@ def replace_file(path: Path, content: bytes) -> None:
     draft = target.with_name(f".lumen-{secrets.token_hex(6)}.new")
     try:
         _write(draft, content)
-        if there and not _inherits(draft, target, there):
-            _overwrite(target, content)
-        else:
-            os.replace(draft, target)
+        if there:
+            _inherit(draft, target, there)
+        os.replace(draft, target)
     except OSError as error:
         if not there or error.errno not in _IN_PLACE:
             raise
-        _overwrite(target, content)  # mounted into a container, or in a folder that can't be written
+        _overwrite(target, content)  # of another owner, mounted into a container, or in a folder that can't be written
     finally:
         with suppress(OSError):
             draft.unlink()
@@ -53,17 +52,13 @@ def _write(draft: Path, content: bytes) -> None:
         os.fsync(file.fileno())
 
 
-def _inherits(draft: Path, target: Path, there: os.stat_result) -> bool:
-    """Whether the draft could be given the owner, the rights and the access lists of the file."""
+def _inherit(draft: Path, target: Path, there: os.stat_result) -> None:
+    """Give the draft the owner, the rights and the access lists of the file; raises OSError."""
     made = os.stat(draft)
     if (made.st_uid, made.st_gid) != (there.st_uid, there.st_gid):
-        try:
-            os.chown(draft, there.st_uid, there.st_gid)
-        except PermissionError:
-            return False
+        os.chown(draft, there.st_uid, there.st_gid)
     shutil.copystat(target, draft)
     os.utime(draft)
-    return True
 
 
 def _overwrite(target: Path, content: bytes) -> None:

@@ -23,7 +23,7 @@ def within_limits(curves: JointCurves, body: Body, findings: ConversionFindings)
     for _ in range(MAX_FITS):
         far = beyond_limits(_definition(curves), body)
         if not far:
-            break
+            return curves
         changed = {joint: list(points) for joint, points in curves.items()}
         for excess in far:
             _cut(changed[excess.joint], excess, body, findings)

@@ -21,7 +21,7 @@ class JsonSource:
 
     data: Any
     document: Document
-    repeated: tuple[tuple[Place, str], ...] = ()
+    repeated: tuple[tuple[Place, str], ...]
     """The keys that an object has twice, of which the last one counts."""
 
     def place(self, path: NodePath) -> Place:

@@ -28,6 +28,8 @@ class Wheels:
     `hot` says whether the motors should be spared; `stage` bounds where the robot may drive.
     """
 
+    catching = False
+
     def __init__(
         self,
         world: World,
@@ -47,10 +49,6 @@ class Wheels:
     @property
     def whereabouts(self) -> Whereabouts:
         return self.odometry.whereabouts
-
-    @property
-    def catching(self) -> bool:
-        return False
 
     @property
     def soles(self) -> Soles:
