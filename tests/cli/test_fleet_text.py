@@ -1,6 +1,7 @@
 """What `lumen fleet log` prints for people."""
 
 from lumen.cli.fleet_text import log_lines
+from lumen.cli.tables import table
 
 
 def test_a_log_says_what_happened_when_and_what_was_counted_with_each_bundle() -> None:
@@ -15,3 +16,13 @@ def test_a_log_says_what_happened_when_and_what_was_counted_with_each_bundle() -
         ["bbbbbbbbbbbb", "1", "0.5", "0.25", "-"],
     ]
     assert list(log_lines({"incidents": [], "kinds": {}, "numbers": []})) == ["no incidents"]
+
+
+def test_only_a_column_of_numbers_is_aligned_to_the_right() -> None:
+    rows = [("nao1", "8.0", "3"), ("nao12", "12.5", "none"), ("nao3", "-", "5")]
+    assert table(("robot", "hours", "falls"), rows).splitlines() == [
+        "robot  hours  falls",
+        "nao1     8.0  3",
+        "nao12   12.5  none",
+        "nao3       -  5",
+    ]

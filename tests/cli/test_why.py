@@ -119,6 +119,16 @@ def test_it_reads_well(greeted: Exhibition) -> None:
     assert "it would have happened if event.data.result had been " in text
 
 
+def test_letters_with_marks_are_shown_as_they_are() -> None:
+    change = {"event": "heard", "event.data.result": "Grüß Gott"}
+    false = {"values": {"context.name": "José"}}
+    reason = {"text": "hello → met", "because": "guard", "false": false, "change": change, "note": "", "file": ""}
+    answer = {"what": "met", "reasons": [reason], "at": "2015-05-20T10:00:00+00:00"}
+    told = "\n".join(why_not_lines(answer))
+    assert 'if heard had come with event.data.result "Grüß Gott"' in told
+    assert 'context.name is "José"' in told
+
+
 @pytest.mark.process
 @pytest.mark.slow
 def test_who_runs_is_asked_and_who_does_not_has_a_journal(
