@@ -65,7 +65,7 @@ def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str
         (["tomorrow"], "is neither a file nor a day"),
         ([date.today().isoformat()], "there is no journal of"),
         (["nothing.journal"], "no file nothing.journal"),
-        (["--all"], "nothing is in"),
+        (["--all"], "there is no journal in"),
         (["--until", "25:00"], "is not a time of day"),
     ):
         assert main(["replay", "--project", str(played), *words]) == 2

@@ -37,7 +37,7 @@ def test_a_command_is_a_question_to_the_brain(command: str, fields: dict[str, An
         ("dance", {}, "there is no command `dance`"),
         ("event", {"event": "touched", "data": ["head"]}, "`data` must be an object, or be left out"),
         ("event", {"event": "touched", "data": ""}, "`data` must be an object, or be left out"),
-        ("event", {}, "`event` must be a text of 1 to 200 characters"),
+        ("event", {}, "`event` must be a string of 1 to 200 characters"),
         ("model", {"on": "no"}, "`on` must be true or false"),
         ("approve", {"approval": "a1", "go": "yes"}, "`go` must be true or false"),
     ],

@@ -122,7 +122,10 @@ def _is_in(module: str, package: str) -> bool:
 
 
 def _classes(package: str) -> list[type]:
-    """The classes of the loaded modules of the package, bases after those that inherit from them."""
+    """The classes of the loaded modules of the package, bases after those that inherit from them.
+
+    Without classes whose metaclass is written in C: their attributes can't be watched.
+    """
     modules = [module for name, module in list(sys.modules.items()) if _is_in(name, package)]
     defined = {
         value
@@ -130,7 +133,8 @@ def _classes(package: str) -> list[type]:
         for value in vars(module).values()
         if isinstance(value, type) and value.__module__ == module.__name__
     }
-    kinds = [kind for kind in defined if not issubclass(kind, Enum | BaseException | tuple)]
+    kinds = [kind for kind in defined if type(kind).__setattr__ is type.__setattr__]
+    kinds = [kind for kind in kinds if not issubclass(kind, Enum | BaseException | tuple)]
     return sorted(kinds, key=lambda kind: (-len(kind.__mro__), kind.__module__, kind.__qualname__))
 
 

@@ -143,7 +143,7 @@ def test_that_there_is_no_player_is_said_once(
         (b"", "it is not a WAV file"),
         (b"RIFF\0\0\0\0WAVE", "it is not a WAV file"),
         (b"ID3\3" + bytes(100), "it is not a WAV file"),
-        (b"RIFF\x24\0\0\0WAVEfmt \x10\0\0\0\1\0\1\0\x40\x1f\0\0\x40\x1f\0\0\1\0\x08\0data\0\0\0\0", "8 bits"),
+        (b"RIFF\x24\0\0\0WAVEfmt \x10\0\0\0\1\0\1\0\x40\x1f\0\0\x40\x1f\0\0\1\0\x08\0data\0\0\0\0", "bits: 8"),
         (b"RIFF\x24\0\0\0WAVEfmt \x10\0\0\0\1\0\1\0\x40\x1f\0\0\x80\x3e\0\0\2\0\x10\0data\0\0\0\0", "empty"),
         (b"RIFF\x24\0\0\0WAVEfmt \x10\0\0\0\1\0\1\0\0\0\0\0\x80\x3e\0\0\2\0\x10\0data\2\0\0\0\0\0", "0 Hz"),
     ],

@@ -120,7 +120,7 @@ def test_a_sound_that_is_none_is_one_line(stand: Make, content: str, said: str) 
 @for_each("content", [None, 5, ["UklGRg=="]])
 def test_a_sound_that_is_no_text_is_a_module_error(content: object) -> None:
     """The schema of the message refuses it first, unless the project has its own."""
-    with pytest.raises(ModuleError, match="a sound must be a text"):
+    with pytest.raises(ModuleError, match="a sound must be a string"):
         sound_of(content)
 
 
