@@ -1,16 +1,23 @@
-"""A program that reloads beside the watcher: the process that judges serves one thread at a time."""
+"""The process that judges files: it serves one thread at a time, and is tried once more where it can't begin."""
 
+import errno
+import os
 import threading
 from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
+from pathlib import Path
+
+import pytest
 
 import lumen
 from lumen.app.rehearsal import Rehearsal
+from lumen.app.reload import validation_worker
 from lumen.app.reload.validation_process import failure
-from lumen.app.reload.validation_worker import Loaded
+from lumen.app.reload.validation_worker import Loaded, ValidationWorker
 from lumen.app.reload.validator import BundleValidator
 from lumen.app.reload.visits_check import VisitsCheck
+from lumen.errors import FatalFilesError
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, Story, StoryPause, StoryStep
 from lumen.loading.files import read_files
@@ -88,3 +95,20 @@ def test_a_story_that_takes_too_long_is_no_failure() -> None:
     assert found.failed.step == 1
     assert failure(project, "failing", -1.0) is None
     assert failure(project, "well", inf) is None
+
+
+def test_a_process_that_can_not_begin_in_place_of_another_is_tried_once_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(validation_worker, "take", lambda command: None)
+    worker, tried = ValidationWorker(tmp_path), list[None]()
+
+    def running() -> None:
+        tried.append(None)
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+
+    monkeypatch.setattr(worker, "_process", object())
+    monkeypatch.setattr(worker, "_running", running)
+    with pytest.raises(FatalFilesError, match="can't start: Resource temporarily unavailable"):
+        worker.load({})
+    assert len(tried) == 2

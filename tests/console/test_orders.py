@@ -1,4 +1,4 @@
-"""Which message a command of the console is, and which command is none."""
+"""The messages that the console sends for commands, and the commands that it refuses."""
 
 from typing import Any
 

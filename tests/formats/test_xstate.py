@@ -46,6 +46,12 @@ def test_a_machine_as_it_is_written_for_xstate() -> None:
     }
 
 
+def test_a_note_for_readers_is_left_out_without_a_word() -> None:
+    states = {"a": {"on": {"go": {"target": "b", "description": "A visitor comes."}}}, "b": {}}
+    data, said = read({"id": "m", "states": states})
+    assert (data["states"]["a"], said) == ({"on": {"go": "b"}}, [])
+
+
 def test_code_that_is_not_in_the_file() -> None:
     data, said = read(
         {

@@ -323,6 +323,14 @@ def test_a_revision_is_read_as_far_as_a_folder_would_be(repository: Path, monkey
         files_at(repository, "HEAD")
 
 
+def test_no_file_of_a_revision_is_left_out_where_git_gives_fewer(
+    repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(revisions, "_contents", lambda root, ids: [b""] * (len(ids) - 1))
+    with pytest.raises(ValueError, match="shorter"):
+        files_at(repository, "HEAD")
+
+
 @pytest.mark.process
 def test_outside_of_a_repository(
     tmp_path: Path, copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

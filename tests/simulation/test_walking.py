@@ -1,10 +1,12 @@
 """Walking: in physics, by encoders and gyrometer alone."""
 
+from collections.abc import Sequence
 from math import degrees, inf, nan, pi
 
 import numpy as np
 import pytest
 
+from lumen.interpreters.gait.footsteps import Footstep
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Walk
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Stage
@@ -204,6 +206,22 @@ def test_the_stage_is_wide_enough_for_a_short_walk_and_remembered(staged: Simula
     assert "the stage" in refused(staged, Walk(0.0, -0.25))
     staged.start("w", Walk(0.0, 0.2))
     assert answer(until_answered(staged, "w"), "w") == "done"
+
+
+def test_the_rest_of_the_way_is_compared_with_the_stage_at_each_step(
+    staged: SimulatedRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    odometry, looks = staged.base.odometry, list[int]()  # type: ignore[attr-defined]
+    check = odometry.check
+
+    def looking(steps: Sequence[Footstep], drift: float = 0.0) -> None:
+        looks.append(len(steps))
+        check(steps, drift)
+
+    monkeypatch.setattr(odometry, "check", looking)
+    staged.start("w", Walk(0.2))
+    assert answer(until_answered(staged, "w"), "w") == "done"
+    assert looks[0] <= len(looks) <= 2 * looks[0], "for each step, and not in each control period"
 
 
 @pytest.mark.parametrize(

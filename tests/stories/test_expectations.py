@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
+from lumen.language.stories import Expect
+from lumen.runtime.story_observations import StoryObservations
 
 KNOCK = "  - event: {name: knock, data: {who: Ani}}\n"
 
@@ -81,6 +83,11 @@ def test_what_was_missing_when_the_rest_held_is_told(story: Write, capsys: pytes
     main_file.write_text(re.sub(r"(?m)^places:.*\n(?:[ #].*\n)*", "", main_file.read_text("utf-8")) + places, "utf-8")
     assert main(["test", str(project), "knocking"]) == 1
     assert "expected to hear “Hallo” within 60 s, but it said “Hello, Ani!”\n" in capsys.readouterr().out
+
+
+def test_before_anything_was_seen_no_state_is_active() -> None:
+    (lacking,) = StoryObservations().unmet(Expect(states=("open",)))
+    assert (lacking.expected, lacking.was, lacking.state) == ("state `open`", "the active states are nothing", True)
 
 
 def test_of_several_texts_the_nearest_is_told(story: Write, capsys: pytest.CaptureFixture[str]) -> None:

@@ -212,7 +212,7 @@ def test_the_story_of_no_rest_ends_there(story: Callable[..., Path], capsys: pyt
     folder = story("  - wait: 1s\n")
     assert main(["test", str(folder), "--explore", "--behavior", "door"]) == 1
     told = capsys.readouterr().out
-    assert "no rest: `door` never comes to rest" in told
+    assert "behaviors/door.yaml:14:20: no rest: `door` never comes to rest" in told
     lines = told.partition("    # yaml-language-server")[2].split("\n\n")[0].splitlines()
     assert lines[-1].strip() == "- event: spin"
     pasted = "\n".join(line[4:] for line in lines[1:])

@@ -19,6 +19,11 @@ def process(kit: UnpackedKit, number: int) -> int:
     return os.getpid()
 
 
+def of_sigterm(kit: UnpackedKit, number: int) -> bool:
+    """Whether SIGTERM ends this process at once."""
+    return signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
 def die(kit: UnpackedKit, number: int) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 

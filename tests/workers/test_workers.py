@@ -19,7 +19,7 @@ from tests.guarded import PIPE, Guarded
 from tests.house.test_guarded import left
 from tests.tables import for_each
 from tests.waiting import HANG, until
-from tests.workers.small_tasks import die, process, square, square_or_die
+from tests.workers.small_tasks import die, of_sigterm, process, square, square_or_die
 
 KIT = WorkKit({}, {"models/mesh.stl": b"solid"})
 TASKS = [(number,) for number in range(6)]
@@ -119,6 +119,14 @@ def test_whatever_ends_it_leaves_no_process_and_no_folder(
         assert not said or number == signal.SIGKILL  # then multiprocessing's own tracker tells what it cleans up
     until(lambda: not left(tmp_path))
     assert left(tmp_path) == []
+
+
+def test_sigterm_ends_workers_also_where_the_program_ignores_it() -> None:
+    before = signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    try:
+        assert {found for _, found in Workers(2).results(of_sigterm, KIT, TASKS[:2])} == {True}
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def test_a_worker_with_other_software_refuses() -> None:

@@ -1,0 +1,40 @@
+"""`lumen doctor`: what it concludes from what comes on the bus."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+from unittest.mock import Mock
+
+import pytest
+
+from lumen.bus import Message
+from lumen.cli import doctor
+from tests.exhibits import project
+from tests.tables import for_each
+
+NOW = datetime(2026, 5, 20, 10, 0, tzinfo=UTC)
+
+
+class StoppedClock(datetime):
+    @classmethod
+    def now(cls, tz: Any = None) -> datetime:
+        return NOW
+
+
+@for_each(
+    "late, severity, text",
+    [
+        (0.9, "ok", "this machine's clock and the robot's are 0.9 s apart"),
+        (-0.9, "ok", "this machine's clock and the robot's are 0.9 s apart"),
+        (1.1, "warning", "this machine's clock and the robot's are 1.1 s apart"),
+        (-1.1, "warning", "this machine's clock and the robot's are 1.1 s apart"),
+    ],
+)
+def test_clocks_more_than_a_second_apart_are_worth_a_warning(
+    late: float, severity: str, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(doctor, "datetime", StoppedClock)
+    body = {"datePublished": (NOW - timedelta(seconds=late)).isoformat()}
+    bus = Mock()
+    bus.subscribe = lambda key, handler: handler(Message(key, body))
+    found = list(doctor._life(bus, project()))
+    assert [(one.what, one.severity, one.text) for one in found][-1] == ("clocks", severity, text)

@@ -1,0 +1,16 @@
+"""What lumen.yaml leaves out, or can't say because it is no map, has a value that is safe."""
+
+from pathlib import Path
+
+from lumen.language.show import Show
+from lumen.loading.project import main_settings
+from lumen.loading.settings import Settings
+from tests.tables import for_each
+
+
+@for_each("main", [None, "[]", "name: Small", "console: {port: 8123}"])
+def test_the_console_is_for_this_computer_alone_and_no_device_is_reached(main: str | None, tmp_path: Path) -> None:
+    if main is not None:
+        (tmp_path / "lumen.yaml").write_text(main, "utf-8")
+    settings = main_settings(tmp_path) or Settings()
+    assert (settings.console.host, settings.show) == ("127.0.0.1", Show())
