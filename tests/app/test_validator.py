@@ -1,4 +1,4 @@
-"""The process that judges files: it serves one thread at a time, and is tried once more where it can't begin."""
+"""The process that judges files: it serves one thread at a time; if it can't begin, it is tried once more."""
 
 import errno
 import os

@@ -1,15 +1,19 @@
 """What the language services say of a place: files and positions in, values out, no editor around."""
 
-from contextlib import suppress
+import asyncio
+from contextlib import nullcontext, suppress
 from random import Random
+from unittest.mock import AsyncMock, Mock
 
 import pytest
+from pygls.exceptions import JsonRpcContentModified
 
 from lumen.errors import UsageError
 from lumen.loading.files import read_files
-from lumen.lsp.analysis import Analysis
+from lumen.lsp.analysis import Analysis, Judgement
 from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions, uses
+from lumen.lsp.features import changes
 from lumen.lsp.hover import hover
 from lumen.lsp.names import NameKind
 from lumen.lsp.renaming import applied, refuse_harm, renamable, rename
@@ -320,6 +324,17 @@ def test_a_renaming_that_would_break_the_project_is_refused() -> None:
     refuse_harm(before, before)
     with pytest.raises(UsageError, match="nonsense"):
         refuse_harm(before, after)
+
+
+@for_each("outdated", [True, False])
+def test_a_renaming_while_files_change_is_asked_for_again(outdated: bool) -> None:
+    """The editor hears that the content was modified; else it gets the edits."""
+    judgement = None if outdated else Judgement(SHIPPED.diagnostics, {})
+    server = Mock(settled=AsyncMock(), at=Mock(return_value=(SHIPPED, *place(SHIPPED, TOUR, "target: how_are|_you"))))
+    server.judge.return_value.judge = AsyncMock(return_value=judgement)
+    asked = changes.rename(server, Mock(new_name="how_is_it"))
+    with pytest.raises(JsonRpcContentModified) if outdated else nullcontext():
+        assert asyncio.run(asked) is server.encoder.return_value.renaming.return_value
 
 
 def test_an_error_is_harm_although_warnings_are_no_longer_reported() -> None:

@@ -323,12 +323,13 @@ def test_a_revision_is_read_as_far_as_a_folder_would_be(repository: Path, monkey
         files_at(repository, "HEAD")
 
 
-def test_no_file_of_a_revision_is_left_out_where_git_gives_fewer(
-    repository: Path, monkeypatch: pytest.MonkeyPatch
+def test_no_file_of_a_revision_is_left_out_if_git_refuses_its_contents(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(revisions, "_contents", lambda root, ids: [b""] * (len(ids) - 1))
+    answers = {"rev-parse": b"c0ffee\n", "ls-tree": b"100644 blob c0ffee 7\tlumen.yaml\0"}
+    monkeypatch.setattr(revisions, "_git", lambda root, command, *words, given=b"": answers.get(command))
     with pytest.raises(ValueError, match="shorter"):
-        files_at(repository, "HEAD")
+        files_at(tmp_path, "HEAD")
 
 
 @pytest.mark.process
