@@ -143,10 +143,6 @@ def _nothing() -> None:
     """Ends a subscription that there is not; nobody waits for what arrives."""
 
 
-def _nothing() -> None:
-    """Ends a subscription that there is not; nobody waits for what arrives."""
-
-
 @dataclass(eq=False)
 class _Listening:
     """A subscription, and the one under the alias of its key."""
