@@ -121,7 +121,9 @@ def test_a_part_that_gave_up(hall: Hall) -> None:
     shown = hall.whole()
     for part in shown.node.parts:
         part.helpless("the thread `lumen-x` failed 5 times, at last on what Ani said")
-    assert hall.told("crashed") == "a part of Lumen failed, so no person could stop the robot any more: it rests"
+    assert (
+        hall.told("crashed") == "a part of Lumen failed. The robot rests, because nobody could have stopped it any more"
+    )
 
 
 def test_a_disk_that_is_full(hall: Hall, monkeypatch: pytest.MonkeyPatch) -> None:

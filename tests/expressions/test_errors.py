@@ -41,7 +41,7 @@ UNREADABLE: dict[str, tuple[int, str, str]] = {
     "has(1)": (4, "the argument of `has` must be a field", "has(event.data.x)"),
     "has(context)": (4, "the argument of `has` must be a field", ""),
     "matches('a', context.name)": (13, "the pattern of `matches` must be a text in quotes", ""),
-    "matches('a', '(?!a)')": (13, "in the pattern, a group can't begin with `(?` here", ""),
+    "matches('a', '(?!a)')": (13, "in the pattern, this kind of `(?` group is not allowed", ""),
     "false && nothing()": (9, "there is no function `nothing`", ""),
 }
 WORTHLESS: dict[str, tuple[int, str, str]] = {

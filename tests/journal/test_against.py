@@ -104,7 +104,8 @@ def test_files_that_never_come_to_rest_end_a_visit(visit: RecordedVisit) -> None
     assert verdict
     assert verdict.how == ENDS
     assert (
-        verdict.now == f"these files take more than {MORE_STEPS + MOST_TIMES * len(visit.inputs):,} steps in one visit"
+        verdict.now
+        == f"with these files, one visit takes more than {MORE_STEPS + MOST_TIMES * len(visit.inputs):,} steps"
     )
 
 

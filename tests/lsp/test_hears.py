@@ -165,7 +165,7 @@ def test_a_words_file_of_the_project_replaces_lumens_own() -> None:
         (T, "not  dan¦ce | sing", ["**hears not dance|sing**: taken if the visitor refuses it", "phrase `dance`"]),
         (T, "tour¦_of:", ["- “show me the rex”: `heard.exhibits` is {\"id\": \"rex\"", "- en: (show|take) me [to] {"]),
         (T, "my_¦name:", ["taken if one of its phrases is said", "`heard.name` is \"Budi\"", "phrase `my_name`"]),
-        (T, "my_¦name:", ["It comes with Lumen. To replace it, define it in a file of behaviors/words/"]),
+        (T, "my_¦name:", ["It comes with Lumen. To replace it, define it in a file in behaviors/words/"]),
         (T, "      fa¦q:", ["- “how tall”: `heard.answer` is \"57 cm\"", "answers table `faq`"]),
         (
             T,

@@ -138,7 +138,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
         text = f"no message came on {_names(silent)} in {LISTENING:g} s: check that the robot's process is running"
         yield Finding("senses", "warning", text)
     elif senses:
-        yield Finding("senses", "ok", f"messages come on {_names([route.name for route in senses.values()])}")
+        yield Finding("senses", "ok", f"messages arrive on {_names([route.name for route in senses.values()])}")
     if not skews:
         yield Finding("clocks", "note", "no message had a timestamp to compare")
         return

@@ -57,5 +57,5 @@ def _ask(reached: Reached, state: str, **more: str) -> dict[str, Any]:
 def _sure(state: str, way: dict[str, Any]) -> bool:
     """Whether whoever is asked says yes; what it leaves and enters is said before."""
     left = f"leaves {', '.join(way['exited'])} and " if way["exited"] else ""
-    print(f"It {left}enters {', '.join(way['entered'])}; guards are not checked.")
+    print(f"This {left}enters {', '.join(way['entered'])}; guards are not checked.")
     return agrees(f"Go to {state}?", "goto asks for confirmation, but this is not a terminal: add --yes")

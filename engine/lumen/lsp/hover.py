@@ -40,7 +40,7 @@ def describe(analysis: Analysis, use: NameUse) -> str:
     title = f"{use.kind} `{use.name}`"
     facts = _facts(analysis, use)
     if use.scope == WORDS_SCOPE + COMMON and COMMON_FILE not in analysis.files:
-        facts += f"\n\nIt comes with Lumen. To replace it, define it in a file of {WORDS_FOLDER}/."
+        facts += f"\n\nIt comes with Lumen. To replace it, define it in a file in {WORDS_FOLDER}/."
     uses = sum(1 for other in analysis.index.of(use) if not other.defines and other.text)
     return "\n\n".join(filter(None, [f"**{title}**", facts, f"used {uses} times" if uses > 1 else ""]))
 

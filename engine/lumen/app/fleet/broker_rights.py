@@ -107,7 +107,7 @@ def _leaks(wanted: BrokerDefinitions, there: Any) -> Iterator[BrokerFinding]:
             yield BrokerFinding(
                 f"the binding of {row['routing_key']} from {row['source']} to {UP}",
                 "Lumen did not create it, and it sends additional messages to the centre",
-                mend=f"rabbitmqctl delete_queue {UP}, which deletes its messages; then {IMPORT}",
+                mend=f"`rabbitmqctl delete_queue {UP}` (this also deletes the messages in the queue), then `{IMPORT}`",
             )
 
 

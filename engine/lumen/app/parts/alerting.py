@@ -104,7 +104,7 @@ class AlertPart(Part, Observer):
         self._desk.use(project.alerts)
 
     def helpless(self, reason: str) -> None:
-        self._desk("crashed", "a part of Lumen failed, so no person could stop the robot any more: it rests")
+        self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
     def close(self) -> None:
         self._disk.close()

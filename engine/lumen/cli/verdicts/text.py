@@ -75,7 +75,7 @@ def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
     """How many questions of a language are answered, and which get another passage's answer."""
     asked = paint(f"{count(trial.asked, 'question', 'questions')} in `{trial.language}`", "bold", on=coloured)
     wrong = f"{trial.rates.wrong:.0%} of all get a wrong answer"
-    yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, {wrong};"
+    yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, and {wrong};"
     yield (
         f"  each tested with weights from the others: {trial.others.recall:.0%} and {trial.others.wrong:.0%};"
         f" an answer needs a probability of {trial.least:.0%}"

@@ -112,7 +112,7 @@ def _check_groups(pieces: Sequence[PatternPiece]) -> None:
     for piece, at in pieces:
         if piece[:2] == "(?" and _read(piece.removesuffix(")") + ")") is None:
             hint = "write `(…)` or `(?:…)`: lookahead and lookbehind are not allowed"
-            raise ExpressionError("a group can't begin with `(?` here", at, hint)
+            raise ExpressionError("this kind of `(?` group is not allowed", at, hint)
         if piece[0] == "(" and piece[-1] != ")":
             opened.append(at)
         elif piece == ")":

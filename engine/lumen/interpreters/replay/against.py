@@ -224,7 +224,7 @@ class OtherPlay:
         before, self._stands, self.steps = self.snapshot, taken.snapshot, self.steps + 1
         self._hurry()
         if self.steps > self._most:
-            raise JournalError(f"these files take more than {self._most:,} steps in one visit")
+            raise JournalError(f"with these files, one visit takes more than {self._most:,} steps")
         for command in taken.commands:
             self._asked.append((before, taken.event, command))
             self._begin(command)
