@@ -34,7 +34,7 @@ def test_forgetting_reaches_recordings_here_and_elsewhere(tmp_path: Path) -> Non
     forget_in(home, "Ani", found)
     assert found.left == []
     assert {place.where for place in found.deleted} == {str(named), str(elsewhere)}
-    assert "2 pictures and sounds" in next(place.what for place in found.deleted if place.where == str(named))
+    assert "pictures and sounds: 2" in next(place.what for place in found.deleted if place.where == str(named))
     assert other.read_bytes() == before
     for path in (named, elsewhere):
         texts = [orjson.loads(item.data) for item in read_recording(path) if _is_json(item)]

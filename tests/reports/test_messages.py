@@ -250,13 +250,15 @@ def test_the_waiting_commands_of_the_behaviour_shut_out_no_stop_and_no_other_mod
 
 def test_a_motion_that_comes_with_each_play_is_analysed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     analysed: list[MotionDefinition] = []
-    monkeypatch.setattr(bounds, "_analysed", lambda motion, _body: analysed.append(motion) or (motion, ()))
+    monkeypatch.setattr(bounds, "_analysed", lambda motion, _body: analysed.append(motion) or (motion, (), True))
     stage = Stage()
     nod, bow = ({"name": name, "duration": 1.0, "tracks": {"HeadYaw": [[0.5, 0.1]]}} for name in ("nod", "bow"))
     for i, motion in enumerate([nod, bow, nod, bow]):
         stage.receive({"method": "perform", "id": f"p{i}", "parameter": {"motion": motion}}, "brain")
         stage.tick()
     assert [command.motion.name for command in stage.begun if isinstance(command, Perform)] == ["nod", "bow"] * 2
+    for _ in range(250):  # each motion is analysed when it begins, after those before it
+        stage.tick()
     assert [motion.name for motion in analysed] == ["nod", "bow"]
     stage.host.close()
 

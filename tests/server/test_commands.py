@@ -116,7 +116,7 @@ def test_everybody_in_a_flood_gets_an_answer(caplog: pytest.LogCaptureFixture) -
     assert [record.getMessage() for record in caplog.records] == [
         f"commands on `{key}` are dropped: 1000 commands are waiting already",
         "a command was refused: 100 commands are waiting already",
-        f"1398 more commands on `{key}` were dropped in 0 s: 100 commands are waiting already",
+        f"more commands on `{key}` were dropped (1398 in 0 s): 100 commands are waiting already",
     ]
 
 

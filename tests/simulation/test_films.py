@@ -157,10 +157,10 @@ def test_how_far_a_film_is_is_said_now_and_then() -> None:
         now[0] = float(second)
         progress.tick(second / 3)
     assert said == [
-        "film: 5 of about 100 s, about 4:45 min more",
-        "film: 10 of about 100 s, about 4:30 min more",
-        "film: 15 of about 100 s, about 4:15 min more",
-        "film: 20 of about 100 s, about 4:00 min more",
+        "video: 5 of about 100 s are ready; about 4:45 min to go",
+        "video: 10 of about 100 s are ready; about 4:30 min to go",
+        "video: 15 of about 100 s are ready; about 4:15 min to go",
+        "video: 20 of about 100 s are ready; about 4:00 min to go",
     ]
 
 
