@@ -82,8 +82,8 @@ def test_does_not_match(pattern: str, text: str) -> None:
     ("pattern", "message", "offset"),
     [
         (r"(a)\1", "refers to an earlier match", 3),
-        (r"(?=a)", "can't begin", 0),
-        ("(?<!a)b", "can't begin", 0),
+        (r"(?=a)", "this kind of", 0),
+        ("(?<!a)b", "this kind of", 0),
         ("a**", "two repetition signs follow each other", 2),
         ("*a", "has nothing before it", 0),
         ("(a", "is not closed", 0),
