@@ -40,10 +40,11 @@ class Viewer:
         self.command("Storage.clearDataForOrigin", where)
         if self._before:
             self.command("Page.removeScriptToEvaluateOnNewDocument", {"identifier": self._before})
-        script = (
+        # Chromium may begin the window with an empty page of its own, which has no storage.
+        memory = (
             f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value);"
-            + self._first
         )
+        script = f"if (location.origin !== 'null') {{ {memory} {self._first} }}"
         self._before = self.command("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
         for kind in self._logs:
             self.log(kind)
