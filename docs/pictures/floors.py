@@ -38,6 +38,8 @@ PURPOSES: Mapping[str, str] = {
     "upkeep": "threads begun again after a fault, and what is dropped counted",
     "errors": "the faults of the world, as one tree of exceptions",
     "language": "what the YAML can say, as frozen values",
+    "features": "a manifest for each feature: its rules, parts, commands",
+    "feature": "what a manifest can hold, and who reads them",
 }
 """What each room is for."""
 
@@ -56,6 +58,8 @@ ZONES: Mapping[str, str] = {
     "extras": "values",
     "errors": "values",
     "language": "values",
+    "features": "values",
+    "feature": "values",
 }
 """What a floor has to do with, by its first room; floors of one zone stand together."""
 
