@@ -1,7 +1,7 @@
-"""What a feature adds to Lumen: a manifest of names, data and import strings.
+"""Manifests of features: names, data and import strings of all that a feature adds to Lumen.
 
-A manifest imports nothing but this module, so reading all of them costs milliseconds. What a row names is imported
-when somebody first needs it.
+A manifest imports nothing but this module, so reading all of them costs milliseconds. The object that a row
+names is imported at its first use.
 """
 
 from collections.abc import Iterator, Mapping
