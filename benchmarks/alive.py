@@ -18,6 +18,7 @@ from typing import Any
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.setup import set_up_with
 from lumen.buses.memory import MemoryBus
 from lumen.language.commands import Command, Play, Say, Start
@@ -107,9 +108,9 @@ def measured(project: Project, name: str) -> tuple[Movement, Movement, Movement,
 
     robot = SimulatedRobot(project.body, *model_files(project), stage=project.stage, imperfections=PERFECT)
     bus.subscribe(project.routes["joint"].key_for(project.robot), see)
-    with Exhibition(project, set_up_with(robot), bus, project.stories[name]) as exhibition:
-        exhibition.node.loop.observers.append(motions)
-        while not exhibition.node.player.finished:
+    with Exhibition(Plan(project, set_up_with(robot), bus, project.stories[name])) as exhibition:
+        exhibition.loop.observers.append(motions)
+        while not exhibition.player.finished:
             exhibition.tick()
     return whole, trunk, head, motions.texts
 

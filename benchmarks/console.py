@@ -32,6 +32,7 @@ from tests.guarded import DEVNULL, PIPE, Guarded, temporary_folder
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
@@ -119,7 +120,7 @@ def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_firs
         project = lumen.load(folder)
         story = project.stories["visitor"]
         setup, directory = set_up(robot, project, "1", story), RunDirectory(folder)
-        with Exhibition(project, setup, story=story, run_directory=directory) as exhibition:
+        with Exhibition(Plan(project, setup, story=story, options={"directory": directory})) as exhibition:
             directory.open(exhibition.node.bus, "memory://", project)
             exhibition.start()
             for with_it in (console_first, not console_first):

@@ -14,6 +14,7 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -26,6 +27,9 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
 from lumen.app.node import NAP
+from lumen.app.parts.part import Part
+from lumen.app.plan import Plan
+from lumen.language.events import Event
 from lumen.ports import Message
 from lumen.runtime.loop import TICK_PERIOD
 
@@ -63,6 +67,18 @@ def main() -> None:
         )
 
 
+class TickPart(Part):
+    """Calls a function at each tick with its time [s]."""
+
+    patient = True
+
+    def __init__(self, ticked: Callable[[float], None]) -> None:
+        self._ticked = ticked
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._ticked(now)
+
+
 def measured(number: int, seconds: float, *, silent: bool = False) -> dict[str, float]:
     """What so many robots take, in this process."""
     with tempfile.TemporaryDirectory() as folder:
@@ -70,8 +86,8 @@ def measured(number: int, seconds: float, *, silent: bool = False) -> dict[str, 
         before = pss()
         projects = {name: lumen.load(root, robot=name) for name in (f"r{i}" for i in range(number))}
         setups = set_up_house("recording", projects, "1", dict.fromkeys(projects))
-        shows = {name: Exhibition(projects[name], setups[name], "memory://house") for name in projects}
-        house = House({name: show.node for name, show in shows.items()})
+        shows = {name: Exhibition(Plan(projects[name], setups[name], "memory://house")) for name in projects}
+        house = House({name: show.services for name, show in shows.items()})
         count = {"messages": 0, "bytes": 0}
         bus = lumen.bus.connect("memory://house")
         house.start()
@@ -93,7 +109,7 @@ def measured(number: int, seconds: float, *, silent: bool = False) -> dict[str, 
             now = time.monotonic()
             late, ticks, last = late + (now - last > NAP + TICK_PERIOD), ticks + 1, now
 
-        next(iter(shows.values())).node.before.append(ticked)
+        next(iter(shows.values())).node.parts.append(TickPart(ticked))
         house.run(seconds)
         cpu = (time.process_time() - cpu) / (time.monotonic() - began)
         memory = pss() - before

@@ -68,7 +68,7 @@ def line(name: str, project: Project, snapshot: Any, doings: Doings, status: Any
 def main() -> None:
     print(ROW.format("", "taken", "told", "size"))
     with tour() as exhibition:
-        project, runtime = exhibition.project, exhibition.node.loop.runtime
+        project, runtime = exhibition.project, exhibition.loop.runtime
         doings = Doings(lambda: project, lambda: runtime.snapshot, lambda: 1.0)
         doings.look()
         line("the shipped tour, in `greet`", project, runtime.snapshot, doings, exhibition.status)

@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.formats.recordings.reading import read_recording
@@ -52,7 +53,12 @@ def live(robot: str, camera: bool | None, seconds: float) -> Round:
         setup, directory = set_up(robot, project, "1", story), RunDirectory(folder)
         late, first = 0.0, 0
         with Exhibition(
-            project, setup, story=story, run_directory=directory, record=None if camera is None else path
+            Plan(
+                project,
+                setup,
+                story=story,
+                options={"directory": directory, "record": None if camera is None else path},
+            )
         ) as exhibition:
             exhibition.start()
             cpu, began, before = time.process_time(), time.monotonic(), time.monotonic()

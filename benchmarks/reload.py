@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import quantiles
@@ -26,16 +26,16 @@ from editing import Colleague, project
 from tests.guarded import PIPE, Guarded
 
 import lumen
+from lumen.app.exhibition import Exhibition
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
+from lumen.app.plan import Plan
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
-from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
-from lumen.buses.validated import validated
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
@@ -129,7 +129,7 @@ def metronome() -> Iterator[list[int]]:
 class Load(threading.Thread):
     """Sends events on a bus of its own, numbered by their count, at `RATE` a second."""
 
-    def __init__(self, show: WholeNode, url: str) -> None:
+    def __init__(self, show: Exhibition, url: str) -> None:
         super().__init__(daemon=True)
         self.sent, self.ended = 0, threading.Event()
         self._bus = show.loop.bus if url.startswith("memory") else connect(url)
@@ -161,18 +161,20 @@ class Soak:
     def __init__(self, root: Path, url: str, quiet: float, seed: int, edits: int) -> None:
         bundle = lumen.load(root)
         robot = RecordingRobot(bundle.body)
-        bus = validated(connect(url), bundle)
-        self.show = WholeNode(bundle, Setup(robot, SimulatedClock(robot.advance, 1.0), robot), bus)
+        setup, bare = Setup(robot, SimulatedClock(robot.advance, 1.0), robot), {"operated": False}
+        self.show = Exhibition(Plan(bundle, setup, url, options=bare))
         narrator = Narrator(self.show.loop.clock.now, lambda: bundle.machine)
         home = Home(root / ".lumen")
         home.hold()
         records = RunRecords(home)
         self.reloading = Reloader(self.show.behavior, narrator, records=records, quiet=quiet)
-        self.show.add(ReloadPart(self.reloading))
-        self.show.parts += [RecordsPart(records, self.show.behavior), LookPart(self.look)]
-        self.show.closing += [records.close, home.release]
+        parts = self.show.node.parts
+        parts.insert(parts.index(self.show.brain), ReloadPart(self.reloading))
+        parts += [RecordsPart(records, self.show.behavior, lasts=True), LookPart(self.look)]
         self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.8 * SHORT_QUIET_FRACTION * quiet)
-        self.show.closing.append(self.writer.close)
+        self.closing = ExitStack()
+        for close in (home.release, records.close, self.show.close, self.writer.close):
+            self.closing.callback(close)
         self.load = Load(self.show, url)
         self._told: list[Told] = []
         self._last: ReloadReport | None = None
@@ -273,19 +275,18 @@ class Soak:
     def run(self) -> Outcome:
         show, outcome = self.show, self.outcome
         try:
-            show.begin()
+            show.start()
             assert show.visitor
-            show.visitor.actor.arrive(Visitor())
+            show.visitor.arrive(Visitor())
             self.load.start()
-            gc_scheduler = GcScheduler()
-            show.before.append(gc_scheduler)
-            show.closing.append(gc_scheduler.close)
+            tidy = self.closing.enter_context(closing(GcScheduler()))
             self.until(time.monotonic() + 2.0)
             outcome.missed, outcome.gap, outcome.ticks = 0, 0.0, 0
             with metronome() as beside:
                 self._editing.start()
                 while not self._done.is_set():
                     show.tick()
+                    tidy()
             outcome.beside = beside[0]
             self.count(1)
             self.load.ended.set()
@@ -296,7 +297,7 @@ class Soak:
                 show.tick()
             outcome.counted = self.counted()
         finally:
-            show.close()
+            self.closing.close()
         return outcome
 
     def until(self, deadline: float) -> None:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
@@ -130,13 +131,13 @@ class Pictured(NamedTuple):
 def pictured(project: Project, robot: SimulatedRobot, pace: float) -> Pictured:
     """`SECONDS` of the story with all senses heard, at so many times real time."""
     setup = Setup(robot, SimulatedClock(robot.advance, pace), robot)
-    exhibition = Exhibition(project, setup, story=project.stories[project.story])
+    exhibition = Exhibition(Plan(project, setup, story=project.stories[project.story]))
     exhibition.node.bus.subscribe(project.key_of(Sense.IMAGE), lambda _: None)
     exhibition.start()
     began = process_time()
     lived = exhibition.run(SECONDS)
     took = process_time() - began
-    images = exhibition.node.robot.server.counts[Sense.IMAGE]
+    images = exhibition.robot.server.counts[Sense.IMAGE]
     exhibition.close()
     return Pictured(lived / took, images.published, images.dropped)
 

@@ -1,13 +1,12 @@
-"""All parts of an exhibition in this process, on a bus by its address."""
+"""Visitor, robot and brain in this process, on a bus by its address."""
 
 import sys
 from typing import TextIO
 
+from lumen.app.exhibition import Exhibition
 from lumen.app.narrator import Narrator
+from lumen.app.plan import Plan
 from lumen.app.setup import Setup
-from lumen.app.whole_node import WholeNode
-from lumen.bus import connect
-from lumen.buses.validated import validated
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 
@@ -33,8 +32,7 @@ def whole(
     *,
     language: str = "",
     silent: bool = False,
-) -> WholeNode:
-    """Not yet begun; its bus ends with it."""
-    return WholeNode(
-        project, setup, validated(connect(url), project), story, narrator, language=language, silent=silent
-    )
+) -> Exhibition:
+    """Make visitor, robot and brain alone, not yet begun; the bus ends with them."""
+    options = {"operated": False}
+    return Exhibition(Plan(project, setup, url, story, narrator, language=language, silent=silent, options=options))

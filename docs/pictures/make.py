@@ -26,6 +26,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
@@ -68,7 +69,7 @@ def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, h
 def play(project: Project, robot: SimulatedRobot, look: Callable[[Exhibition, float], bool]) -> None:
     """The shipped story, until `look` has seen enough."""
     chosen = Setup(robot, SimulatedClock(robot.advance), robot)
-    show = Exhibition(project, chosen, story=project.stories[project.story])
+    show = Exhibition(Plan(project, chosen, story=project.stories[project.story]))
     show.start()
     while not look(show, show.tick()):
         if show.over:

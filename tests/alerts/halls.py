@@ -8,14 +8,14 @@ from typing import Any
 import lumen
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
+from lumen.app.compose import compose
 from lumen.app.exhibition import Exhibition
 from lumen.app.node import Node
-from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import validated
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.events import Event
@@ -82,7 +82,12 @@ class Hall:
         self.robot = RecordingRobot(project.body, behaves)
         setup = Setup(self.robot, SimulatedClock(self.robot.advance), None)
         exhibition = Exhibition(
-            project, setup, self.bus, run_directory=directory, reload="auto", fresh=False, alerts=self._desk(project)
+            Plan(
+                project,
+                setup,
+                self.bus,
+                options={"directory": directory, "reload": "auto", "fresh": False, "alerts": self._desk(project)},
+            )
         )
         exhibition.start()
         self.nodes.append(exhibition.node)
@@ -99,10 +104,11 @@ class Hall:
             self.robot = RecordingRobot(project.body)
             setup = Setup(self.robot, SimulatedClock(self.robot.advance, 1.0), None)
         narrator = Printed(clock.now, lambda: node.project.machine)
-        bus, how = validated(self.bus, project), ProcessOptions("memory://", reload="manual")
-        desk = self._desk(project, *names)
+        options = {"directory": directory, "operated": True, "reload": "manual", "alerts": self._desk(project, *names)}
         clock = setup.clock if setup else clock
-        node = assemble(Plan(project, names, bus, clock, narrator, directory, how, setup, None, desk))
+        node = compose(
+            Plan(project, setup, self.bus, narrator=narrator, roles=names, clock=clock, options=options)
+        ).node
         self.nodes.append(node)
         self.closing += [node.close, lambda: directory.close(forget=False)]
         return node

@@ -63,7 +63,7 @@ def ask(exhibition: Exhibition, bus: Bus) -> Asker:
 
 
 def raised(exhibition: Exhibition, event: str, data: Any = None) -> None:
-    exhibition.node.loop.happen(Event(event, data))
+    exhibition.loop.happen(Event(event, data))
     exhibition.run(0.1)
 
 
@@ -87,7 +87,7 @@ def test_modules_hear_what_waits_and_what_became_of_it(exhibition: Exhibition, a
     assert (waits["source"], waits["targets"], waits["file"]) == ("hall", ["stage"], "behaviors/mine.yaml")
     assert (waits["line"], waits["else"]) == (8, "go")
     assert waits["until"] == pytest.approx(waits["since"] + 20.0)
-    exhibition.node.behavior.trace.standing(exhibition.node.loop.runtime.snapshot)  # somebody has come
+    exhibition.behavior.trace.standing(exhibition.loop.runtime.snapshot)  # somebody has come
     assert told() == [waits]
     ask("approve", id="a1", go=True, by="Aisyah")
     assert [(one["became"], one["why"]) for one in told()] == [("goes", "Aisyah")]
@@ -208,7 +208,7 @@ def played(folder: Path, story: str) -> str:
     """Why it failed; empty where it did not."""
     with lumen.open(folder, story=story) as exhibition:
         exhibition.run(60.0)
-        player = exhibition.node.player
+        player = exhibition.player
         assert player
         assert player.finished
         return player.failure

@@ -53,7 +53,7 @@ def ask(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Asker]:
 
 
 def raised(exhibition: Exhibition, event: str) -> None:
-    exhibition.node.loop.happen(Event(event))
+    exhibition.loop.happen(Event(event))
     exhibition.run(1.0)
 
 

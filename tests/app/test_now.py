@@ -88,9 +88,9 @@ def test_now_holds_the_status_and_what_can_happen_next(copy: Path) -> None:
 def test_a_motion_says_how_far_it_is(copy: Path) -> None:
     with lumen.open(copy) as exhibition:
         exhibition.run(5.0)
-        runtime = exhibition.node.loop.runtime
+        runtime = exhibition.loop.runtime
         wanted = Event("operator.goto", {"state": "dance"}, exhibition.now)
-        exhibition.node.loop.take(entered_directly(runtime.project.machine, runtime.snapshot, "dance", wanted))
+        exhibition.loop.take(entered_directly(runtime.project.machine, runtime.snapshot, "dance", wanted))
         far = []
         for _ in range(600):
             exhibition.run(0.1)

@@ -167,14 +167,14 @@ def test_a_robot_that_nobody_could_stop_any_more_rests(capsys: pytest.CaptureFix
     setup = set_up("recording", exhibit, "max")
     robot: Any = setup.robot
     exhibition = whole(exhibit, setup, narrator=Printed(setup.clock.now, lambda: exhibit.machine))
-    exhibition.begin()
+    exhibition.start()
     spare, vital = (
         WatchedThread(name, Failing(1_000, ValueError()), vital=name == "ears") for name in ("eyes", "ears")
     )
     for thread in (spare, vital):
         thread.start()
         until(lambda: thread.lost)  # noqa: B023
-        exhibition._threads._next = 0.0
+        exhibition.node._threads._next = 0.0
         for _ in range(3):
             exhibition.tick()
         rested = [command for _, command in robot.performed if isinstance(command, Rest)]

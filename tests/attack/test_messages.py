@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
+from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.setup import set_up
-from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
-from lumen.buses.validated import validated
 from lumen.errors import BadMessageError
 from lumen.language.commands import Rest
 from lumen.robots.command_receiver import CommandReceiver
@@ -24,15 +24,16 @@ COUNT = 400
 
 
 @pytest.fixture
-def exhibition(broker: RabbitMQ) -> Iterator[WholeNode]:
+def exhibition(broker: RabbitMQ) -> Iterator[Exhibition]:
     """The whole exhibition on a broker, as fast as it can."""
     exhibit = project()
-    node = WholeNode(exhibit, set_up("recording", exhibit, "max"), validated(connect(broker.url), exhibit), shared=True)
-    assert node.presence
-    node.presence.settle()
-    node.tick()
-    yield node
-    node.close()
+    options = {"operated": False}
+    whole = Exhibition(Plan(exhibit, set_up("recording", exhibit, "max"), broker.url, options=options))
+    assert whole.services.presence
+    whole.services.presence.settle()
+    whole.tick()
+    yield whole
+    whole.close()
 
 
 def test_the_same_seed_gives_the_same_messages() -> None:
@@ -44,7 +45,7 @@ def test_the_same_seed_gives_the_same_messages() -> None:
 
 
 def test_no_message_ends_a_running_exhibition_nor_makes_it_deaf(
-    exhibition: WholeNode, broker: RabbitMQ, caplog: pytest.LogCaptureFixture
+    exhibition: Exhibition, broker: RabbitMQ, caplog: pytest.LogCaptureFixture
 ) -> None:
     random, robot = Random(1), exhibition.setup.robot
     sound = dict.fromkeys(route.key_for(exhibition.project.robot) for route in exhibition.project.routes.values())

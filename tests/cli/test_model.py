@@ -31,7 +31,7 @@ def without(copy: Path) -> None:
 def test_it_is_silenced_by_who_says_so_and_speaks_again(
     exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    questions = exhibition.node.loop.performer.questions
+    questions = exhibition.loop.performer.questions
     assert main(["model", "off", str(copy)]) == 0
     assert capsys.readouterr().out == "the language model is off\n"
     assert questions.silenced == person()
@@ -45,7 +45,7 @@ def test_it_is_silenced_by_who_says_so_and_speaks_again(
 def test_where_there_is_none_it_says_so(exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["model", "off", str(copy)]) == 1
     assert "has no language model: lumen.yaml has no module `answers`" in capsys.readouterr().err
-    assert exhibition.node.loop.performer.questions.silenced == ""
+    assert exhibition.loop.performer.questions.silenced == ""
     with pytest.raises(SystemExit):
         main(["model", "maybe", str(copy)])
     assert "invalid STATE `maybe`: choose one of `off`, `on`" in capsys.readouterr().err

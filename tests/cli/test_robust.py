@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import lumen
+from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
-from lumen.app.whole_node import WholeNode
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationPlan
@@ -21,39 +21,39 @@ from tests.nodes import whole
 HEAD = ["HeadYaw", "HeadPitch"]
 
 
-def show_of(project: Project) -> WholeNode:
+def show_of(project: Project) -> Exhibition:
     robot = RecordingRobot(project.body)
     transcript = Transcript(lambda: show.now, lambda: show.project.machine)
     show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot), narrator=transcript)
-    show.begin()
+    show.start()
     return show
 
 
 @pytest.fixture
-def show(copy: Path) -> Iterator[WholeNode]:
+def show(copy: Path) -> Iterator[Exhibition]:
     one = show_of(lumen.load(copy))
     yield one
     one.close()
 
 
-def states(show: WholeNode) -> frozenset[str]:
+def states(show: Exhibition) -> frozenset[str]:
     return show.loop.runtime.snapshot.configuration
 
 
-def live(show: WholeNode, seconds: float) -> None:
+def live(show: Exhibition, seconds: float) -> None:
     for _ in range(round(seconds / 0.02)):
         show.tick()
 
 
-def reload(show: WholeNode, project: Project) -> None:
+def reload(show: Exhibition, project: Project) -> None:
     plan = show.behavior.plan(project)
     assert isinstance(plan, MigrationPlan)
     show.behavior.apply(project, plan)
 
 
-def greeted(show: WholeNode) -> None:
+def greeted(show: Exhibition) -> None:
     assert show.visitor
-    show.visitor.actor.arrive(Visitor())
+    show.visitor.arrive(Visitor())
     live(show, 2.0)
     assert "greet" in states(show)
 
@@ -72,10 +72,10 @@ def greeted(show: WholeNode) -> None:
         ("avatar.NAO.command", {"type": 7}),
     ],
 )  # fmt: skip
-def test_no_message_ends_it_or_switches_the_head_off(show: WholeNode, key: str, body: Any) -> None:
+def test_no_message_ends_it_or_switches_the_head_off(show: Exhibition, key: str, body: Any) -> None:
     greeted(show)
     with suppress(lumen.BusError):
-        show.bus.publish(key, body)
+        show.services.bus.publish(key, body)
     live(show, 6.0)
     assert show.robot.faces
     assert show.robot.faces.last
@@ -91,7 +91,7 @@ def edit(folder: Path, old: str, new: str, file: str = "behaviors/tour.yaml") ->
 
 
 @pytest.mark.slow
-def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: WholeNode) -> None:
+def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: Exhibition) -> None:
     greeted(show)
     live(show, 6.0)
     assert "ask_name" in states(show)
@@ -104,14 +104,14 @@ def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Pat
 
 
 @pytest.mark.slow
-def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: WholeNode) -> None:
+def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: Exhibition) -> None:
     edit(copy, "lumen.audio.speech.recognition", "lumen.audio.ears", "lumen.yaml")
     project = edit(copy, "lumen.visual.face.detection", "lumen.visual.eyes", "lumen.yaml")
     reload(show, project)
     greeted(show)
     live(show, 6.0)
     assert show.visitor
-    show.visitor.actor.speak("my name is Ada")
+    show.visitor.speak("my name is Ada")
     live(show, 0.1)
     assert show.loop.runtime.snapshot.context["visitor"] == "Ada"
 

@@ -121,15 +121,15 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
     story = project.stories["visitor"]
     robot = RecordingRobot(project.body)
     show = whole(project, Setup(robot, SimulatedClock(robot.advance, 10.0), robot), broker.url, story)
-    show.begin()
+    show.start()
     assert show.player
     echo, ticks = Collector(), 0
-    show.bus.subscribe("lumen.test.echo", echo)
+    show.services.bus.subscribe("lumen.test.echo", echo)
     while not show.player.finished:
         show.tick()
         ticks += 1
         if ticks % 10 == 0:
-            show.bus.publish("lumen.test.echo", ticks)
+            show.services.bus.publish("lumen.test.echo", ticks)
             echo.wait(ticks // 10)
     show.close()
     assert show.player.failure == ""

@@ -22,7 +22,7 @@ def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
     assert main(["stop", str(copy)]) == 0
     assert "the robot rests" in capsys.readouterr().out
     until(lambda: "stopped" in exhibition.configuration)
-    hold = exhibition.node.robot.server.hold
+    hold = exhibition.robot.server.hold
     assert hold.stopped
     assert hold.stopped.by == person()
     monkeypatch.setattr("sys.stdin", Terminal("no\n"))

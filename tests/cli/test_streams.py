@@ -118,8 +118,8 @@ def test_no_verb_at_all_prints_the_help(capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(("stream", "ends"), [(Unread(), True), (Full(), False)], ids=["unread", "full"])
 def test_a_show_ends_where_nobody_reads_on_and_goes_on_where_the_disk_is_full(stream: StringIO, ends: bool) -> None:
     project = lumen.load(ROOT)
-    transcript, told = Transcript(lambda: 0.0, lambda: project.machine, stream), list[str]()
-    transcript.unread = lambda: told.append("unread")
+    told: list[str] = []
+    transcript = Transcript(lambda: 0.0, lambda: project.machine, stream, unread=lambda: told.append("unread"))
     transcript.line("state", "idle")
     transcript.note("a line")
     assert bool(told) == ends

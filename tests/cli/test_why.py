@@ -172,7 +172,7 @@ def test_who_is_forgotten_is_in_no_answer(copy: Path) -> None:
         exhibition.send("recognised", {"name": "Budi"})
         exhibition.run(0.1)
         assert "Budi" in str(exhibition.history())
-        exhibition.node.behavior.forget(PersonName("Budi"))
+        exhibition.behavior.forget(PersonName("Budi"))
         exhibition.run(0.1)
         assert "Budi" not in str(exhibition.history())
 

@@ -11,9 +11,12 @@ from lumen.app import node as naps
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
+from lumen.app.parts.part import Part
+from lumen.app.plan import Plan
 from lumen.app.setup import Setup, set_up
 from lumen.clocks import bell
 from lumen.clocks.real import RealClock
+from lumen.language.events import Event
 from lumen.runtime.loop import TICK_PERIOD
 
 NAMES = ("ana", "ben")
@@ -78,16 +81,28 @@ def sleeper(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Exhibiti
     setup = set_up("recording", loaded, "1")
     if request.param == "real":
         setup = Setup(setup.robot, RealClock(), setup.hall)
-    show = Exhibition(loaded, setup, "memory://napping", reload="auto")
+    show = Exhibition(Plan(loaded, setup, "memory://napping", options={"reload": "auto"}))
     show.start()
     yield show
     show.close()
 
 
+class Ticks(Part):
+    """Counts the ticks that an exhibition lives through."""
+
+    patient = True
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self.times.append(now)
+
+
 def ticks_of(show: Exhibition) -> Sequence[float]:
-    ticks: list[float] = []
-    show.node.before.append(ticks.append)
-    return ticks
+    ticks = Ticks()
+    show.node.parts.append(ticks)
+    return ticks.times
 
 
 def lived_until(show: Exhibition, state: str) -> None:
@@ -134,8 +149,8 @@ def test_what_one_robot_of_a_house_hears_wakes_all(tmp_path: Path, long: None) -
     root = project(tmp_path, "robots: {ana: {model: nao}, ben: {model: nao}}")
     projects = {name: lumen.load(root, robot=name) for name in NAMES}
     setups = set_up_house("recording", projects, "1", dict.fromkeys(NAMES))
-    shows = {name: Exhibition(projects[name], setups[name], "memory://asleep") for name in NAMES}
-    house = House({name: show.node for name, show in shows.items()})
+    shows = {name: Exhibition(Plan(projects[name], setups[name], "memory://asleep")) for name in NAMES}
+    house = House({name: show.services for name, show in shows.items()})
     house.start()
     while not all("dreaming" in show.configuration for show in shows.values()):
         house.nap()

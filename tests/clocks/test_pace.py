@@ -4,10 +4,11 @@ from random import Random
 
 import pytest
 
+from lumen.app.compose import compose
 from lumen.app.node import Node
 from lumen.app.pace import PaceWatch
+from lumen.app.plan import Plan
 from lumen.app.setup import Setup, set_up_with
-from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
 from lumen.buses.memory import MemoryBus
 from lumen.buses.validated import validated
@@ -103,16 +104,16 @@ def test_an_exhibition_that_is_slow_publishes_that(capsys: pytest.CaptureFixture
     world, robot = World(outside, 1 / 0.8), RecordingRobot(exhibit.body)
     narrator = Printed(world.clock.now, lambda: exhibit.machine)
     exhibition = whole(exhibit, Setup(robot, world.clock, None), narrator=narrator)
-    exhibition.pace._monotonic = outside
-    exhibition.bus.subscribe("lumen.state", heard)
-    exhibition.begin()
+    exhibition.node.pace._monotonic = outside
+    exhibition.services.bus.subscribe("lumen.state", heard)
+    exhibition.start()
     exhibition.run(5.0)
     assert (
         "time     the exhibition is running at only 0.80 × real time: this machine is too slow"
         in capsys.readouterr().out
     )
     assert [body["realtime"] for body in heard.bodies if "realtime" in body] == [0.8]
-    assert exhibition.summary()[-1] == "at its slowest, the exhibition ran at 0.80 × real time"
+    assert exhibition.node.summary()[-1] == "at its slowest, the exhibition ran at 0.80 × real time"
     exhibition.close()
 
 
@@ -164,7 +165,7 @@ def test_the_processes_of_an_exhibition_live_in_the_robots_time() -> None:
     hub, clock = validated(connect("memory://"), exhibit), FollowingClock(1.0, outside)
     clock._bell.sleep = lambda seconds: None  # type: ignore[method-assign]
     narrator = Printed(clock.now, lambda: exhibit.machine)
-    body = WholeNode(exhibit, Setup(robot, robots.clock, None), hub, shared=True)
+    body = compose(Plan(exhibit, Setup(robot, robots.clock, None), hub, roles=("robot",))).node
     other = Node(exhibit, hub, clock, narrator, presence=Presence(hub, exhibit.robot, (), clock=outside))
     assert body.presence
     assert other.presence

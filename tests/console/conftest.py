@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up
@@ -30,7 +31,9 @@ class Hosted:
         self.directory = RunDirectory(root)
         loaded = startup_project(root, self.directory, last_good=False, warn=print)
         self.exhibition = Exhibition(
-            loaded, set_up("recording", loaded, "1"), bus, run_directory=self.directory, reload="manual"
+            Plan(
+                loaded, set_up("recording", loaded, "1"), bus, options={"directory": self.directory, "reload": "manual"}
+            )
         )
         self.directory.open(self.exhibition.node.bus, bus, loaded)
         self.exhibition.start()
@@ -53,8 +56,8 @@ class Hosted:
         return (
             one.configuration,
             one.context,
-            one.node.robot.server.hold.stopped,
-            one.node.loop.runtime.approvals.autonomy,
+            one.robot.server.hold.stopped,
+            one.loop.runtime.approvals.autonomy,
         )
 
     @property

@@ -19,9 +19,9 @@ def test_it_says_how_each_robot_is(browser: Browser, hosted: Hosted) -> None:
 def test_rest_is_done_when_the_robot_says_so(browser: Browser, hosted: Hosted) -> None:
     answer = browser.command("rest", robot="NAO")
     assert (answer.status, answer.data["state"], answer.headers["lumen-state"]) == (200, "finished", "sent")
-    assert hosted.exhibition.node.robot.server.hold.stopped
+    assert hosted.exhibition.robot.server.hold.stopped
     assert browser.command("resume").data["state"] == "finished"
-    until(lambda: not hosted.exhibition.node.robot.server.hold.stopped)
+    until(lambda: not hosted.exhibition.robot.server.hold.stopped)
 
 
 def test_entries_come_once_in_order_with_the_positions_of_the_journal(browser: Browser, hosted: Hosted) -> None:

@@ -41,7 +41,7 @@ def overhearing() -> Iterator[Viewer]:
 
 
 def rests(hosted: Hosted) -> bool:
-    return hosted.exhibition.node.robot.server.hold.stopped
+    return hosted.exhibition.robot.server.hold.stopped
 
 
 @pytest.mark.parametrize("page", PAGES)

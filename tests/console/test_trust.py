@@ -93,11 +93,11 @@ def test_a_page_of_somebody_else_reads_nothing_and_does_nothing(
     until(lambda: chromium.run("return document.title") == "not ours", HANG)
     got = chromium.driver.execute_async_script(ATTACK, served.console.address)
     assert got == [False] * 9
-    assert hosted.exhibition.node.robot.server.hold.stopped is None
+    assert hosted.exhibition.robot.server.hold.stopped is None
     chromium.open(served.console.address)  # and what it tried was no mistake
     chromium.find("rest-button[main] button.rest")
     assert chromium.driver.execute_async_script(OWN, f"own-{host}") == "finished"
-    assert hosted.exhibition.node.robot.server.hold.stopped
+    assert hosted.exhibition.robot.server.hold.stopped
 
 
 @pytest.mark.slow
@@ -138,7 +138,7 @@ def test_a_thousand_tries_in_a_row_get_nobody_in_and_rest_goes_on(locked: Browse
     assert set(statuses) == {401, 429}
     assert looked_at < 30
     assert locked.command("rest", robot="NAO").data["state"] == "finished"
-    assert hosted.exhibition.node.robot.server.hold.stopped
+    assert hosted.exhibition.robot.server.hold.stopped
 
 
 def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted) -> None:
@@ -212,4 +212,4 @@ def test_a_page_without_a_role_shows_rest_and_no_name(locked: Browser, hosted: H
     assert chromium.all("main img") == []
     chromium.rest()
     until(lambda: "Rests" in chromium.said(), HANG)
-    assert hosted.exhibition.node.robot.server.hold.stopped
+    assert hosted.exhibition.robot.server.hold.stopped

@@ -43,7 +43,7 @@ def wall(robots: dict[str, Hosted], broker: RabbitMQ | GivenBroker) -> Iterator[
 
 
 def resting(robots: dict[str, Hosted]) -> list[str]:
-    return sorted(name for name, one in robots.items() if one.exhibition.node.robot.server.hold.stopped)
+    return sorted(name for name, one in robots.items() if one.exhibition.robot.server.hold.stopped)
 
 
 def test_each_tile_rests_its_robot_and_escape_twice_all(viewer: Viewer, wall: str, robots: dict[str, Hosted]) -> None:

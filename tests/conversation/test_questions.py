@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.interpreters.replay.command_data import command_data
@@ -28,11 +29,11 @@ class Visit:
     def __init__(self, project: Project) -> None:
         self.bus = connect("memory://", project)
         self.steps: list[Step] = []
-        self.exhibition = Exhibition(project, set_up("recording", project, "max"), self.bus)
+        self.exhibition = Exhibition(Plan(project, set_up("recording", project, "max"), self.bus))
         self.exhibition.observe(self.steps.append)
         self.exhibition.start()
         self.exhibition.run(1.0)
-        self.questions = self.exhibition.node.loop.performer.questions
+        self.questions = self.exhibition.loop.performer.questions
         self.asks: list[Any] = []
         self.bus.subscribe("lumen.NAO.ask", lambda message: self.asks.append(message.body))
         visitor = self.exhibition.visitor

@@ -14,9 +14,7 @@ from tests.conversation.conftest import with_model
 
 def switch(project: Project, folder: Path, kept: list[Any]) -> tuple[ModelSwitch, Questions]:
     questions = Questions(connect("memory://", project))
-    made = ModelSwitch(questions, lambda: project, kept.append)
-    made.keep(folder)
-    return made, questions
+    return ModelSwitch(questions, lambda: project, kept.append, folder), questions
 
 
 def test_it_outlasts_a_restart(project: Project, tmp_path: Path) -> None:

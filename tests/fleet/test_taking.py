@@ -9,6 +9,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.memory import memory_file
 from lumen.app.fleet.signing import Signer, generate
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
@@ -34,7 +35,9 @@ def test_it_is_taken_between_two_visits_proved_and_in_the_folder_then(
     bus.subscribe("fleet.presence.itb.nao1", heard)
     directory = RunDirectory(root)
     setup = set_up("recording", loaded, "max", None)
-    show = Exhibition(loaded, setup, MemoryBus("fleet-taking"), run_directory=directory, reload="auto")
+    show = Exhibition(
+        Plan(loaded, setup, MemoryBus("fleet-taking"), options={"directory": directory, "reload": "auto"})
+    )
     directory.begin(loaded, read_files(root))
     try:
         show.start()

@@ -16,6 +16,7 @@ from lumen.app.fleet.installing import finish
 from lumen.app.fleet.part import FleetPart
 from lumen.app.fleet.serving import ServedCentre
 from lumen.app.fleet.signing import Signer, generate
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up
@@ -41,7 +42,9 @@ class RunningRobot:
         self.directory = RunDirectory(self.root)
         loaded = startup_project(self.root, self.directory, last_good=False)
         setup = set_up("recording", loaded, "1", None)
-        show = Exhibition(loaded, setup, self.url, run_directory=self.directory, reload="auto", fresh=False)
+        show = Exhibition(
+            Plan(loaded, setup, self.url, options={"directory": self.directory, "reload": "auto", "fresh": False})
+        )
         self.directory.begin(loaded, read_files(self.root))
         show.start()
         self.show = show

@@ -26,6 +26,7 @@ NAMES: dict[str, str] = {}
 PARTS = {
     "AlertPart": "alerts",
     "BrainPart": "brain",
+    "BundleFollower": "bundles of the brain",
     "ConsolePart": "console",
     "FilmPart": "film",
     "FleetPart": "fleet",
@@ -114,9 +115,8 @@ def described(node: Node) -> dict[str, Any]:
         "claims": list(node.presence.parts) if node.presence else None,
         "parts": [_part(node, part) for part in node.parts],
         "observers": [_word(one, {**OBSERVERS, **PARTS}) for one in _observers(node)],
-        "each tick before the parts": [_callable(one) for one in node.before],
-        "at the end": [_callable(one) for one in node.closing],
-        "leaps": node.leaps,
+        "each tick before the parts": [_callable(one) for one in node._before],
+        "leaps": node._leaps,
     }
 
 

@@ -12,6 +12,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -19,9 +20,9 @@ from unittest.mock import patch
 import lumen
 import lumen.bus
 from lumen.app import rehearsal
-from lumen.app.recovery.recording import record_inputs
-from lumen.app.reload.records import RunRecords
-from lumen.app.whole_node import WholeNode
+from lumen.app.compose import compose
+from lumen.app.plan import Plan
+from lumen.app.services import Services
 from lumen.cli.main import main
 from lumen.interpreters.statechart import Step, deserialize, serialize
 from lumen.interpreters.statechart.direct_entry import entered_directly
@@ -263,14 +264,10 @@ def weekend(folder: Path) -> Path:
     (root / "behaviors/stories/weekend.yaml").write_text(WEEKEND, "utf-8")
     project = lumen.load(root)
 
-    class Journaled(WholeNode):
-        def __init__(self, *args: Any, **options: Any) -> None:
-            super().__init__(*args, **options)
-            self.records = RunRecords(None)
-            record_inputs(self.behavior, self.records, story=self.story, rehearsed=True)
-            self.closing.append(self.records.close_inputs)
+    def journaled(plan: Plan) -> Services:
+        return compose(replace(plan, options={"operated": True}))
 
-    with patch.object(rehearsal, "WholeNode", Journaled):
+    with patch.object(rehearsal, "compose", journaled):
         assert rehearsal.rehearse(project, project.stories["weekend"]).failed is None
     return root
 

@@ -31,7 +31,6 @@ def _node(node: dict[str, Any]) -> list[str]:
         *_indented(["parts, in this order:", *_indented(parts)]),
         *_indented(["watch each step, in this order:", *_indented(node["observers"])]),
         *_indented(["called before the parts at each tick:", *_indented(node["each tick before the parts"])]),
-        *_indented(["called at the end:", *_indented(node["at the end"])]),
     ]
 
 

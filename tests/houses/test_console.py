@@ -12,6 +12,7 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from tests.console.pages import Served
 from tests.console.viewer import Viewer
@@ -34,18 +35,23 @@ class HostedHouse:
         self.directories = {name: RunDirectory(root, name) for name in NAMES}
         self.shows = {
             name: Exhibition(
-                self.projects[name], setups[name], f"memory://{root}", run_directory=self.directories[name], fresh=True
+                Plan(
+                    self.projects[name],
+                    setups[name],
+                    f"memory://{root}",
+                    options={"directory": self.directories[name], "fresh": True},
+                )
             )
             for name in NAMES
         }
-        self._house = House({name: show.node for name, show in self.shows.items()})
+        self._house = House({name: show.services for name, show in self.shows.items()})
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._live)
         self._thread.start()
 
     @property
     def resting(self) -> list[str]:
-        return [name for name, show in self.shows.items() if show.node.robot.server.hold.stopped]
+        return [name for name, show in self.shows.items() if show.robot.server.hold.stopped]
 
     def _live(self) -> None:
         self._house.start()

@@ -10,6 +10,7 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
+from lumen.app.plan import Plan
 from lumen.cli.main import main
 from lumen.ports import Bus, Message
 from lumen.rules import check
@@ -33,8 +34,8 @@ def duet(kind: str) -> tuple[House, dict[str, Exhibition]]:
     story = projects["ana"].stories["visitor"]
     told = {"ana": story, "ben": None}
     setups = set_up_house(kind, projects, "max", told)
-    shows = {name: Exhibition(projects[name], setups[name], "memory://duet", told[name]) for name in NAMES}
-    return House({name: show.node for name, show in shows.items()}, together=True), shows
+    shows = {name: Exhibition(Plan(projects[name], setups[name], "memory://duet", told[name])) for name in NAMES}
+    return House({name: show.services for name, show in shows.items()}, together=True), shows
 
 
 @pytest.mark.process
@@ -79,7 +80,7 @@ def test_an_event_is_for_one_robot_and_only_what_it_waits_for(heard: Bus) -> Non
 def test_they_dance_in_step_in_one_world(heard: Bus) -> None:
     """Measured from what both say on the bus of their right shoulders, every 20 ms: how much later Ben moves."""
     house, shows = duet("simulation")
-    robots: list[Any] = [show.node.setup.robot for show in shows.values()]
+    robots: list[Any] = [show.services.setup.robot for show in shows.values()]
     assert robots[0].world.physics is robots[1].world.physics
     felt = Collector()
     heard.subscribe("avatar.*.data.joint", felt)

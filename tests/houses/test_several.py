@@ -12,6 +12,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
 from lumen.app.one_robot import one_robot, robots_of
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.cli.main import main
@@ -31,7 +32,7 @@ def opened(
     projects = {name: lumen.load(root, robot=name) for name in names}
     told = {name: projects[name].stories[story] if story and name == names[0] else None for name in names}
     setups = set_up_house("recording", projects, "max", told)
-    found = {name: Exhibition(projects[name], setups[name], "memory://two", told[name]) for name in names}
+    found = {name: Exhibition(Plan(projects[name], setups[name], "memory://two", told[name])) for name in names}
     yield found
     for one in found.values():
         one.close()
@@ -42,7 +43,7 @@ def lived(shows: Mapping[str, Exhibition], seconds: float | None = None) -> dict
     steps: dict[str, list[str]] = {name: [] for name in shows}
     for name, show in shows.items():
         show.observe(lambda step, told=steps[name]: told.append(_told(step)))
-    house = House({name: show.node for name, show in shows.items()}, together=seconds is None)
+    house = House({name: show.services for name, show in shows.items()}, together=seconds is None)
     house.start()
     house.run(seconds)
     house.close()
@@ -66,7 +67,7 @@ def test_the_visitor_of_one_is_nobody_to_the_other(two: Path) -> None:
 @pytest.mark.once
 def test_the_stop_of_one_stops_nobody_else(two: Path) -> None:
     with opened(two, story=None) as shows:
-        house = House({name: show.node for name, show in shows.items()})
+        house = House({name: show.services for name, show in shows.items()})
         house.start()
         shows["ana"].stop()
         house.run(1.0)
@@ -85,7 +86,9 @@ def test_a_lost_robot_ends_alone(two: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
     lost: list[tuple[str, LumenError]] = []
     with opened(two, story=None) as shows:
-        house = House({name: show.node for name, show in shows.items()}, lambda name, error: lost.append((name, error)))
+        house = House(
+            {name: show.services for name, show in shows.items()}, lambda name, error: lost.append((name, error))
+        )
         house.start()
         house.run(0.5)
         monkeypatch.setattr(shows["ana"].node, "tick", lose)

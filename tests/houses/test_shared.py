@@ -35,7 +35,7 @@ def heard() -> Iterator[Collector]:
 @pytest.fixture
 def hosted(stage: Path, heard: Collector) -> Iterator[Hosted]:
     with opened(stage, story=None) as shows:
-        house = House({name: show.node for name, show in shows.items()})
+        house = House({name: show.services for name, show in shows.items()})
         house.start()
         house.run(0.1)
         yield house, shows
@@ -51,7 +51,7 @@ def test_what_one_assigns_the_other_knows_in_the_same_tick(stage: Path, hosted: 
     house, shows = hosted
     steps: list[Any] = []
     shows["ben"].observe(steps.append)
-    shows["ana"].node.loop.happen(Event("begin"))
+    shows["ana"].loop.happen(Event("begin"))
     house.tick()
     assert shows["ben"].configuration == {"watching"}, "a change is reason enough for `always`"
     [step] = steps
@@ -101,14 +101,14 @@ def test_it_is_told_again_now_and_then_and_to_whoever_asks(hosted: Hosted, heard
 
 def test_other_files_keep_what_is_known(stage: Path, hosted: Hosted) -> None:
     house, shows = hosted
-    shows["ana"].node.loop.happen(Event("begin"))
+    shows["ana"].loop.happen(Event("begin"))
     house.run(0.1)
     main = stage / "lumen.yaml"
     main.write_text(main.read_text("utf-8").replace("initial: 3}", "initial: 3}\n  late: {owner: ana, type: boolean}"))
 
     def planned(name: str) -> Any:
         before: Project = shows[name].project
-        found = plan(before, lumen.load(stage, robot=name), shows[name].node.loop.runtime.snapshot, now=True)
+        found = plan(before, lumen.load(stage, robot=name), shows[name].loop.runtime.snapshot, now=True)
         assert isinstance(found, MigrationPlan)
         return found.snapshot.context["shared"]
 

@@ -182,7 +182,7 @@ def test_what_a_name_can_be_tried_against_is_forgotten_too() -> None:
 
 
 def journal_of(exhibition: Exhibition) -> JournalWriter:
-    writer = exhibition.node.loop.runtime.recorder
+    writer = exhibition.loop.runtime.recorder
     assert isinstance(writer, JournalWriter)
     assert writer.flush(HANG)
     return writer

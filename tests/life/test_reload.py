@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
-from lumen.app.whole_node import WholeNode
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationPlan
 from lumen.language.stories import Visitor
@@ -38,30 +38,30 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def show(folder: Path) -> Iterator[WholeNode]:
+def show(folder: Path) -> Iterator[Exhibition]:
     project = lumen.load(folder)
     robot = Told(project.body)
     robot.lives = []
     show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot))
-    show.begin()
+    show.start()
     assert show.visitor
-    show.visitor.actor.arrive(Visitor())
+    show.visitor.arrive(Visitor())
     live(show, 2.5)
     yield show
     show.close()
 
 
-def live(show: WholeNode, seconds: float) -> None:
+def live(show: Exhibition, seconds: float) -> None:
     for _ in range(round(seconds / 0.02)):
         show.tick()
 
 
-def lives(show: WholeNode) -> list[Live]:
-    assert isinstance(show.setup.robot, Told)
-    return show.setup.robot.lives
+def lives(show: Exhibition) -> list[Live]:
+    assert isinstance(show.services.setup.robot, Told)
+    return show.services.setup.robot.lives
 
 
-def save(show: WholeNode, folder: Path, file: str, old: str, new: str) -> None:
+def save(show: Exhibition, folder: Path, file: str, old: str, new: str) -> None:
     path = folder / "motions" / file
     assert old in path.read_text("utf-8")
     path.write_text(path.read_text("utf-8").replace(old, new), "utf-8")
@@ -71,7 +71,7 @@ def save(show: WholeNode, folder: Path, file: str, old: str, new: str) -> None:
     show.behavior.apply(project, plan)
 
 
-def test_a_style_that_is_saved_is_lived_at_once(show: WholeNode, folder: Path) -> None:
+def test_a_style_that_is_saved_is_lived_at_once(show: Exhibition, folder: Path) -> None:
     before, state = lives(show)[-1], show.loop.runtime.snapshot.configuration
     assert before.style.name == "lively"
     save(show, folder, "life/lively.yaml", "glances: {every: 5s, yaw: 10", "glances: {every: 5s, yaw: 3")
@@ -84,7 +84,7 @@ def test_a_style_that_is_saved_is_lived_at_once(show: WholeNode, folder: Path) -
     assert show.loop.runtime.snapshot.configuration == state
 
 
-def test_gestures_that_are_saved_are_those_of_the_next_text(show: WholeNode, folder: Path) -> None:
+def test_gestures_that_are_saved_are_those_of_the_next_text(show: Exhibition, folder: Path) -> None:
     before = len(lives(show)[-1].gestures.gestures)
     save(show, folder, "gestures/guide.yaml", "  small_bow:\n    for: greeting", "  bow:\n    for: greeting")
     show.tick()
@@ -93,7 +93,7 @@ def test_gestures_that_are_saved_are_those_of_the_next_text(show: WholeNode, fol
     assert "bow" in names
 
 
-def test_a_style_of_another_state_changes_nothing_now(show: WholeNode, folder: Path) -> None:
+def test_a_style_of_another_state_changes_nothing_now(show: Exhibition, folder: Path) -> None:
     before = lives(show)[-1]
     save(show, folder, "life/listening.yaml", "nods: {every: 3s, pitch: 5}", "nods: {every: 2s, pitch: 5}")
     live(show, 0.2)

@@ -45,4 +45,4 @@ def wait_for_visitors(whole: Path, before: str, after: str) -> None:
 def live(copy: Path) -> Iterator[Live]:
     one = Live(copy)
     yield one
-    one.show.close()
+    one.close()

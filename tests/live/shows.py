@@ -87,13 +87,18 @@ class Live:
             seen=seen,
             worker=None if apart else Here(folder),
         )
-        self.show.add(ReloadPart(self.reloading))
-        self.show.closing += [self.records.close, self.home.release]
+        parts = self.show.node.parts
+        parts.insert(parts.index(self.show.brain), ReloadPart(self.reloading))
         self.answers = Collector()
         self.show.loop.bus.subscribe("lumen.test.answer", self.answers)
         self.status = Collector()
         self.show.loop.bus.subscribe(STATUS, self.status)
-        self.show.begin()
+        self.show.start()
+
+    def close(self) -> None:
+        self.show.close()
+        self.records.close()
+        self.home.release()
 
     def until(self, condition: Callable[[], object]) -> None:
         until(condition, meanwhile=self.show.tick, shown=self.told.getvalue)
@@ -108,12 +113,12 @@ class Live:
 
     def greet(self) -> None:
         assert self.show.visitor
-        self.show.visitor.actor.arrive(Visitor())
+        self.show.visitor.arrive(Visitor())
         self.until(lambda: "ask_name" in self.states)
 
     def speak(self, text: str, state: str) -> None:
         assert self.show.visitor
-        self.show.visitor.actor.speak(text)
+        self.show.visitor.speak(text)
         self.until(lambda: state in self.states)
 
     def edit(self, old: str, new: str, file: str = "behaviors/tour.yaml", *more: str) -> None:

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import lumen
+from lumen.app.node import Node
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
-from lumen.app.whole_node import WholeNode
 from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.loading.files import read_files
@@ -43,14 +43,14 @@ def run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def fail_with(monkeypatch: pytest.MonkeyPatch, hash: str, error: Exception) -> None:
     """From now on these files end whatever runs on them."""
-    usual = WholeNode.tick
+    usual = Node.tick
 
-    def tick(show: WholeNode) -> float:
-        if show.loop.project.hash == hash:
+    def tick(node: Node) -> float:
+        if node.project.hash == hash:
             raise error
-        return usual(show)
+        return usual(node)
 
-    monkeypatch.setattr(WholeNode, "tick", tick)
+    monkeypatch.setattr(Node, "tick", tick)
 
 
 @pytest.mark.slow
@@ -88,7 +88,7 @@ def test_what_a_start_has_left_aside_is_taken_once_it_changes(copy: Path) -> Non
     assert one.verdicts == []
     save(copy, PARDON, "en: What was that?")
     one.until_told("are active")
-    one.show.close()
+    one.close()
 
 
 @pytest.mark.slow
@@ -122,7 +122,7 @@ def test_a_start_on_newer_files_is_a_reload_and_journaled(copy: Path, run: list[
     one.records.store(read_files(copy))
     one.greet()
     one.records.keep(one.show.loop)
-    one.show.close()
+    one.close()
     save(copy, SORRY, PARDON)
     assert main(run) == 0
     [entry] = journal(copy)
@@ -173,7 +173,7 @@ def test_what_was_replaced_has_ended_nothing_and_what_failed_has(live: Live) -> 
     live.until(lambda: live.verdicts.count("applied") == 2)
     second = exhibition.project.hash
     assert (trials.count(first), trials.count(second)) == (0, 1)
-    assert exhibition.rescue(ZeroDivisionError("a fault of ours")) is not None
+    assert exhibition._rescued(ZeroDivisionError("a fault of ours")) is not None
     assert live.verdicts[-1] == "rolled back"
     live.live(11.0)
     assert trials.count(second) == 1

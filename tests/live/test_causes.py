@@ -75,7 +75,7 @@ def test_what_a_step_publishes_names_the_step(bus: Bus) -> None:
     bus.subscribe("museum.lamp.set", said)
     with lumen.open("examples/museum", robot="recording", bus="memory://causes", story="visit") as show:
         show.run()
-        steps = show.node.loop.runtime.steps
+        steps = show.loop.runtime.steps
     numbers = [int(message.cause.removeprefix("step ")) for message in said.messages]
     assert numbers
     assert numbers == sorted(numbers)

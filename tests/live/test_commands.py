@@ -36,7 +36,7 @@ def leave(live: Live) -> None:
     """The visit is over."""
     loop = live.show.loop
     assert live.show.visitor
-    live.show.visitor.actor.leave()
+    live.show.visitor.leave()
     over = Event("operator.goto", None, loop.clock.now())
     loop.take(entered_directly(loop.project.machine, loop.runtime.snapshot, "idle", over))
 
@@ -45,7 +45,7 @@ def leave(live: Live) -> None:
 def manual(copy: Path) -> Iterator[Live]:
     one = Live(copy, "manual")
     yield one
-    one.show.close()
+    one.close()
 
 
 @pytest.mark.slow
@@ -168,7 +168,7 @@ def test_off_means_off(copy: Path) -> None:
     one.edit(SORRY, PARDON)
     assert "--reload off" in one.ask("reload")["reason"]
     assert one.ask("status")["mode"] == "off"
-    one.show.close()
+    one.close()
 
 
 @pytest.fixture
@@ -179,7 +179,7 @@ def waving(copy: Path) -> Iterator[Live]:
     tour.write_text(tour.read_text("utf-8").replace('12s: "#idle"', '2h: "#idle"'), "utf-8")
     one = Live(copy, behaves={"play": "hangs"})
     yield one
-    one.show.close()
+    one.close()
 
 
 @pytest.mark.slow
@@ -239,7 +239,7 @@ def test_the_same_in_another_process(copy: Path) -> None:
     one.until_told("behaviors/stories/refuses.yaml:")
     one.edit('done.do.*: "#any_question"', 'done.do.*: "#any_questoin"')
     one.until_told("did you mean `#any_question`?")
-    one.show.close()
+    one.close()
 
 
 def test_stop_is_heard_by_the_behaviour(live: Live) -> None:
@@ -268,4 +268,4 @@ def test_the_same_on_a_broker_for_which_no_tick_waits(
     one.show.loop.observers.append(ears)
     one.until(lambda: other.publish("lumen.load", {}) or "load" in ears.heard)
     other.close()
-    one.show.close()
+    one.close()

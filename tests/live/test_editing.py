@@ -15,11 +15,11 @@ def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.until_told("are active")
     walker = live.show.visitor
     assert walker
-    walker.actor.arrive(Visitor())
+    walker.arrive(Visitor())
     live.until_told("ask_name")
-    walker.actor.speak("my name is Ada")
+    walker.speak("my name is Ada")
     live.until_told("how_are_you")
-    walker.actor.speak("purple")
+    walker.speak("purple")
     live.until_told("“Come again, please?”")
 
 
@@ -28,9 +28,9 @@ def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
 def test_the_visitors_name_survives(live: Live) -> None:
     walker = live.show.visitor
     assert walker
-    walker.actor.arrive(Visitor())
+    walker.arrive(Visitor())
     live.until_told("ask_name")
-    walker.actor.speak("my name is Ada")
+    walker.speak("my name is Ada")
     live.until(lambda: "how_are_you" in live.states)
     live.edit(
         *("en: [I am glad to hear that.,", 'en: ["Wonderful, {{ context.visitor }}!",', "behaviors/tour.yaml"),
@@ -38,7 +38,7 @@ def test_the_visitors_name_survives(live: Live) -> None:
     )
     live.until_told("are active")
     assert "how_are_you" in live.states
-    walker.actor.speak("fine")
+    walker.speak("fine")
     live.until_told("“Wonderful, Ada!”")
 
 
@@ -78,7 +78,7 @@ def storyless(copy: Path) -> None:
 def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
     walker = live.show.visitor
     assert walker
-    walker.actor.arrive(Visitor())
+    walker.arrive(Visitor())
     live.until(lambda: "ask_name" in live.states)
     for old, new in (
         ("              ask_name:", "              asking:"),
@@ -89,6 +89,6 @@ def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
     ):
         live.edit(old, new)
     live.until_told("waiting for `ask_name`: `ask_name` is active but was removed")
-    walker.actor.speak("my name is Ada")
+    walker.speak("my name is Ada")
     live.until_told("are active")
     assert "how_are_you" in live.states

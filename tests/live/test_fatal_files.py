@@ -88,7 +88,7 @@ def test_an_exhibition_refuses_them_and_goes_on(copy: Path, reader: None) -> Non
         one.until_told("the saved files are active")
         assert one.verdicts == ["refused", "applied"]
     finally:
-        one.show.close()
+        one.close()
 
 
 @pytest.mark.slow

@@ -109,7 +109,7 @@ def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pyte
     live.edit(SORRY, PARDON)
     live.until_told("are active")
     monkeypatch.setattr(live.show.behavior, "plan", lambda *_, **__: MigrationDelay("no way", "how_are_you"))
-    commands = live.show.loop.rescue(ZeroDivisionError("a fault"))
+    commands = live.show.loop._rescued(ZeroDivisionError("a fault"))
     assert commands
     assert "idle" in live.states
     assert isinstance(live.show.loop.plan(live.show.loop.project), MigrationPlan)

@@ -61,7 +61,7 @@ def test_a_run_replays_across_reloads_to_the_same_steps(copy: Path) -> None:
     live.edit("en: Never mind.", "en: No problem.")
     live.until(lambda: live.verdicts.count("applied") == 2)
     live.speak("fine", "offer")
-    live.show.close()
+    live.close()
     rows = again(live, keeper)
     assert [(row.was, row.now, row.unknown) for row in rows if row.differs or row.unknown] == []
     journaled_hashes = [entry["after"] for entry in live.records.journal.entries() if entry["verdict"] == "applied"]
@@ -83,7 +83,7 @@ def test_a_day_with_files_that_were_taken_back_replays_to_its_end(copy: Path) ->
     live.speak("fine", "offer")
     live.speak("dance", "dance")
     live.live(3.0)
-    live.show.close()
+    live.close()
     rows = again(live, keeper)
     assert [(row.was, row.now, row.unknown) for row in rows if row.differs or row.unknown] == []
     jumps = [entry for entry in entries_of(live) if isinstance(entry, JournalJump) and entry.kind != "keyframe"]

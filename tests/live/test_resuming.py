@@ -41,7 +41,7 @@ def crashed(live: Live) -> None:
     live.speak("dance", "dance")
     live.live(4.0)
     live.records.keep(live.show.loop)
-    live.show.close()
+    live.close()
 
 
 def resumed(folder: Path) -> Resumption | FreshStart:
@@ -82,7 +82,7 @@ def test_a_robot_that_was_stopped_long_ago_waits_for_a_person(
     live.live(1.0)
     assert "stopped" in live.states
     live.records.keep(live.show.loop)
-    live.show.close()
+    live.close()
     home = Home(home_of(copy))
     data = json.loads(home.read(SNAPSHOT_FILE) or b"")
     home.write(SNAPSHOT_FILE, json.dumps({**data, "time": time.time() - 50 * LATELY}).encode())
@@ -108,7 +108,7 @@ def test_timers_go_on_while_nobody_is_there(copy: Path) -> None:
     one = Live(copy)
     one.greet()
     project, snapshot = one.show.loop.project, one.show.loop.runtime.snapshot
-    one.show.close()
+    one.close()
     [timer] = [t for t in snapshot.timers if t.delay == 7200.0]
     found = resume(project, project, snapshot, 20.0, ())
     assert isinstance(found, Resumption)
@@ -182,7 +182,7 @@ def test_only_what_is_new_is_written(copy: Path) -> None:
     assert kept
     assert kept.frozen == serialize(show.project.machine, show.runtime.snapshot)
     show.tracking.switch(Track("head"))
-    one.show.close()
+    one.close()
 
 
 @pytest.mark.slow
@@ -191,7 +191,7 @@ def test_a_disk_that_refuses_ends_nothing(copy: Path, caplog: pytest.LogCaptureF
     (one.home.folder / f"{SNAPSHOT_FILE}.new").mkdir()
     one.greet()
     one.records.keep(one.show.loop)
-    one.show.close()
+    one.close()
     assert "can't be kept" in caplog.text
 
 

@@ -34,16 +34,16 @@ def test_states_that_a_saved_file_enters_are_told_with_the_file(folder: Path) ->
     body = next(body for body in said.bodies if body.get("cause", {}).get("kind") == "file")
     assert body["cause"]["id"] == HELLO
     assert "waiting.calm" in body["entered"]
-    live.show.close()
+    live.close()
 
 
 def test_a_hand_is_a_persons() -> None:
     steps = []
     with lumen.open(ROOT, robot="recording", bus="memory://hands") as show:
         show.observe(steps.append)
-        assert show.node.setup.hall
+        assert show.services.setup.hall
         show.run(seconds=1)
-        show.node.setup.hall.touch("MiddleTactil", True)
+        show.services.setup.hall.touch("MiddleTactil", True)
         show.run(seconds=1)
     event = next(step.event for step in steps if step.event and step.event.name == "touched")
     assert event.cause == Cause("person", sender=VISITOR)
@@ -73,4 +73,4 @@ def test_transitions_of_invoked_behaviours_are_told(folder: Path) -> None:
     assert [(row["source"], row["targets"], row["file"], row["line"]) for row in taken] == [
         ("quiz/one", ["quiz/two"], "behaviors/inner.yaml", 1)
     ]
-    live.show.close()
+    live.close()

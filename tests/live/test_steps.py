@@ -88,7 +88,7 @@ def bench(copy: Path, caplog: pytest.LogCaptureFixture) -> Iterator[Bench]:
     for _ in range(2):  # what is worked out once and for all is no step of a reload
         assert one.validation(one.saved()).good
     yield one
-    one.live.show.close()
+    one.live.close()
 
 
 every = pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.soak)])

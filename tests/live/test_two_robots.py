@@ -8,6 +8,7 @@ import pytest
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.setup import set_up
 from lumen.interpreters.statechart import Step
 from lumen.language.projects import Project
@@ -21,7 +22,7 @@ VISITORS = {"Ana": "visitor", "Ben": "indonesian"}
 
 def exhibition(project: Project, story: str, bus: str, speed: str = "max") -> Exhibition:
     told = project.stories[story]
-    return Exhibition(project, set_up("recording", project, speed, told), bus, told)
+    return Exhibition(Plan(project, set_up("recording", project, speed, told), bus, told))
 
 
 def play(

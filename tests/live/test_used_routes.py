@@ -29,4 +29,4 @@ def test_the_running_bus_listens_to_what_a_saved_behaviour_hears(tmp_path: Path)
     live.until(lambda: live.verdicts.count("applied") == 2)
     assert {event for _, event in live.show.loop.inbox._undo} == {"face", "heard"}
     assert live.show.loop.project.routes.keys() == {"face", "heard"}
-    live.show.close()
+    live.close()

@@ -166,7 +166,7 @@ def test_warn_says_it_and_takes_the_files(folder: Path) -> None:
     live.edit("en: So long!", "en: So long!  # nothing changes", HELLO)
     live.until(lambda: len(live.verdicts) > 1)
     assert "visits" not in live.status.bodies[-1]
-    live.show.close()
+    live.close()
 
 
 def test_refuse_keeps_the_files_until_a_person_takes_them(folder: Path) -> None:
@@ -186,7 +186,7 @@ def test_refuse_keeps_the_files_until_a_person_takes_them(folder: Path) -> None:
     live.until(lambda: live.verdicts.count("refused") == 2)
     live.edit("Hello! I am Nao!", "Hello! I am Nao.", HELLO)
     live.until(lambda: live.verdicts[-1] == "unchanged")
-    live.show.close()
+    live.close()
 
 
 def test_by_hand_it_is_staged_with_what_it_would_change(folder: Path) -> None:
@@ -194,7 +194,7 @@ def test_by_hand_it_is_staged_with_what_it_would_change(folder: Path) -> None:
     live.edit("en: Goodbye!", "en: So long!", HELLO)
     live.until_told("`lumen reload --apply` activates it")
     assert "of 3 visits: 3 say something else" in live.transcript
-    live.show.close()
+    live.close()
 
 
 def test_other_files_that_change_no_visit_are_taken(folder: Path) -> None:
@@ -202,7 +202,7 @@ def test_other_files_that_change_no_visit_are_taken(folder: Path) -> None:
     live.edit("30s: waiting", "40s: waiting", HELLO)
     live.until_told("are active")
     assert "of 3 visits: 3 the same" in live.transcript
-    live.show.close()
+    live.close()
 
 
 DIES = """
@@ -232,7 +232,7 @@ def test_a_check_that_crashes_costs_the_check_only(
     live.until_told("are active")
     assert "the recorded visits were not played with these files: " in live.transcript
     assert told in live.transcript
-    live.show.close()
+    live.close()
 
 
 @pytest.mark.process
@@ -242,4 +242,4 @@ def test_in_the_process_that_judges_it_is_the_same(folder: Path) -> None:
     live.edit("en: Goodbye!", "en: So long!", HELLO)
     live.until_told("refused: recorded visits would go differently with these files")
     assert "of 3 visits: 3 say something else" in live.transcript
-    live.show.close()
+    live.close()

@@ -14,6 +14,9 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
+from lumen.app.exhibition import Exhibition
+from lumen.app.making.modules import ModulesPlan
+from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
@@ -27,7 +30,6 @@ from lumen.modules.eyes.gallery import FaceGallery
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot
 from tests.modules.conftest import Stand, with_options
-from tests.nodes import whole
 
 Make = Callable[..., Stand]
 Pixels = NDArray[np.uint8]
@@ -248,14 +250,14 @@ def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
     lines = RehearsalTrace(lambda: show.now, lambda: show.project.machine, None)
     setup = Setup(robot, SimulatedClock(robot.advance, None), robot)
-    show = whole(with_options(project, "eyes"), setup, narrator=lines)
-    show.add_modules(awaited=True)
+    options = {"operated": False, "modules": ModulesPlan(awaited=True)}
+    show = Exhibition(Plan(with_options(project, "eyes"), setup, narrator=lines, options=options))
     seen = []
-    show.bus.subscribe("lumen.visual.face.#", lambda message: seen.append((message.key, message.body)))
+    show.services.bus.subscribe("lumen.visual.face.#", lambda message: seen.append((message.key, message.body)))
     try:
-        show.begin()
+        show.start()
         assert show.visitor
-        show.visitor.actor.arrive(Visitor(x=1.3, y=0.6))
+        show.visitor.arrive(Visitor(x=1.3, y=0.6))
         distances = []
         while show.tick() < 5.0:
             face = robot.face()

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
-from lumen.app.whole_node import WholeNode
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.commands import Command, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
@@ -99,11 +99,11 @@ def project(tmp_path: Path) -> Project:
 
 def run(
     project: Project, seconds: float, touch: float = 99.0, language: str = ""
-) -> tuple[Ear, RecordingRobot, WholeNode]:
+) -> tuple[Ear, RecordingRobot, Exhibition]:
     robot, ear = RecordingRobot(project.body), Ear()
     show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot), language=language, silent=True)
     show.loop.observers.append(ear)
-    show.begin()
+    show.start()
     for i in range(round(seconds / 0.02)):
         if i == round(touch / 0.02):
             robot.touch("FrontTactil", True)

@@ -13,8 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import lumen
+from lumen.app.compose import compose
+from lumen.app.making.modules import ModulesPlan
 from lumen.app.parts.remote_brain import RemoteBrainPart
-from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
@@ -22,6 +24,7 @@ from lumen.buses.validated import validated
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
+from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from tests.nodes import Printed, whole
 from tests.waiting import Collector, source_of, until
@@ -113,12 +116,15 @@ class Member:
         clock: Clock = self.cast.clock if self.cast else RoundClock(outside, float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
-        narrator = Printed(clock.now, lambda: self.process.project.machine)
-        how = ProcessOptions(url, float(speed), "manual")
-        plan = Plan(project, names, bus, clock, narrator, self.run_directory, how, self.cast, played)
-        self.process = assemble(plan)
-        brains = [part for part in self.process.parts if isinstance(part, RemoteBrainPart)]
-        self.brain = brains[0] if brains else None
+        narrator = Printed(clock.now, lambda: self.services.project.machine)
+        options = {"directory": self.run_directory, "operated": True, "reload": "manual", "fresh": False}
+        pace = float(speed)
+        plan = Plan(
+            project, self.cast, bus, played, narrator, roles=names, clock=clock, speed=pace,
+            options={**options, "modules": ModulesPlan(home_of(folder))},
+        )  # fmt: skip
+        self.services = compose(plan)
+        self.process, self.brain = self.services.node, self.services.get(RemoteBrainPart)
 
     @property
     def body(self) -> RecordingRobot:
@@ -207,8 +213,8 @@ def alone(folder: Path, name: str) -> list[object]:
     story = project.stories[name]
     show = whole(project, set_up("recording", project, "max", story), story=story)
     trace = Collector()
-    show.bus.subscribe("lumen.state", trace)
-    show.begin()
+    show.services.bus.subscribe("lumen.state", trace)
+    show.start()
     assert show.player
     while not show.player.finished:
         show.tick()

@@ -7,6 +7,7 @@ import pytest
 
 import lumen
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.formats.recordings.foxglove import form_class
@@ -29,7 +30,7 @@ def tour(tmp_path_factory: pytest.TempPathFactory) -> Path:
     directory = RunDirectory(folder)
     path = folder / "tour.mcap"
     setup = set_up("recording", project, "max", story)
-    with Exhibition(project, setup, story=story, run_directory=directory, record=path) as exhibition:
+    with Exhibition(Plan(project, setup, story=story, options={"directory": directory, "record": path})) as exhibition:
         exhibition.start()
         exhibition.run(4.0)
     directory.close(forget=True)

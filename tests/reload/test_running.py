@@ -65,9 +65,9 @@ def test_the_head_goes_on_smoothly_under_another_controller() -> None:
     project = load(ROOT)
     robot = SimulatedRobot(project.body, ROOT / "models", project.hall)
     show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot))
-    show.begin()
+    show.start()
     assert show.visitor
-    show.visitor.actor.arrive(Visitor(1.2, 0.8))
+    show.visitor.arrive(Visitor(1.2, 0.8))
     head = {name: robot.motors.index[name] for name in ("HeadYaw", "HeadPitch")}
     quick = replace(project.controllers["head"].tracking, speed=0.9, looks=1)
     bindings = tuple(replace(b, gain=-b.gain) for b in project.controllers["head"].output_bindings)

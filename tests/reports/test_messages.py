@@ -22,7 +22,7 @@ from lumen.language.commands import Rest, Say, Stop
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
 from lumen.ports import Message, Perform, RobotCommand
-from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED
+from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED, CommandListener
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RobotHost
@@ -103,6 +103,17 @@ def test_the_first_of_many_repeated_ids_is_logged_with_what_to_do(caplog: pytest
     assert line.dispatcher.repeated.counts == {KEY: 49}
 
 
+class Begun(CommandListener):
+    def __init__(self) -> None:
+        self.commands: list[RobotCommand] = []
+
+    def given(self, command: RobotCommand, id: str) -> None:
+        self.commands.append(command)
+
+    def is_brains(self, id: str) -> bool:
+        return id.startswith("session.")
+
+
 class Stage:
     """A hosted recording robot, and modules that send it commands with the same id."""
 
@@ -110,10 +121,9 @@ class Stage:
         it = project(messages=messages())
         it = replace(it, routes={**it.routes, "command": replace(it.routes["command"], keep=keep)})
         self.robot, self.bus = RecordingRobot(BODY), validated(connect("memory://"), it)
-        self.begun: list[RobotCommand] = []
-        self.host = RobotHost(
-            it, self.robot, self.bus, self.robot, started=lambda command, _id: self.begun.append(command)
-        )
+        begun = Begun()
+        self.begun = begun.commands
+        self.host = RobotHost(it, self.robot, self.bus, self.robot, [begun])
         self.answers = Collector()
         self.bus.subscribe("lumen.me", self.answers)
 
@@ -226,7 +236,6 @@ def test_the_sender_of_a_begun_command_is_recorded(tmp_path: Path) -> None:
 
 def test_the_waiting_commands_of_the_behaviour_shut_out_no_stop_and_no_other_module() -> None:
     stage = Stage(keep=3)
-    stage.host.server.follow(lambda id: id.startswith("session."))
     say = {"method": "say", "parameter": {"text": "Hello"}}
     for i in range(MAX_WAITING_OWN + 1):
         stage.receive({**say, "id": f"session.d{i}"}, "brain")
@@ -315,7 +324,6 @@ def test_the_behaviours_speech_waits_only_for_the_text_under_way() -> None:
 
 def test_the_speech_of_a_remote_brain_waits_only_for_the_text_under_way() -> None:
     stage = Stage()
-    stage.host.server.follow(lambda id: id.startswith("session."))
     flooded(stage, 250)
     for i in range(MAX_WAITING_COMMANDS):
         body = {"type": "motion", "method": "say", "parameter": {"text": "Buy now"}, "id": f"at once {i}"}

@@ -11,6 +11,7 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.parts.remote_brain import RemoteHold
+from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace, rehearse
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
@@ -244,11 +245,11 @@ def test_a_command_that_a_stopped_robot_refuses_is_reported_as_refused(tmp_path:
     project = lumen.load(exhibition(tmp_path, WAKES, WAIT))
     setup = set_up("recording", project, "max")
     trace = RehearsalTrace(setup.clock.now, lambda: project.machine, None)
-    show = Exhibition(project, setup, narrator=trace)
+    show = Exhibition(Plan(project, setup, narrator=trace))
     told: list[dict[str, Any]] = []
     show.node.bus.subscribe(project.key_of("state"), lambda message: told.append(message.body))
     with show:
-        show.node.robot.server.hold.stop("Ada")
+        show.robot.server.hold.stop("Ada")
         show.start()
         for _ in range(5):
             show.tick()
@@ -320,7 +321,7 @@ def test_a_refusal_that_the_brain_did_not_foresee_is_reported() -> None:
 
 def test_a_run_that_a_person_ends_has_no_trouble(tmp_path: Path) -> None:
     project = lumen.load(exhibition(tmp_path, WAKES, WAIT))
-    show = Exhibition(project, set_up("recording", project, "max"))
+    show = Exhibition(Plan(project, set_up("recording", project, "max")))
     with show:
         show.start()
         show.tick()
@@ -367,7 +368,7 @@ def test_a_run_that_a_person_stopped_says_so_at_its_end(
 
     def stopped(show: Exhibition) -> None:
         start(show)
-        show.node.brain.rest("ada on stand")
+        show.brain.rest("ada on stand")
 
     monkeypatch.setattr(Exhibition, "start", stopped)
     assert run(root, "--for", "1s") == 0

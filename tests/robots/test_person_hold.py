@@ -6,11 +6,12 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.parts.kept_hold import forget_hold, keep_hold
+from lumen.app.parts.kept_hold import KeptHold, forget_hold
 from lumen.language.commands import Leds, Look, Posture, Rest, Say, Wake, Walk
 from lumen.language.events import Event
 from lumen.ports import Aim, RobotCommand
-from lumen.robots.person_hold import PersonHold
+from lumen.robots.command_receiver import CommandListener
+from lumen.robots.person_hold import HoldListener, PersonHold
 from tests.server.stand import Stand
 from tests.tables import for_each
 from tests.waiting import Collector
@@ -24,6 +25,22 @@ MOVING: tuple[RobotCommand, ...] = (
 )
 STILL: tuple[RobotCommand, ...] = (Rest(), Say("I have stopped", "en"), Leds({"eyes": "red"}))
 HAND = Event("touched", {"sensor": "MiddleTactil"})
+
+
+class Told(CommandListener):
+    def __init__(self) -> None:
+        self.events: list[Event] = []
+
+    def noticed(self, event: Event) -> None:
+        self.events.append(event)
+
+
+def held_again(folder: Path, *listeners: HoldListener) -> PersonHold:
+    """The hold of a run after those that kept theirs in this folder."""
+    kept = KeptHold(folder)
+    hold = PersonHold(kept, *listeners)
+    kept.restore(hold)
+    return hold
 
 
 @pytest.mark.parametrize("behavior", [True, False])
@@ -66,29 +83,24 @@ def test_while_the_behaviour_lets_it_rest_only_the_behaviour_moves_it() -> None:
 
 
 def test_it_is_kept_until_somebody_lets_it_move(tmp_path: Path) -> None:
-    first, second, third, fourth = (PersonHold() for _ in range(4))
-    keep_hold(first, tmp_path)
+    told = Told()
+    first = held_again(tmp_path)
     first.stop("Ada")
-    told: list[Event] = []
-    second.noticed.append(told.append)
-    keep_hold(second, tmp_path)
+    second = held_again(tmp_path, told)
     assert second.stopped == first.stopped
-    assert told == [Event("stop", {"by": "Ada"})]
+    assert told.events == [Event("stop", {"by": "Ada"})]
     second.release("Bo")
-    keep_hold(third, tmp_path)
+    third = held_again(tmp_path)
     assert third.stopped is None
     third.stop("Ada")
     forget_hold(tmp_path)
-    keep_hold(fourth, tmp_path)
-    assert fourth.stopped is None
+    assert held_again(tmp_path).stopped is None
 
 
 @for_each("content", [b"", b"{", b"[]", b'{"by": 1, "since": 2}', b'{"by": "x", "since": "now"}', b"\xff"])
 def test_a_damaged_file_stops_nobody(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "stopped.json").write_bytes(content)
-    hold = PersonHold()
-    keep_hold(hold, tmp_path)
-    assert hold.stopped is None
+    assert held_again(tmp_path).stopped is None
 
 
 def ask(stand: Stand, key: str, method: str, **parameter: Any) -> Any:
@@ -101,9 +113,8 @@ def ask(stand: Stand, key: str, method: str, **parameter: Any) -> Any:
 
 
 def test_over_the_bus_it_is_stopped_asked_and_let_go_on() -> None:
-    stand = Stand()
-    told: list[Event] = []
-    stand.server.hold.noticed.append(told.append)
+    told = Told()
+    stand = Stand(None, told)
     assert ask(stand, "avatar.NAO.stop", "stopped") == {"stopped_by": "", "since": ""}
     ask(stand, "avatar.NAO.stop", "rest", by="Ada")
     assert [command for _, command in stand.robot.started] == [Rest("Ada")]
@@ -115,7 +126,7 @@ def test_over_the_bus_it_is_stopped_asked_and_let_go_on() -> None:
     stand.live(0.04)
     assert len(stand.robot.started) == 1
     assert ask(stand, "avatar.NAO.stop", "resume", by="Bo") == "command finished"
-    assert told == [Event("stop", {"by": "Ada"}), Event("resume", {"by": "Bo"})]
+    assert told.events == [Event("stop", {"by": "Ada"}), Event("resume", {"by": "Bo"})]
     assert [command for _, command in stand.robot.started][1:] == [Wake()]  # this behaviour knows no `resume`
 
 

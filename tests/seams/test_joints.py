@@ -228,7 +228,7 @@ def test_no_sender_moves_a_joint_beyond_its_limits(tmp_path: Path) -> None:
             exhibition.run(seconds=0.2)
         assert {Look, Posture, Perform, Aim} <= own.kinds()
         for command in COMMANDS:
-            exhibition.node.setup.robot.start("operator", command)
+            exhibition.services.setup.robot.start("operator", command)
         assert not faults(own)
 
 

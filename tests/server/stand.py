@@ -8,6 +8,7 @@ import numpy as np
 from lumen.bus import Bus, connect
 from lumen.language.events import Event
 from lumen.ports import Battery, Image, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.command_receiver import CommandListener
 from lumen.robots.server import RobotServer
 from tests.exhibits import JOINTS, TACTILE, project
 from tests.waiting import HANG, Collector
@@ -59,12 +60,20 @@ class Puppet:
 class Stand:
     """A server with its puppet, its bus, and all that is said on it."""
 
-    def __init__(self, bus: Bus | None = None, *, direct: bool = False, **changes: Any) -> None:
+    def __init__(
+        self, bus: Bus | None = None, *listeners: CommandListener, direct: bool = False, **changes: Any
+    ) -> None:
         self.robot, self.bus, self.heard = Puppet(), bus or connect("memory://"), Collector()
         self.bus.subscribe("avatar.NAO.data.#", self.heard)
         self.clock = 0.0
         self.server = RobotServer(
-            project(**changes), self.robot, self.bus, date=lambda: DATE, clock=lambda: self.clock, direct=direct
+            project(**changes),
+            self.robot,
+            self.bus,
+            date=lambda: DATE,
+            clock=lambda: self.clock,
+            listeners=listeners,
+            direct=direct,
         )
 
     def live(self, seconds: float, tick: float = 0.02) -> None:

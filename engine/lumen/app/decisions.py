@@ -1,13 +1,25 @@
 """What people decide while an exhibition runs: what waits for approval goes or stays, and whether anything waits."""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from lumen.app.narrator import Narrator
 from lumen.language.approvals import Autonomy
 from lumen.runtime.approvals import Approvals, HeldEvent
 
 HOW = {"waits": "waits for GO", "goes": "goes", "stays": "stays"}
+
+
+class DecisionRecords(Protocol):
+    """The records of a run, as far as people's decisions are kept in them."""
+
+    def write(self, entry: Mapping[str, Any]) -> None:
+        """Keep an entry of the journal."""
+        ...
+
+    def keep_decisions(self, decisions: Mapping[str, Any]) -> None:
+        """Keep what people decided, and what waits for them, for the run after a crash."""
+        ...
 
 
 class Decisions:
@@ -26,7 +38,7 @@ class Decisions:
     ) -> None:
         self._approvals, self._narrator, self._record, self._keep = approvals, narrator, record, keep
         self._publish = publish
-        approvals.tell = self._told
+        approvals.watchers.append(self)
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
         """Go on with the autonomy that a run had which ended without notice, and say what it lost."""
@@ -59,7 +71,8 @@ class Decisions:
         self._write()
         return {"verdict": "done", "autonomy": level}
 
-    def _told(self, how: str, held: HeldEvent, why: str) -> None:
+    def approval(self, how: str, held: HeldEvent, why: str) -> None:
+        """Tell what became of an event that waited for approval, and keep it."""
         machine, wanted, _ = held.marked
         targets = ", ".join(machine.states[path].name for path in wanted.targets) or "what it does"
         self._narrator.line("operator", f"{held.event.name} {HOW[how]}, to {targets}" + (f": {why}" if why else ""))

@@ -9,6 +9,7 @@ from lumen.interpreters.statechart import Snapshot, Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.commands import Ask, Command, GoTo, Move, Play, Posture, Rest, Say, Start, VerbCommand, Wake, Walk
 from lumen.language.events import Event
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.verbs import verb_of
 from lumen.ports import Message
@@ -117,8 +118,8 @@ class Doings(Observer):
             self._end(self._speaking, id)
             self._end(self._moving, id)
 
-    def forget(self) -> None:
-        """Forget what was said and heard: a name may stand in it."""
+    def forget(self, person: PersonName) -> None:
+        """Forget what was said and heard, which may contain the name."""
         self.heard = None
         self._speaking.clear()
 

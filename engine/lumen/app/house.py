@@ -1,19 +1,18 @@
 """Several robots of a house in one process: their nodes, ticked in turn."""
 
-import time
 from collections.abc import Callable, Mapping
-from contextlib import closing
+from contextlib import ExitStack, closing
 from math import inf
 
-from lumen.app.claiming import CLAIM_INTERVAL
+from lumen.app.compose import start
 from lumen.app.living import live
-from lumen.app.node import Node
+from lumen.app.services import Services
 from lumen.errors import LumenError
 from lumen.upkeep.garbage import GcScheduler
 
 
 class House:
-    """Nodes by the names of their robots; each has its own time, keys, journal, files and stop.
+    """Exhibitions by the names of their robots; each has its own time, keys, journal, files and stop.
 
     They live tick by tick, in the order given: where their worlds have one clock in common, they are in step. One that
     is over is closed, and the others go on. So do they if an error ends one of them: `lost` is called at once, with its
@@ -22,17 +21,15 @@ class House:
 
     def __init__(
         self,
-        nodes: Mapping[str, Node],
+        exhibitions: Mapping[str, Services],
         lost: Callable[[str, LumenError], None] = lambda _robot, _error: None,
         *,
         together: bool = False,
     ) -> None:
-        self.nodes = dict(nodes)
-        self._going, self._lost, self._together = dict(nodes), lost, together
+        self._exhibitions = tuple(exhibitions.values())
+        self.nodes = {name: one.node for name, one in exhibitions.items()}
+        self._going, self._lost, self._together = dict(self.nodes), lost, together
         self.now = 0.0
-        self._napping = False
-        for node in nodes.values():
-            node.wake = self._wake
 
     @property
     def going(self) -> tuple[str, ...]:
@@ -50,11 +47,7 @@ class House:
 
     def start(self) -> None:
         """Begin all of them. Raises UsageError where another process on the bus is one of these robots already."""
-        claiming = list(self.nodes.values())
-        while claiming := [node for node in claiming if node.claims()]:
-            time.sleep(CLAIM_INTERVAL)
-        for node in self.nodes.values():
-            node.begin()
+        start(self._exhibitions)
 
     def tick(self) -> float:
         """Let each live through a tick; the time of the first that goes on [s]."""
@@ -83,18 +76,13 @@ class House:
 
     def nap(self, most: float = inf) -> None:
         """Sleep while nothing is due in any of them: on the clock of the first, until something comes for one."""
-        self._napping = True
-        try:
-            going = list(self._going.values())
+        going = list(self._going.values())
+        with ExitStack() as stack:
+            for node in going:
+                stack.enter_context(node.napping(going[0]))
             ticks = going[0].doze(min(most, *(node.rest() for node in going)))
             for node in going:
                 node.pass_over(ticks)
-        finally:
-            self._napping = False
-
-    def _wake(self) -> None:
-        if self._napping and self._going:
-            next(iter(self._going.values())).ring()
 
     def _end(self, name: str) -> None:
         try:

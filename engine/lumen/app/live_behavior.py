@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from typing import Protocol
 
 from lumen.app.local_timezone import local_timezone
 from lumen.app.setup import Setup
@@ -11,7 +12,7 @@ from lumen.interpreters.statechart.compiled_machine import prepare
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.ports import Bus, HasSpeed
+from lumen.ports import Bus, HasSpeed, RobotCommand
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.story import staged
 from lumen.runtime.story_time import story_epoch
@@ -19,12 +20,21 @@ from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.wall_clock_watch import WallClockWatch
 
 
+class Forgetter(Protocol):
+    """Something that may hold a person's name."""
+
+    def forget(self, person: PersonName) -> None:
+        """Keep nothing in which the name may stand."""
+        ...
+
+
 class LiveBehavior:
     """A project's behaviour in its `loop`, on a robot, a bus and a clock.
 
     A story says which behaviour it is about, in which language and at what time of day it begins, and remembering
     what. `adopt` switches everything around the loop to another bundle; it may raise BusError. If it is `published`,
-    each step goes to the bus. `forgetting` are called with whom to forget, besides.
+    each step goes to the bus. `forgetters` forget a person with it. `refuse` returns the reason why the robot may not
+    begin a command, empty if it may.
     """
 
     def __init__(
@@ -36,9 +46,10 @@ class LiveBehavior:
         *,
         published: bool = True,
         adopt: Callable[[Project], None] = lambda _: None,
+        refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> None:
         self._story, self._local_timezone = story, "" if story else local_timezone()
-        self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking)
+        self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking, refuse)
         real = story is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed == 1.0
         self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
         self.trace = TracePublisher(
@@ -50,7 +61,7 @@ class LiveBehavior:
             lambda: self.loop.runtime.approvals.waiting,
         )
         self._adopt = adopt
-        self.forgetting: list[Callable[[PersonName], None]] = []
+        self.forgetters: list[Forgetter] = []
         if published:
             self.loop.observers.append(self.trace)
 
@@ -75,8 +86,8 @@ class LiveBehavior:
 
     def forget(self, person: PersonName) -> None:
         """Go on without somebody's name, and tell so."""
-        for forget in self.forgetting:
-            forget(person)
+        for one in self.forgetters:
+            one.forget(person)
         if self.loop.runtime.forget(person):
             self.trace.standing(self.loop.runtime.snapshot)
 

@@ -17,19 +17,20 @@ UNREADABLE = f"a person whom {SILENCED_FILE} does not name"
 class ModelSwitch:
     """Silences the model, or lets it speak again: at once, also in the middle of an answer.
 
-    `record` keeps an entry of the journal of files. Once it has a `home`, it is kept there, whatever ends the run.
+    `record` keeps an entry of the journal of files. It restores the choice of the run before from
+    a `folder`, and keeps its own there.
     """
 
     def __init__(
-        self, questions: Questions, project: Callable[[], Project], record: Callable[[Mapping[str, Any]], None]
+        self,
+        questions: Questions,
+        project: Callable[[], Project],
+        record: Callable[[Mapping[str, Any]], None],
+        folder: Path | None = None,
     ) -> None:
         self._questions, self._project, self._record = questions, project, record
-        self._home: Home | None = None
-
-    def keep(self, folder: Path) -> None:
-        """Go on with what was switched in a run before, and keep in this folder what is from now on."""
-        self._home = Home(folder)
-        if (folder / SILENCED_FILE).exists():  # also where nobody can read who it was
+        self._home = Home(folder) if folder else None
+        if folder and self._home and (folder / SILENCED_FILE).exists():  # even if the name in it is unreadable
             found = self._home.read_json(SILENCED_FILE)
             self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or UNREADABLE))
 

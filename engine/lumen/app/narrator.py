@@ -1,6 +1,7 @@
 """What happens in an exhibition, in words: who, what, and why."""
 
 from collections.abc import Callable
+from typing import Protocol
 
 from lumen.app.causes import innermost, reason_of, why
 from lumen.app.ignoring import IgnoredEvents
@@ -32,11 +33,19 @@ MAX_TROUBLES = 100
 """The number of troubles of a run that are kept for its end; later ones are dropped."""
 
 
+class VisitorWatcher(Protocol):
+    """An observer of the visitor."""
+
+    def visitor_action(self, action: VisitorAction) -> None:
+        """The visitor does something."""
+        ...
+
+
 class Narrator(Observer):
     """Tells what happens, a line each, and counts it; who shows the lines overrides `line` and `note`.
 
     `now` is asked for the time [s], `machine` for the one that runs. Where it `explains`, it tells of what changed
-    nothing, and why. `of_visitor` are called with what the visitor does.
+    nothing, and why. `watchers` see each action of the visitor.
     """
 
     explains = False
@@ -49,7 +58,7 @@ class Narrator(Observer):
         self.played: dict[str, int] = {}
         self._ignored = IgnoredEvents()
         self.troubles: list[str] = []
-        self.of_visitor: list[Callable[[VisitorAction], None]] = []
+        self.watchers: list[VisitorWatcher] = []
 
     def line(self, who: str, text: str) -> None:
         """One line: who it is about, and what happens now."""
@@ -138,8 +147,8 @@ class Narrator(Observer):
 
     def visitor_action(self, action: VisitorAction) -> None:
         """The visitor does something."""
-        for watch in self.of_visitor:
-            watch(action)
+        for watcher in self.watchers:
+            watcher.visitor_action(action)
         match action:
             case Arrive():
                 self.line("visitor", "walks up")

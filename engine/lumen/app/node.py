@@ -1,12 +1,13 @@
 """One process of an exhibition: its parts in one loop, among the processes that have the others, if there are any."""
 
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, ExitStack, closing
 from math import ceil, inf
 
 from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals, refuse_silence
 from lumen.app.living import ROUNDING, live
+from lumen.app.nap import Nap
 from lumen.app.narrator import Narrator
 from lumen.app.pace import PaceWatch
 from lumen.app.parts.part import Part
@@ -33,10 +34,10 @@ class Node:
 
     With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
     begins when it has claimed what it is. `speed` is that of its time; those of the others have to be the same.
-    What is in `before` is called at each tick with its time [s], before the parts; what is in `closing` when it ends.
-    With `leaps` it passes over ticks in which nothing happens, as `run` does in real time: there it sleeps until
-    something is due, a message has come, or somebody calls `wake`, from any thread. `paced` is called where it begins
-    and ends to keep less than real time, with how much.
+    The functions in `before` are called at each tick with its time [s], before the parts. With `leaps` it passes over
+    ticks in which nothing happens, as `run` does in real time: there it sleeps until something is due, or until `nap`
+    ends because a message has come. `paced` is called when it begins or ends to keep less than real time, with how much
+    of it.
     """
 
     def __init__(
@@ -48,23 +49,21 @@ class Node:
         *,
         presence: Presence | None = None,
         speed: float | None = None,
+        nap: Nap | None = None,
+        before: Sequence[Callable[[float], None]] = (),
+        paced: Callable[[float], None] = lambda _: None,
+        leaps: bool = False,
     ) -> None:
         self._project, self._clock, self._narrator, self._speed = project, clock, narrator, speed
         self._dozes = clock if isinstance(clock, Dozes) else None
         self.bus, self.presence = bus, presence
         self.parts: list[Part] = []
-        self.before: list[Callable[[float], None]] = []
-        self.closing: list[Callable[[], None]] = []
-        self.leaps = False
-        self.claimed: Callable[[], None] = lambda: None
+        self._before, self._paced, self._leaps = before, paced, leaps
+        self._nap = nap or Nap()
         self.now, self._asked = clock.now(), time.monotonic()
-        self.wake: Callable[[], None] = self.hurry
-        self._napping = False
-        bus.arrived = lambda: self.wake()
         self._begun: list[Part] = []
         self._threads = ThreadWatch()
         self.pace = PaceWatch(clock)
-        self.paced: Callable[[float], None] = lambda _: None
         self._waiting = ""
         self._interrupts, self._heeded, self._leaving = 0, False, False
 
@@ -123,13 +122,12 @@ class Node:
 
     def run(self, period: float | None = None) -> float:
         """Tick until it is over, or has lived for the period [s]; how long it lived [s]."""
-        garbage = GcScheduler()
-        self.closing.append(garbage.close)
-        return live(self, period, garbage)
+        with closing(GcScheduler()) as garbage:
+            return live(self, period, garbage)
 
     def tick(self) -> float:
         """Wait for the next tick and live through it; its time [s]."""
-        if self.leaps:
+        if self._leaps:
             self._leap()
         self._clock.wait(self.now + TICK_PERIOD)
         self.now = self._clock.now()
@@ -138,7 +136,7 @@ class Node:
             self._claim(self.presence)
         if self.presence and isinstance(self._clock, FollowingClock):
             self._follow(self._clock, self.presence)
-        for call in self.before:
+        for call in self._before:
             call(self.now)
         if not self.presence or self.presence.settled:
             self._begin(self.now)
@@ -152,21 +150,12 @@ class Node:
 
     def nap(self, most: float = inf) -> None:
         """Sleep through the ticks before the next in which something happens, for so long [s] at most, until woken."""
-        self._napping = True  # before it looks: what comes afterwards wakes it
-        try:
+        with self.napping(self):
             self.pass_over(self.doze(min(most, self.rest())))
-        finally:
-            self._napping = False
 
-    def hurry(self) -> None:
-        """Let a nap end."""
-        if self._napping:
-            self.ring()
-
-    def ring(self) -> None:
-        """Let the clock's sleep end, where it can."""
-        if self._dozes:
-            self._dozes.hurry()
+    def napping(self, on: "Node") -> AbstractContextManager[None]:
+        """Nap on the clock of a node: this one, or another one of this process."""
+        return self._nap.on(on._clock)
 
     def rest(self) -> float:
         """For how long nothing happens in it unless something comes [s]; 0 where that is not known."""
@@ -211,8 +200,8 @@ class Node:
             stack.callback(self.bus.close)
             if self.presence:
                 stack.callback(self.presence.close)
-            for close in [*(part.close for part in self.parts), *self.closing]:
-                stack.callback(close)
+            for part in self.parts:
+                stack.callback(part.close)
 
     def summary(self) -> list[str]:
         """What is said of its parts at the end, a line each."""
@@ -229,13 +218,11 @@ class Node:
         refuse_silence(self.bus, presence)
         if time.monotonic() - self._asked >= CLAIM_DURATION:
             presence.settle()
-            self.claimed()
 
     def _begin(self, now: float) -> None:
         for part in self.parts:
             if part not in self._begun and self._ready(part):
                 self._check_speed()
-                part.wake = lambda: self.wake()
                 part.begin(now)
                 self._begun.append(part)
 
@@ -283,7 +270,7 @@ class Node:
             return  # whose time it is says so
         if line := self.pace.tick():
             self._narrator.line("time", line)
-            self.paced(self.pace.realtime)
+            self._paced(self.pace.realtime)
 
     def _heed(self) -> None:
         """What the first interrupt asks for; where nobody has anything to do for it, it ends."""

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
+from lumen.app.plan import Plan
 from lumen.app.setup import Setup, set_up, set_up_with
 from lumen.app.stories import stories_of
 from lumen.errors import UsageError
@@ -44,7 +45,7 @@ def open(
         found = named[0]
     setup = _setup(project, robot, clock, str(speed), found)
     try:
-        exhibition = Exhibition(project, setup, bus, found, reload="off", language=language)
+        exhibition = Exhibition(Plan(project, setup, bus, found, language=language, options={"reload": "off"}))
     except BaseException:
         setup.robot.close()
         raise

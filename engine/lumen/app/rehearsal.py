@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from lumen.app.compose import compose, start
 from lumen.app.narrator import Narrator
+from lumen.app.parts.visitor import VisitorPart
+from lumen.app.plan import Plan
 from lumen.app.setup import Setup, set_up
-from lumen.app.whole_node import WholeNode
-from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import validated
 from lumen.errors import LumenError
 from lumen.language.diagnostics import Place
 from lumen.language.machines import MachineDefinition
@@ -74,16 +74,17 @@ def rehearse(
     warnings stand in the trace, which begins where the story does with `whole`.
     """
     setup = chosen or set_up("recording", project, "max", story)
-    trace = RehearsalTrace(setup.clock.now, lambda: node.project.machine, None if whole else REMEMBERED)
-    node = WholeNode(project, setup, validated(MemoryBus(), project), story, trace, silent=chosen is None)
-    node.loop.observers += observers
-    node.before += hooks
-    node.leaps = chosen is None
-    player, now, began = node.player, 0.0, time.perf_counter()
-    assert player is not None  # the robot stands in a hall
+    trace = RehearsalTrace(setup.clock.now, lambda: services.project.machine, None if whole else REMEMBERED)
+    alone = chosen is None
+    plan = Plan(project, setup, story=story, narrator=trace, silent=alone, leaps=alone, before=tuple(hooks))
+    services = compose(plan)
+    node, player = services.node, services[VisitorPart].player
+    services.behavior.loop.observers += observers
+    now, began = 0.0, time.perf_counter()
+    assert player is not None  # the plan has a story
     try:
         with _logged(player, trace):
-            node.begin()
+            start([services])
             while not player.finished:
                 now = node.tick()
     except LumenError as error:

@@ -25,6 +25,10 @@ _new = tuple.__new__
 _log = logging.getLogger(__name__)
 
 
+def _nothing() -> None:
+    """Do nothing: no loop waits for messages."""
+
+
 class ValidatedBus(Bus):
     """A bus on which only bodies pass that fit their route.
 
@@ -39,14 +43,20 @@ class ValidatedBus(Bus):
     else can make: that one is not checked again for each subscriber.
     """
 
-    def __init__(self, bus: Bus, project: Project, on_refused: OnRefused | None = None) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        project: Project,
+        on_refused: OnRefused | None = None,
+        arrived: Callable[[], None] = _nothing,
+    ) -> None:
         self._bus, self._listeners = bus, bus.ability(KnowsListeners)
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
         self._checks: dict[str, SchemaCheck] = {}
         self._routed: frozenset[str] = frozenset()
         self._passed: str | None = None
         self._aliases, self._listening = Aliases(), list[_Listening]()
-        self.arrived: Callable[[], None] = _nothing
+        self._arrived = arrived
         self.use(project)
 
     def ability(self, kind: type[Ability]) -> Ability | None:
@@ -87,7 +97,7 @@ class ValidatedBus(Bus):
                 self._on_refused(message.key, reason)
                 raise Refused(reason)
             handler(message)
-            self.arrived()
+            self._arrived()
 
         listening = _Listening(pattern, checked, self._bus.subscribe(pattern, checked))
         self._listening.append(listening)
@@ -97,7 +107,8 @@ class ValidatedBus(Bus):
             if listening in self._listening:
                 self._listening.remove(listening)
                 listening.undo()
-                listening.undo_alias()
+                if listening.alias:
+                    listening.alias.undo()
 
         return undo
 
@@ -123,13 +134,15 @@ class ValidatedBus(Bus):
 
     def _listen(self, listening: "_Listening") -> None:
         """Listen under the alias that the pattern has now, if any."""
-        alias = self._aliases.names.get(listening.pattern, "")
-        if alias == listening.alias:
+        alias, before = self._aliases.names.get(listening.pattern, ""), listening.alias
+        if alias == (before.pattern if before else ""):
             return
-        before, listening.alias, listening.undo_alias = listening.undo_alias, alias, _nothing
+        listening.alias = None
         if alias:
-            listening.undo_alias = self._bus.subscribe(alias, self._aliases.taking(listening.handler))
-        before()
+            handler = self._aliases.taking(listening.handler)
+            listening.alias = _Listening(alias, handler, self._bus.subscribe(alias, handler))
+        if before:
+            before.undo()
 
     def _wrong(self, key: str, body: Any) -> str:
         check = self._checks.get(key)
@@ -139,10 +152,6 @@ class ValidatedBus(Bus):
         return "" if known else "no route in lumen.yaml has this key, and it does not begin with `avatar` or `lumen`"
 
 
-def _nothing() -> None:
-    """Ends a subscription that there is not; nobody waits for what arrives."""
-
-
 @dataclass(eq=False)
 class _Listening:
     """A subscription, and the one under the alias of its key."""
@@ -150,8 +159,7 @@ class _Listening:
     pattern: str
     handler: MessageHandler
     undo: Callable[[], None]
-    alias: str = ""
-    undo_alias: Callable[[], None] = _nothing
+    alias: "_Listening | None" = None
 
 
 def by_key(project: Project) -> dict[str, Route]:
@@ -161,6 +169,8 @@ def by_key(project: Project) -> dict[str, Route]:
     return aliases | {route.key_for(robot): route for route in routes for robot in project.served}
 
 
-def validated(bus: Bus, project: Project, on_refused: OnRefused | None = None) -> ValidatedBus:
-    """The bus, with everything on it checked against the project's message schemas."""
-    return ValidatedBus(bus, project, on_refused)
+def validated(
+    bus: Bus, project: Project, on_refused: OnRefused | None = None, arrived: Callable[[], None] = _nothing
+) -> ValidatedBus:
+    """Return the bus, with everything on it checked against the project's message schemas."""
+    return ValidatedBus(bus, project, on_refused, arrived)

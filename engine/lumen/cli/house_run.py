@@ -2,35 +2,31 @@
 
 import argparse
 import os
-import signal
 import time
 from collections.abc import Sequence
-from functools import partial
+from contextlib import ExitStack
 
-from lumen.app.exhibition import Exhibition
+from lumen.app.compose import compose
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
-from lumen.app.node import Node
-from lumen.app.parts.console import ConsolePart
-from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
-from lumen.app.run_start import WHOLE, BegunRun
+from lumen.app.parts.visitor import VisitorPart
+from lumen.app.plan import Plan
+from lumen.app.run_start import BegunRun
+from lumen.app.services import Services
 from lumen.app.setup import Setup
-from lumen.bus import connect
-from lumen.buses.validated import validated
 from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
-from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
+from lumen.cli.run_choices import chosen_story, period_of
+from lumen.cli.run_plan import RobotRun, heed_signals, leave, plan_of
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
-from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
 from lumen.errors import LumenError, UsageError
+from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
-from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, ROBOT_PART
-from lumen.runtime.story import StoryPlayer
 
 ALONE = ("model", "robot_url", "video", "record", "sound")
 """Options that are about one robot."""
@@ -39,44 +35,36 @@ ALONE = ("model", "robot_url", "video", "record", "sound")
 class HouseRun:
     """The robots of a house as a terminal runs them; `parts` are those of each that this process is, all without."""
 
-    def __init__(self, options: argparse.Namespace, start: BegunRun, parts: Sequence[str]) -> None:
+    def __init__(self, options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> None:
         self._options, self._start, self._parts = options, start, parts
         self.directories, self.projects = start.directories, start.projects
         robots = tuple(self.projects)
-        first = self.projects[robots[0]]
-        self.story = chosen_story(first, options.story)
-        self.stories: dict[str, Story | None] = dict.fromkeys(robots) | {robots[0]: self.story}
-        url = options.bus or os.environ.get("LUMEN_BUS") or first.bus
-        self._url = f"memory://house-{os.getpid()}" if url.startswith("memory:") else url
+        self._first = robots[0]
+        self.story = chosen_story(self.projects[self._first], options.story)
+        self.stories: dict[str, Story | None] = dict.fromkeys(robots) | {self._first: self.story}
+        url = options.bus or os.environ.get("LUMEN_BUS") or self.projects[self._first].bus
         if parts and url.startswith("memory:"):
             raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
+        self._url = f"memory://house-{os.getpid()}" if url.startswith("memory:") else url
         self._setups = self._set_up()
-        self._player: StoryPlayer | None = None
         self._lost: dict[str, LumenError] = {}
         self._clocks = {name: self._clock(name) for name in robots}
         self.transcripts = {name: self._transcript(name) for name in robots}
-        make = self._process if parts else self._whole
-        self.nodes: dict[str, Node] = {}
-        self.house = House({})
-        try:
+        self.made: dict[str, Services] = {}
+        with ExitStack() as undo:
             for name in robots:
-                self.nodes[name] = make(name)
-        except BaseException:
-            for node in self.nodes.values():
-                node.close()
-            raise
-        self.house = House(self.nodes, self._lose, together=self.story is not None)
-        for transcript in self.transcripts.values():
-            transcript.unread = lambda: self.house.interrupt(2, leave=True)
+                self.made[name] = compose(self._plan(name))
+                undo.callback(self.made[name].node.close)
+            undo.pop_all()
+        self.house = House(self.made, self._lose, together=self.story is not None)
 
     def run(self) -> RunVerdict:
         """Until the story ends, the period is over, or somebody ends it."""
         options, house = self._options, self.house
-        signal.signal(signal.SIGINT, lambda *_: house.interrupt())
-        signal.signal(signal.SIGTERM, lambda *_: house.interrupt(2, leave=True))
+        heed_signals([*self.made.values()])
         project = next(iter(self.projects.values()))
         what = ", ".join(self._parts) + " of " if self._parts else ""
-        print(f"{project.name}: {what}{', '.join(self.nodes)}, ready after {ready():.1f} s.", flush=True)
+        print(f"{project.name}: {what}{', '.join(house.nodes)}, ready after {ready():.1f} s.", flush=True)
         began = time.monotonic()
         try:
             house.start()
@@ -84,22 +72,22 @@ class HouseRun:
         finally:
             house.close()
         took = time.monotonic() - began
-        nodes = list(self.nodes.values())
+        nodes = list(house.nodes.values())
         failed, early = any(node.failed for node in nodes), any(node.interrupted for node in nodes)
-        failure = self._player.failure if self._player else ""
-        told = {name: node.troubles for name, node in self.nodes.items() if not self.stories[name]}
+        failure = self._failure() if not self._parts else ""
+        told = {name: node.troubles for name, node in house.nodes.items() if not self.stories[name]}
         troubles = [f"{name}: {trouble}" for name, troubles in told.items() for trouble in troubles]
         troubles += [f"{name}: {error}" for name, error in self._lost.items()]
         with_trouble = "Ended with trouble" if troubles else "Ended"
         print(f"\n{'The story failed' if failed else with_trouble}: {clock_time(lived)}.")
         lines = [*RunVerdict.listed(troubles)]
-        lines += [f"{name}: {line}" for name, node in self.nodes.items() for line in node.summary()]
+        lines += [f"{name}: {line}" for name, node in house.nodes.items() for line in node.summary()]
         for line in [*([failure] if failure else []), *lines]:
             print(f"  {line}")
         for name, directory in self.directories.items():
             if name not in self._lost and (not self._parts or BRAIN in self._parts):
-                directory.ended(self.nodes[name].project)
-                directory.close(forget=not self.nodes[name].leaving)
+                directory.ended(house.nodes[name].project)
+                directory.close(forget=not house.nodes[name].leaving)
         ended = FAILED if failure else INTERRUPTED if early else EARLY if failed else TROUBLED if troubles else WELL
         return RunVerdict(ended, lived, took, failure or next(iter(troubles), ""), tuple(lines))
 
@@ -111,41 +99,31 @@ class HouseRun:
 
     def _transcript(self, name: str) -> Transcript:
         width = max(map(len, self.projects))
-        return Transcript(self._clocks[name].now, lambda: self.nodes[name].project.machine, robot=f"{name:<{width}}")
+        return Transcript(
+            self._clocks[name].now,
+            lambda: self._running(name).machine,
+            robot=f"{name:<{width}}",
+            unread=lambda: leave(self.made.values()),
+        )
+
+    def _running(self, name: str) -> Project:
+        return self.made[name].project if name in self.made else self.projects[name]
 
     def _clock(self, name: str) -> Clock:
         return self._setups[name].clock if self._setups else FollowingClock(float(self._options.speed))
 
-    def _whole(self, name: str) -> Node:
-        options, project, directory = self._options, self.projects[name], self.directories[name]
-        story, transcript = self.stories[name], self.transcripts[name]
-        exhibition = Exhibition(
-            project, self._setups[name], self._url, story, transcript,
-            run_directory=directory, reload=options.reload, language=language_of(project, options.language),
-            fresh=options.fresh or self.story is not None, alerts=alert_desk(project, WHOLE, transcript, self.story),
-        )  # fmt: skip
-        folder = None if self.story else home_of(directory.root, directory.robot)
-        exhibition.node.add_modules(folder, awaited=options.speed == "max")
-        first = name == next(iter(self.projects))
-        if first and self.story:
-            self._player = exhibition.node.player
-        elif first and exhibition.node.visitor:
-            greeting = f"You are {name}'s visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
-            exhibition.node.add(TypedVisitorPart(exhibition.node.visitor, transcript, greeting))
-        if first and project.console.wanted and options.speed != "max":
-            exhibition.node.add(ConsolePart(directory.root, self._url, partial(transcript.line, "console")))
-        return exhibition.node
+    def _plan(self, name: str) -> Plan:
+        first = name == self._first
+        one = RobotRun(self.projects[name], self.directories[name], self.stories[name], first)
+        greeting = f"You are {name}'s visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
+        typed = greeting if first and not self._parts else ""
+        setup, clock, transcript = self._setups.get(name), self._clocks[name], self.transcripts[name]
+        return plan_of(self._options, one, self._parts, self._url, setup, clock, transcript, greeting=typed)
 
-    def _process(self, name: str) -> Node:
-        options, project, directory = self._options, self.projects[name], self.directories[name]
-        how = ProcessOptions(self._url, float(options.speed), options.reload, options.language or "", options.fresh)
-        bus = validated(connect(self._url, sender="+".join(self._parts)), project)
-        alerts = alert_desk(project, self._parts, self.transcripts[name], self.story)
-        plan = Plan(
-            project, self._parts, bus, self._clocks[name], self.transcripts[name], directory, how,
-            self._setups.get(name), self.stories[name], alerts,
-        )  # fmt: skip
-        return assemble(plan)
+    def _failure(self) -> str:
+        """Why the story failed; empty if it did not, or if there is none."""
+        visitor = self.made[self._first].get(VisitorPart)
+        return visitor.player.failure if visitor and visitor.player else ""
 
     def _lose(self, name: str, error: LumenError) -> None:
         """An error ended one robot; the others go on."""

@@ -2,17 +2,19 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from pathlib import Path
 
-from lumen.app.exhibition import Exhibition
+from lumen.app.parts.robot import RobotPart
+from lumen.app.parts.visitor import VisitorPart
 from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.services import Services
 from lumen.app.setup import Setup
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
+from lumen.cli.run_plan import leave, running
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
-from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.real import RealClock
 from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
@@ -26,13 +28,14 @@ GREETING = (
 class Performance:
     """What a terminal shows of a whole exhibition."""
 
-    def __init__(self, setup: Setup, project: Callable[[], Project]) -> None:
-        self.transcript = _VisitorsTranscript(setup.clock.now, lambda: project().machine)
+    def __init__(self, setup: Setup, project: Project, made: Sequence[Services]) -> None:
+        self.transcript = _VisitorsTranscript(setup, project, made)
         self._setup, self._took, self._lived = setup, 0.0, 0.0
 
-    def introduce(self, exhibition: Exhibition, run_directory: RunDirectory, speed: str) -> None:
-        """Say what begins; without a story, whoever types is the visitor."""
-        project = exhibition.project
+    def introduce(self, services: Services, speed: str) -> None:
+        """Say what begins."""
+        project, story = services.project, services.plan.story
+        run_directory: RunDirectory = services.plan.options["directory"]
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready():.1f} s.")
         if run_directory.taken:
@@ -42,28 +45,26 @@ class Performance:
             )
         if self._setup.blind:
             print(f"The exhibition is running without camera images: {self._setup.blind}.")
-        if exhibition.node.story:
-            print(f"The story is “{exhibition.node.story.title}”.\n")
-        elif exhibition.node.visitor:
-            exhibition.node.add(TypedVisitorPart(exhibition.node.visitor, self.transcript, GREETING))
-        self.transcript.left = lambda: self._look_back(exhibition)
+        if story:
+            print(f"The story is “{story.title}”.\n")
 
-    def run(self, exhibition: Exhibition, period: float | None) -> None:
+    def run(self, services: Services, period: float | None) -> None:
         """Until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
         began = time.monotonic()
-        self._lived = exhibition.run(period)
+        self._lived = services.node.run(period)
         self._took = time.monotonic() - began
 
-    def summary(self, exhibition: Exhibition, video: Path | None) -> RunVerdict:
+    def summary(self, services: Services, video: Path | None) -> RunVerdict:
         """Say how it went, and return it."""
-        player = exhibition.node.player
+        node, robot, visitor = services.node, services[RobotPart], services.get(VisitorPart)
+        player, story = visitor.player if visitor else None, services.plan.story
         failure = player.failure if player else ""
         early = player is not None and not player.finished
-        troubles = [] if player else exhibition.node.troubles  # a story fails for those that it does not expect
+        troubles = [] if player else node.troubles  # a story fails for those that it does not expect
         how = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
-        how = INTERRUPTED if exhibition.node.interrupted and how != FAILED else how
+        how = INTERRUPTED if node.interrupted and how != FAILED else how
         ended = "The story failed" if failure else "Ended before the story was over" if early else "All well"
-        if (stopped := exhibition.node.robot.server.hold.stopped) and not player:
+        if (stopped := robot.server.hold.stopped) and not player:
             ended = f"Stopped by {stopped.by}"
         ended = "Ended with trouble" if troubles else ended
         real = isinstance(self._setup.clock, RealClock)
@@ -76,32 +77,35 @@ class Performance:
             lines.append(
                 f"the visitor's face ended {self.transcript.distance:.0f} px from the centre of the camera's image"
             )
-        lines += [*exhibition.node.robot.summary(), *exhibition.node.losses()]
+        lines += [*robot.summary(), *node.losses()]
         film = str(video.absolute()) if video else ""
         for line in [*lines, *([f"wrote the video {film}"] if film else [])]:
             print(f"  {line}")
-        print(f"Next: change a sentence in behaviors/{exhibition.project.behavior}.yaml during a run,")
+        print(f"Next: change a sentence in behaviors/{services.project.behavior}.yaml during a run,")
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
-        if (story := exhibition.node.story) and not film:
+        if story and not film:
             print(f"      `lumen run --story {story.name} --speed max --video {story.name}.mp4` makes a video of this.")
         failure = failure or next(iter(troubles), "")
         return RunVerdict(how, self._lived, self._took, failure, tuple(lines), film)
-
-    def _look_back(self, exhibition: Exhibition) -> float | None:
-        """How far from the centre of the image the face of the visitor is who leaves [px]."""
-        faces = exhibition.node.robot.faces
-        if faces is None or faces.last is None or faces.camera is None:
-            return None
-        return math.dist(faces.last, (faces.camera.width / 2, faces.camera.height / 2))
 
 
 class _VisitorsTranscript(Transcript):
     """A transcript that remembers how the robot looked at the visitor who left."""
 
     distance: float | None = None
-    left: Callable[[], float | None] = staticmethod(lambda: None)
+
+    def __init__(self, setup: Setup, project: Project, made: Sequence[Services]) -> None:
+        super().__init__(setup.clock.now, lambda: running(made, project).machine, unread=lambda: leave(made))
+        self._made = made
 
     def visitor_action(self, action: VisitorAction) -> None:
         super().visitor_action(action)
-        if isinstance(action, Leave) and (distance := self.left()) is not None:
+        if isinstance(action, Leave) and (distance := self._look_back()) is not None:
             self.distance = distance
+
+    def _look_back(self) -> float | None:
+        """Return the distance of the face of a visitor who leaves from the centre of the image [px]."""
+        faces = self._made[0][RobotPart].faces
+        if faces is None or faces.last is None or faces.camera is None:
+            return None
+        return math.dist(faces.last, (faces.camera.width / 2, faces.camera.height / 2))

@@ -2,42 +2,36 @@
 
 import argparse
 import os
-import signal
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext, suppress
-from functools import partial
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
-from lumen.app.exhibition import Exhibition
+from lumen.app.compose import begin, claim, compose
 from lumen.app.loudspeaker import Loudspeaker, Sounds
+from lumen.app.making.showing import FilmPlan
 from lumen.app.node import Node
 from lumen.app.one_robot import robots_of
-from lumen.app.parts.console import ConsolePart
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.processes.assembling import Plan, ProcessOptions, assemble
+from lumen.app.plan import Plan
 from lumen.app.processes.choosing import parts_of
-from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.reloader import MODES
-from lumen.app.run_start import WHOLE, BegunRun, started
+from lumen.app.run_start import BegunRun, started
+from lumen.app.services import Services
 from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
 from lumen.app.stories import home_of
-from lumen.bus import connect
-from lumen.buses.validated import validated
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.imperfection_options import configure_imperfections, set_up_robot
 from lumen.cli.main import ready
 from lumen.cli.model_option import configure_model, use_model
-from lumen.cli.performance import Performance
+from lumen.cli.performance import GREETING, Performance
 from lumen.cli.printing import clock_time
-from lumen.cli.run_choices import alert_desk, chosen_story, language_of, period_of
+from lumen.cli.run_choices import chosen_story, language_of, period_of
+from lumen.cli.run_plan import RobotRun, heed_signals, leave, plan_of, running
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
-from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
 from lumen.errors import BusUnreachableError, UsageError
-from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.running_project import is_substituted, project_to_run
 from lumen.modules.audio_track import AudioTrack
@@ -47,6 +41,7 @@ from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from lumen.upkeep.heap import give_back
 
+PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
 PRIORITY = -10
 """Of an exhibition in real time, as `nice` counts: that takes root, or a right such as systemd's `LimitNICE=-10`."""
 
@@ -94,6 +89,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="speak the simulated robot's texts with espeak-ng (default: none)",
     )
     add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write the speech to a file instead of playing it")
+    _configure_files(parser)
+    configure_format(parser)
+
+
+def _configure_files(parser: argparse.ArgumentParser) -> None:
+    """Add the options about saved files, and about the run before."""
+    add = parser.add_argument
     add(
         "--reload",
         choices=MODES,
@@ -102,7 +104,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add("--last-good", action="store_true", help="if the files have errors, start with the last ones that had none")
     add("--fresh", action="store_true", help="start from the beginning, even if the last run ended unexpectedly")
-    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -140,117 +141,95 @@ def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...])
 
 
 def _run(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
-    (project,), (run_directory,) = start.projects.values(), start.directories.values()
+    """Run one robot, or these parts of its exhibition."""
+    (project,), (directory,) = start.projects.values(), start.directories.values()
     story = chosen_story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"the story `{story.name}` has faults of the robot (`robot:`): play it with --robot recording")
     if story and options.robot == "none":
         raise UsageError("a story needs a robot: leave out --robot none")
-    period, language = period_of(options.period), language_of(project, options.language)
-    url = options.bus or os.environ.get("LUMEN_BUS") or project.bus
+    period = period_of(options.period)
+    one, url = RobotRun(project, directory, story), options.bus or os.environ.get("LUMEN_BUS") or project.bus
     if parts:
-        return _processes(options, project, story, parts, url, run_directory, period, language)
-    return _whole(options, project, story, url, run_directory, period, language)
+        return _processes(options, one, parts, url, period)
+    return _whole(options, one, url, period)
 
 
-def _whole(
-    options: argparse.Namespace,
-    project: Project,
-    story: Story | None,
-    url: str,
-    run_directory: RunDirectory,
-    period: float | None,
-    language: str,
-) -> RunVerdict:
+def _whole(options: argparse.Namespace, one: RobotRun, url: str, period: float | None) -> RunVerdict:
     """Run a whole exhibition in this process."""
+    project, story, made = one.project, one.story, list[Services]()
     video, size = film_path(options.video, options.robot), film_size(options.size)
     setup = set_up_robot(options, project, story)
     track = AudioTrack() if video else None
-    silence = _voice(options, setup, language or project.languages[0], track)
-    quiet = _sounding(options, project, setup, track)
-    performance = Performance(setup, lambda: exhibition.project)
-    try:
-        exhibition = Exhibition(
-            project, setup, url, story, performance.transcript,
-            run_directory=run_directory, reload=options.reload, language=language, fresh=options.fresh,
-            alerts=alert_desk(project, WHOLE, performance.transcript, story), record=options.record,
-        )  # fmt: skip
-        node = exhibition.node
-        performance.transcript.unread = lambda: node.interrupt(2, leave=True)
-        _heed_signals(node)
-        try:
-            if video:
-                node.add_film(video, track, size=size, progress=film_progress(project, story, period))
-            if project.console.wanted and options.speed != "max":
-                node.add(ConsolePart(run_directory.root, url, partial(performance.transcript.line, "console")))
-            node.claim()
-            performance.introduce(exhibition, run_directory, options.speed)
-            folder = None if story else home_of_run(run_directory.root, run_directory.robot)
-            node.add_modules(folder, awaited=options.speed == "max")
-            exhibition.start()
-            performance.run(exhibition, period)
-        finally:
-            exhibition.close()
-        run_directory.ended(exhibition.project)
-        run_directory.close(forget=not node.leaving)
-        return performance.summary(exhibition, video)
-    finally:
-        quiet()
-        silence()
+    performance = Performance(setup, project, made)
+    with _heard(options, one, setup, track):
+        film = FilmPlan(video, track, size, film_progress(project, story, period)) if video else None
+        more = {"film": film, "record": options.record, "greeting": GREETING}
+        plan = plan_of(options, one, (), url, setup, setup.clock, performance.transcript, **more)
+        with _composed(plan, made) as services:
+            performance.introduce(services, options.speed)
+            begin([services])
+            performance.run(services, period)
+        _ended(one, services)
+        return performance.summary(services, video)
 
 
 def _processes(
-    options: argparse.Namespace,
-    project: Project,
-    story: Story | None,
-    parts: Sequence[str],
-    url: str,
-    run_directory: RunDirectory,
-    period: float | None,
-    language: str,
+    options: argparse.Namespace, one: RobotRun, parts: tuple[str, ...], url: str, period: float | None
 ) -> RunVerdict:
     """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
+    project, story, made = one.project, one.story, list[Services]()
     _check_processes(options, story, parts, url)
     setup = set_up_robot(options, project, story) if ROBOT_PART in parts else None
-    speed = float(options.speed)
-    clock: Clock = setup.clock if setup else FollowingClock(speed)
-    transcript = Transcript(clock.now, lambda: node.project.machine)
-    how = ProcessOptions(url, speed, options.reload, language, options.fresh)
-    try:
-        bus = validated(connect(url, sender="+".join(parts)), project)
-    except BusUnreachableError as error:
-        raise error if options.only else BusUnreachableError(f"{error}, or use --bus memory://") from None
-    alerts = alert_desk(project, parts, transcript, story)
-    plan = Plan(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
-    node = assemble(plan)
-    transcript.unread = lambda: node.interrupt(2, leave=True)
-    if project.console.wanted and BRAIN in parts:
-        node.parts.append(ConsolePart(run_directory.root, url, partial(transcript.line, "console")))
-    visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
-    if visitor and story is None:
-        greeting = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
-        node.parts.append(TypedVisitorPart(visitor, transcript, greeting))
-    place, what = url.rpartition("@")[2], ", ".join(parts)
-    node.claimed = lambda: print(f"{project.name}: {what} of {project.robot}, on {place}, ready after {ready():.1f} s.")
-    if setup:
-        node.closing.append(_voice(options, setup, language or project.languages[0]))
-        node.closing.append(_sounding(options, project, setup))
-    _heed_signals(node)
-    try:
-        lived = node.run(period)
-    finally:
-        node.close()
-    troubles = [] if story else node.troubles
+    clock: Clock = setup.clock if setup else FollowingClock(float(options.speed))
+    transcript = Transcript(clock.now, lambda: running(made, project).machine, unread=lambda: leave(made))
+    more = {"record": options.record, "greeting": PROCESS_GREETING}
+    plan = plan_of(options, one, parts, url, setup, clock, transcript, **more)
+    hint = "" if options.only else ", or use --bus memory://"
+    with _heard(options, one, setup), _composed(plan, made, hint) as services:
+        place, what = url.rpartition("@")[2], ", ".join(parts)
+        print(f"{project.name}: {what} of {project.robot}, on {place}, ready after {ready():.1f} s.")
+        begin([services])
+        lived = services.node.run(period)
+    if BRAIN in parts:
+        _ended(one, services)
+    return _summed_up(services.node, lived, [] if story else services.node.troubles)
+
+
+def _summed_up(node: Node, lived: float, troubles: Sequence[str]) -> RunVerdict:
+    """Say how a process of several went, and return it."""
     with_trouble = "Ended with trouble" if troubles else "Ended"
     print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")
     summary = (*RunVerdict.listed(troubles), *node.summary())
     for line in summary:
         print(f"  {line}")
-    if BRAIN in parts:
-        run_directory.ended(node.project)
-        run_directory.close(forget=not node.leaving)
     ended = INTERRUPTED if node.interrupted else FAILED if node.failed else TROUBLED if troubles else WELL
     return RunVerdict(ended, lived, failure=next(iter(troubles), ""), summary=summary)
+
+
+@contextmanager
+def _composed(plan: Plan, made: list[Services], hint: str = "") -> Iterator[Services]:
+    """Compose an exhibition that claims what it is, ends at its end, and obeys signals; it is put into `made`.
+
+    `hint` ends the message of an error about a bus that can't be reached.
+    """
+    try:
+        services = compose(plan)
+    except BusUnreachableError as error:
+        raise BusUnreachableError(f"{error}{hint}") if hint else error from None
+    made.append(services)
+    heed_signals(made)
+    try:
+        claim(made)
+        yield services
+    finally:
+        services.node.close()
+
+
+def _ended(one: RobotRun, services: Services) -> None:
+    """Note in its home that a run ended as it should."""
+    one.directory.ended(services.project)
+    one.directory.close(forget=not services.node.leaving)
 
 
 @contextmanager
@@ -266,11 +245,6 @@ def _going_first() -> Iterator[None]:
         if usual is not None:
             with suppress(OSError):
                 os.setpriority(os.PRIO_PROCESS, 0, usual)
-
-
-def _heed_signals(node: Node) -> None:
-    signal.signal(signal.SIGINT, lambda *_: node.interrupt())
-    signal.signal(signal.SIGTERM, lambda *_: node.interrupt(2, leave=True))
 
 
 def _check_processes(options: argparse.Namespace, story: Story | None, parts: Sequence[str], url: str) -> None:
@@ -290,23 +264,22 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
         )
 
 
-def _sounding(
-    options: argparse.Namespace, project: Project, setup: Setup, track: AudioTrack | None = None
-) -> Callable[[], None]:
-    """Let the simulated robot's sound files be heard here, unless time flies, and in the film; what ends it."""
-    if not isinstance(setup.robot, Sounds):
-        return lambda: None
-    loudspeaker = Loudspeaker(Path(project.root), track, audible=options.speed != "max")
-    setup.robot.sound_with(loudspeaker)
-    return loudspeaker.close
+@contextmanager
+def _heard(
+    options: argparse.Namespace, one: RobotRun, setup: Setup | None, track: AudioTrack | None = None
+) -> Iterator[None]:
+    """Let a simulated robot be heard: its voice if the flags ask for one, and its sound files, here and in the film.
 
+    Raises UsageError or ModuleError.
+    """
+    with ExitStack() as stack:
+        if setup and (options.voice != "none" or options.sound):
+            from lumen.app.voice import voiced  # few runs need espeak-ng
 
-def _voice(
-    options: argparse.Namespace, setup: Setup, language: str, track: AudioTrack | None = None
-) -> Callable[[], None]:
-    """Give the robot the voice that the flags ask for; what ends it. Raises UsageError or ModuleError."""
-    if options.voice == "none" and not options.sound:
-        return lambda: None
-    from lumen.app.voice import voiced  # nobody else needs espeak-ng
-
-    return voiced(setup, options.voice, options.sound, language, track)
+            language = language_of(one.project, options.language) or one.project.languages[0]
+            stack.callback(voiced(setup, options.voice, options.sound, language, track))
+        if setup and isinstance(setup.robot, Sounds):
+            loudspeaker = Loudspeaker(Path(one.project.root), track, audible=options.speed != "max")
+            setup.robot.sound_with(loudspeaker)
+            stack.callback(loudspeaker.close)
+        yield

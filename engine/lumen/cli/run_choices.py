@@ -14,10 +14,8 @@ from lumen.language.stories import Story
 from lumen.loading.units import seconds
 
 
-def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator, story: Story | None) -> AlertDesk | None:
-    """Who is told of what goes wrong; what a story plays is no trouble."""
-    if story:
-        return None
+def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator) -> AlertDesk:
+    """Return the desk that sends alerts about these parts."""
     origin = Origin(project.name, project.robot, tuple(parts))
     return AlertDesk(project.alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
 

@@ -17,7 +17,10 @@ WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magent
 
 
 class Transcript(Narrator):
-    """Prints what happens, a line each, with simulated time; and whose it is, where a `robot` is named."""
+    """Prints what happens, a line each, with simulated time; and whose it is, if a `robot` is named.
+
+    `unread` is called when the reader of the lines is gone.
+    """
 
     explains = True
 
@@ -27,12 +30,12 @@ class Transcript(Narrator):
         machine: Callable[[], MachineDefinition],
         stream: TextIO | None = None,
         robot: str = "",
+        unread: Callable[[], None] = lambda: None,
     ) -> None:
         super().__init__(now, machine)
         self._stream = stream or sys.stdout
         self._robot = f"{robot} " if robot else ""
-        self.unread: Callable[[], None] = lambda: None
-        """What is done once nobody reads it any more."""
+        self._unread = unread
         self._colour = coloured(self._stream)
 
     def line(self, who: str, text: str) -> None:
@@ -48,7 +51,7 @@ class Transcript(Narrator):
         except OSError as error:  # the show goes on where its log is full, and ends in order where nobody reads on
             hush(self._stream)
             if isinstance(error, BrokenPipeError):
-                self.unread()
+                self._unread()
 
 
 def _wrapped(text: str, indent: int) -> str:

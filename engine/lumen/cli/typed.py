@@ -2,12 +2,13 @@
 
 import queue
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import TextIOWrapper
 
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
 from lumen.app.parts.visitor import VisitorPart
+from lumen.app.services import Services
 from lumen.cli.typed_commands import TypedCommands
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, Visitor
@@ -21,17 +22,25 @@ MAX_WAITING_LINES = 100
 """Lines that wait to be said: a program that types faster than visitors speak waits, too."""
 
 
+def typed_visitor(services: Services) -> "TypedVisitorPart | None":
+    """Make the part that lets whoever types be the visitor, if there is a visitor that no story plays."""
+    visitor = services.get(VisitorPart)
+    if visitor is None or services.plan.story:
+        return None
+    return TypedVisitorPart(visitor, services.narrator, services.plan.options["greeting"], services.nap.end)
+
+
 class TypedVisitorPart(Part):
     """Reads lines on a thread of its own, for a visitor; at the end of input they walk away.
 
     Where there is no terminal and nothing ever comes, nobody types: the visitor stays, and the exhibition goes on.
-    `greeting` is what whoever types is told at the beginning.
+    `greeting` is the first text for the person who types; `wake` is called, on any thread, with each line.
     """
 
     patient = True
 
-    def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str) -> None:
-        self.needs = visitor.needs
+    def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str, wake: Callable[[], None]) -> None:
+        self.needs, self._wake = visitor.needs, wake
         self._visitor, self._narrator, self._greeting = visitor.actor, narrator, greeting
         self._commands = TypedCommands(visitor.actor, narrator, visitor.environment)
         self._lines: queue.Queue[str | None] = queue.Queue(MAX_WAITING_LINES)
@@ -72,6 +81,6 @@ class TypedVisitorPart(Part):
         while sys.stdin and (line := sys.stdin.readline(MAX_LINE_CHARACTERS)):
             typed = True
             self._lines.put(line.strip())
-            self.wake()
+            self._wake()
         if typed:
             self._lines.put(None)

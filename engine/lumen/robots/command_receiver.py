@@ -4,7 +4,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import count
@@ -23,7 +23,7 @@ from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, CommandRec
 from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.executor import FOREIGN
-from lumen.robots.person_hold import PersonHold
+from lumen.robots.person_hold import HoldListener, PersonHold
 from lumen.robots.robot_routes import (
     AIM_ROUTE,
     COMMAND_ROUTE,
@@ -66,6 +66,23 @@ class _Arrival(NamedTuple):
     at: float
 
 
+class CommandListener(HoldListener):
+    """A listener to the commands on the bus; each method may be left out."""
+
+    def given(self, command: RobotCommand, id: str) -> None:
+        """The robot begins a command."""
+
+    def refused(self, method: str, reason: str) -> None:
+        """The robot does not begin a command; `method` is empty if it could not be read."""
+
+    def urgent(self) -> None:
+        """A message came, on any thread, that stops the robot: `begin` should be called soon."""
+
+    def is_brains(self, id: str) -> bool:
+        """Return whether a command of this id is one of the behaviour's."""
+        return False
+
+
 class CommandReceiver:
     """Receives the commands that modules send to the robot's keys, as `m1`, `m2`, …, and those of a brain, as `b1`, ….
 
@@ -78,9 +95,8 @@ class CommandReceiver:
     What stops the robot is performed each time that it is sent, with any id; only a message that the bus delivers a
     second time is not.
 
-    `clock` [s] measures how long they have waited; `begins` is called for each that begins, `refused` with the method
-    and the reason for each that may not, `hurry` when `begin` should be called soon, because a message came that stops
-    the robot. Commands that move the robot are refused while a person keeps it still (`hold`).
+    `clock` [s] measures how long they have waited. Commands that move the robot are refused while a person keeps it
+    still (`hold`).
     """
 
     def __init__(
@@ -89,14 +105,11 @@ class CommandReceiver:
         robot: Robot,
         bus: Bus,
         clock: Callable[[], float] = time.monotonic,
-        begins: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
-        refused: Callable[[str, str], None] = lambda _method, _reason: None,
-        hurry: Callable[[], None] = lambda: None,
+        listeners: Sequence[CommandListener] = (),
     ) -> None:
         self._project, self._robot, self._bus, self._clock = project, robot, bus, clock
-        self._begins, self._tell_refused, self._hurry = begins, refused, hurry
-        self.hold = PersonHold()
-        self.is_brains: Callable[[str], bool] = lambda _id: False
+        self._listeners = listeners
+        self.hold = PersonHold(*listeners)
         self._came: deque[_Arrival] = deque()
         self._own_waiting = self._others_waiting = 0
         self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
@@ -201,7 +214,7 @@ class CommandReceiver:
 
     def _receive(self, message: Message) -> None:
         """On whichever thread the bus has."""
-        stopping, own = stops(message.body), self.is_brains(own_id(message.body))
+        stopping, own = stops(message.body), self._is_brains(own_id(message.body))
         with self._coming:
             refusal = ENDED if self._closed else "" if stopping else self._full(own=own)
             if not refusal:
@@ -212,7 +225,8 @@ class CommandReceiver:
             self.drops.add(message.key, refusal)
             self._refuse(message, refusal)
         elif stopping:
-            self._hurry()
+            for listener in self._listeners:
+                listener.urgent()
 
     def _receive_aim(self, message: Message) -> None:
         self._aims.append(_Arrival(message, self._clock()))
@@ -279,7 +293,8 @@ class CommandReceiver:
 
     def _warn(self, key: str, method: str, reason: str) -> None:
         if self._unfit(key, reason):
-            self._tell_refused(method, reason)
+            for listener in self._listeners:
+                listener.refused(method, reason)
 
     def _check_age(self, arrival: _Arrival) -> None:
         route = self._project.routes.get(COMMAND_ROUTE)
@@ -291,7 +306,7 @@ class CommandReceiver:
             self._language = command.language
             self._reports.change(record, FINISHED)
             return
-        own = self.is_brains(record.id)
+        own = self._is_brains(record.id)
         if reason := self.hold.admit(command, behavior=own):
             raise RobotRefusedError(reason)
         if isinstance(command, Perform):
@@ -315,7 +330,8 @@ class CommandReceiver:
         record.at = f"{OWN}{next(self._own_numbers)}" if own else self._number()
         self._reports.accept(record)
         self._robot.start(record.at, command)
-        self._begins(command, record.id)
+        for listener in self._listeners:
+            listener.given(command, record.id)
 
     def _remembered(self, motion: MotionDefinition) -> MotionDefinition:
         """Return the remembered motion that is equal: a brain in another process sends a motion with each play."""
@@ -352,6 +368,9 @@ class CommandReceiver:
             return
         if isinstance(command, Aim) and not self.hold.admit(command, behavior=False):
             self._robot.start("", command)
+
+    def _is_brains(self, id: str) -> bool:
+        return any(listener.is_brains(id) for listener in self._listeners)
 
     def _number(self) -> str:
         return f"{FOREIGN}{next(self._numbers)}"

@@ -1,6 +1,5 @@
 """A robot that a person stopped moves for nobody, until a person lets it."""
 
-from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import NamedTuple
 
@@ -30,19 +29,26 @@ def on_head(event: Event) -> bool:
     return event.name == "touched" and isinstance(event.data, dict) and event.data.get("sensor") in HEAD_SENSORS
 
 
-class PersonHold:
-    """Who stopped the robot (`stopped`), None where nobody has.
+class HoldListener:
+    """Hears that a person stopped the robot, or lets it move again."""
 
-    A command that moves it is refused then, whoever sends it. It ends by `release`, or where the behaviour moves the
-    robot after a hand was on its head. While the behaviour lets the robot rest, others do not move it either. Those in
-    `changed` are called with each change, those in `noticed` with what it is for the behaviour: the event `stop` or
-    `resume`, `by` whom.
+    def held(self, stopped: StoppedBy | None) -> None:
+        """A person holds the robot, or lets it go (None)."""
+
+    def noticed(self, event: Event) -> None:
+        """The event for the behaviour: `stop` or `resume`, `by` whom."""
+
+
+class PersonHold:
+    """The person who stopped the robot (`stopped`), None if it may move.
+
+    A command that moves the robot is then refused, whoever sends it. The hold ends by `release`, or if the behaviour
+    moves the robot after a hand was on its head. While the behaviour lets the robot rest, others do not move it either.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *listeners: HoldListener) -> None:
+        self._listeners = listeners
         self.stopped: StoppedBy | None = None
-        self.changed: list[Callable[[StoppedBy | None], None]] = []
-        self.noticed: list[Callable[[Event], None]] = []
         self._touched, self._rests = False, False
 
     def stop(self, by: str, since: datetime | None = None) -> None:
@@ -76,8 +82,8 @@ class PersonHold:
         return "" if behavior or not self._rests else f"the behaviour lets the robot rest: {HELD}"
 
     def _notice(self, event: Event) -> None:
-        for call in self.noticed:
-            call(event)
+        for listener in self._listeners:
+            listener.noticed(event)
 
     def _release(self) -> None:
         if self.stopped:
@@ -85,5 +91,5 @@ class PersonHold:
 
     def _change(self, stopped: StoppedBy | None) -> None:
         self.stopped, self._touched = stopped, False
-        for call in self.changed:
-            call(stopped)
+        for listener in self._listeners:
+            listener.held(stopped)

@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import partial
 from itertools import count
@@ -16,7 +16,7 @@ from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, Image, KnowsListeners, Robot, RobotCommand, Sense
-from lumen.robots.command_receiver import CommandReceiver
+from lumen.robots.command_receiver import CommandListener, CommandReceiver
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.robot_routes import NOTICED_ROUTE, RECORDING_ROUTE, TEXT_ROUTE, publish_on
 from lumen.robots.sense_codec import encode_reading, image_body
@@ -42,11 +42,10 @@ class RobotServer:
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
     one seed says the same things in the same order; `settle` waits until they have, and once for a first image, which
     takes as long as several others: OpenGL begins with it. `date` is what images are dated; `clock` [s] measures how
-    long a command has waited: time as modules live through it, whatever the robot's clock says. `started` is called
-    with each command that the robot is given from the bus and its id, `refused` with the method and the reason for each
-    that it is not given, `hurry` when the next sample can't wait: something came that stops the robot. Nobody moves a
-    robot that a person stopped (`hold`). A `direct` one publishes readings but images in `sample` itself, for time that
-    waits for whoever hears them: threads would take turns at every tick.
+    long a command has waited: time as modules live through it, whatever the robot's clock says. `listeners` hear of the
+    commands that come over the bus. Nobody moves a robot that a person stopped (`hold`). A `direct` one publishes
+    readings but images in `sample` itself, for time that waits for whoever hears them: threads would take turns at
+    every tick.
     """
 
     def __init__(
@@ -57,12 +56,10 @@ class RobotServer:
         *,
         date: Callable[[], str] = _date,
         clock: Callable[[], float] = time.monotonic,
-        started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
-        refused: Callable[[str, str], None] = lambda _method, _reason: None,
-        hurry: Callable[[], None] = lambda: None,
+        listeners: Sequence[CommandListener] = (),
         direct: bool = False,
     ) -> None:
-        self._robot, self._bus, self._started, self._direct = robot, bus, started, direct
+        self._robot, self._bus, self._direct = robot, bus, direct
         self._listeners = bus.ability(KnowsListeners)
         self._frames, self._date = count(), date
         self._project = project
@@ -73,7 +70,7 @@ class RobotServer:
         self._first_image: PendingReading | None = None
         self._seen = False
         self._listen(project)
-        self._orders = CommandReceiver(project, robot, bus, clock, self._given, refused, hurry)
+        self._orders = CommandReceiver(project, robot, bus, clock, (*listeners, _Speech(self)))
         self.hold = self._orders.hold
         self._closed = False
 
@@ -84,10 +81,6 @@ class RobotServer:
     def resume(self, by: str) -> None:
         """Let a robot move that a person stopped; where the behaviour has nothing to do for that, it stands up."""
         self._orders.resume(by)
-
-    def follow(self, is_brains: Callable[[str], bool]) -> None:
-        """Take commands for those of the behaviour where this says so of their ids."""
-        self._orders.is_brains = is_brains
 
     @property
     def counts(self) -> Mapping[str, PublishCounts]:
@@ -173,10 +166,6 @@ class RobotServer:
         if not all(ended):
             _log.warning("a sense is still running %g s after it was closed", SENSES_CLOSE_TIMEOUT)
 
-    def _given(self, command: RobotCommand, id: str) -> None:
-        self._started(command, id)
-        self.begins(command, id)
-
     def _tell(self, route: str, body: dict[str, Any], origin: MessageOrigin = UNKNOWN_ORIGIN) -> None:
         try:
             publish_on(self._bus, self._project, route, body, origin=origin)
@@ -233,3 +222,13 @@ class RobotServer:
         route, eyes = self._routes.get(name), self._project.body.roles.eyes
         camera = eyes.camera if eyes else ""
         return image_body(image, next(self._frames), self._date(), route.size if route else None, camera)
+
+
+class _Speech(CommandListener):
+    """Publishes the texts that commands from the bus let the robot say."""
+
+    def __init__(self, server: RobotServer) -> None:
+        self._server = server
+
+    def given(self, command: RobotCommand, id: str) -> None:
+        self._server.begins(command, id)

@@ -4,10 +4,10 @@ The chart knows nothing of it. Whether an event would take one is asked of the p
 it was, and that is what the journal holds.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import count
 from math import inf
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from lumen.errors import LumenError
 from lumen.interpreters.explaining.names import machines_in
@@ -17,6 +17,7 @@ from lumen.language.approvals import Autonomy
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.machines import Approval, MachineDefinition, Transition
+from lumen.language.people import PersonName
 
 MAX_WAITING = 20
 """Events that may wait for GO at once; the oldest gives way."""
@@ -47,17 +48,25 @@ class HeldEvent(NamedTuple):
         return inf if within is None else self.since + within
 
 
+class ApprovalWatcher(Protocol):
+    """An observer of events that may wait for approval."""
+
+    def approval(self, how: str, held: HeldEvent, why: str) -> None:
+        """An event `waits`, `goes` or `stays`, and why."""
+        ...
+
+
 class Approvals:
     """Holds events back while autonomy is `ask`.
 
-    `tell` hears what became of each: that it `waits`, `goes` or `stays`, and why. `marked` is whether the machine has
+    `watchers` hear what becomes of each. `marked` is whether the machine has
     transitions that anything could wait for. Of several events for one transition the first waits.
     """
 
     def __init__(self) -> None:
         self.autonomy: Autonomy = "ask"
         self.waiting: tuple[HeldEvent, ...] = ()
-        self.tell: Callable[[str, HeldEvent, str], None] = lambda _how, _held, _why: None
+        self.watchers: list[ApprovalWatcher] = []
         self.marked = False
         self._ids = count(1)
         self._released: list[Event] = []
@@ -97,7 +106,7 @@ class Approvals:
             if found:
                 kept.append(held._replace(marked=found))
             else:
-                self.tell("stays", held, why)
+                self._tell("stays", held, why)
         self.waiting = tuple(kept)
 
     def decide(self, id: str, by: str, *, go: bool) -> bool:
@@ -114,8 +123,8 @@ class Approvals:
         while level == "alone" and self.waiting:
             self.decide("", by, go=True)
 
-    def forget(self) -> None:
-        """Let everything stay that waits: a name may stand in it."""
+    def forget(self, person: PersonName) -> None:
+        """Let every event stay that waits, because it may contain the name."""
         while self.waiting:
             self._end(self.waiting[0], FORGOTTEN, None)
 
@@ -127,11 +136,15 @@ class Approvals:
         found, self._released = self._released, []
         return [event._replace(at=now) for event in found]
 
+    def _tell(self, how: str, held: HeldEvent, why: str) -> None:
+        for watcher in self.watchers:
+            watcher.approval(how, held, why)
+
     def _hold(self, held: HeldEvent) -> None:
         if len(self.waiting) >= MAX_WAITING:
             self._end(self.waiting[0], REPLACED, None)
         self.waiting = (*self.waiting, held)
-        self.tell("waits", held, "")
+        self._tell("waits", held, "")
 
     def _end(self, held: HeldEvent, why: str, cause: Cause | None) -> None:
         """It goes for that cause, or stays."""
@@ -139,7 +152,7 @@ class Approvals:
         if cause:
             self._passing.append(cause)
             self._released.append(held.event._replace(cause=cause))
-        self.tell("goes" if cause else "stays", held, why)
+        self._tell("goes" if cause else "stays", held, why)
 
 
 def _marked_by(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> MarkedTransition | None:

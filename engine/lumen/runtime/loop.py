@@ -1,9 +1,9 @@
 """The loop of a running behaviour: the order of things, fifty times a second."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import date
 from math import inf
-from typing import Any
+from typing import Any, Protocol
 
 from lumen.interpreters.explaining.pressing import pressed
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
@@ -15,15 +15,16 @@ from lumen.language.approvals import Autonomy
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
-from lumen.ports import Bus, Clock, Robot
+from lumen.ports import Bus, Clock, Robot, RobotCommand
 from lumen.runtime.causes import caused
 from lumen.runtime.cues import MotionCues
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.life import LifeDirector
 from lumen.runtime.performer import Performer
+from lumen.runtime.questions import Questions
 from lumen.runtime.regulation import Regulation
 from lumen.runtime.resuming import Resumption
-from lumen.runtime.runtime import Rescue, Runtime
+from lumen.runtime.runtime import Runtime
 from lumen.runtime.shared_board import SharedBoard
 from lumen.runtime.tracking import LocalTracking, TrackingService
 from lumen.runtime.troubles import RunTrouble, trouble_of_answer, troubles_of_step
@@ -55,31 +56,46 @@ class Observer:
         """A trouble occurred: the run no longer counts as successful."""
 
 
+class Rescuer(Protocol):
+    """A handler of faults that may switch to another bundle."""
+
+    def rescue(self, error: Exception) -> Sequence[Command] | None:
+        """Switch to another bundle, and return the commands for that; None to let the fault end the run."""
+        ...
+
+
 class BehaviorLoop:
     """A project on a robot, a bus and a clock.
 
     At each tick: the clock waits, tracking lives, what happened becomes events, the behaviour steps, its commands are
     performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
-    `brain.lost`. Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
-    `tracking` lets controllers follow what is seen; without one that is done here. `rests` is whether the behaviour has
+    `brain.lost`. If a tick fails for a fault of the bundle or of ours, one of the `rescuers` may switch to
+    another bundle.
+    `tracking` lets controllers follow what is seen; without one that is done here. `refuse` returns the reason why the
+    robot may not begin a command, empty if it may. `rests` is whether the behaviour has
     let the robot rest. `wall_clock` says where the time of day has become another. `step` is the number of the step
     whose commands are being performed (`Runtime.steps`).
     """
 
     def __init__(
-        self, project: Project, robot: Robot, bus: Bus, clock: Clock, tracking: TrackingService | None = None
+        self,
+        project: Project,
+        robot: Robot,
+        bus: Bus,
+        clock: Clock,
+        tracking: TrackingService | None = None,
+        refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
         self.observers: list[Observer] = []
-        self.rescue: Rescue = lambda _: None
+        self.rescuers: list[Rescuer] = []
         self.wall_clock: WallClockWatch | None = None
-        self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error), self._dropped)
+        self.runtime = Runtime(project, self._stepped, self._rescued, self._dropped)
         self.inbox, self.board = Inbox(bus), SharedBoard(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
         self.regulation = Regulation(project, bus)
-        self.performer = Performer(robot, bus, self._track)
-        self.performer.questions.today = self._today
-        self.performer.questions.offers = lambda: offers(self.project.machine, self.runtime.snapshot)
+        questions = Questions(bus, self._today, lambda: offers(self.project.machine, self.runtime.snapshot))
+        self.performer = Performer(robot, bus, self._track, refuse, questions)
         self._cues = MotionCues()
         self._life = LifeDirector(robot)
         self._events: list[Event] = []
@@ -214,6 +230,10 @@ class BehaviorLoop:
         self._perform(plan.leaving, self._last, old)
         self._perform(plan.entering, self._last)
 
+    def _rescued(self, error: Exception) -> Sequence[Command] | None:
+        found = (rescuer.rescue(error) for rescuer in self.rescuers)
+        return next((commands for commands in found if commands is not None), None)
+
     def _listen(self, project: Project) -> None:
         self.inbox.listen(project)
         self.performer.questions.listen(project)
@@ -311,7 +331,7 @@ class BehaviorLoop:
 
     def _recover(self, error: Exception, now: float) -> None:
         """Go on with another bundle after a fault; raises it where there is none."""
-        commands = self.rescue(error)
+        commands = self._rescued(error)
         if commands is None:
             raise error
         self._perform(commands, now)

@@ -50,12 +50,19 @@ class Performer:
     places, `questions` finds answers.
     """
 
-    def __init__(self, robot: Robot, bus: Bus, track: Callable[[Track], None]) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        bus: Bus,
+        track: Callable[[Track], None],
+        refuse: Callable[[RobotCommand], str] = lambda _: "",
+        questions: Questions | None = None,
+    ) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
         self.navigator = Navigator(robot, self._begin)
-        self.questions = Questions(bus)
-        self.refuse: Callable[[RobotCommand], str] = lambda _: ""
+        self.questions = questions or Questions(bus)
+        self.refuse = refuse
 
     def refusal(self, project: Project, command: Command) -> str:
         """Return the reason why the robot may not begin a command; empty if it may, or if no robot performs it."""

@@ -55,10 +55,10 @@ class Questions:
     the number of the visit. While it is `silenced` by somebody, the module is not asked, and what it says is ignored.
     """
 
-    def __init__(self, bus: Bus) -> None:
-        self._bus = bus
-        self.today: Callable[[], date | None] = lambda: None
-        self.offers: Callable[[], Mapping[str, Any]] = dict
+    def __init__(
+        self, bus: Bus, today: Callable[[], date | None] = lambda: None, offers: Callable[[], Mapping[str, Any]] = dict
+    ) -> None:
+        self._bus, self._today, self._offers = bus, today, offers
         self.visit, self._home = 0, ""
         self.silenced = ""
         self._fillers: Mapping[str, str] = {}
@@ -100,7 +100,7 @@ class Questions:
             return [_unanswered(id, now, NOBODY)]
         if self.silenced:
             return [_unanswered(id, now, f"{NOBODY}: {self.silenced} has switched off the language model")]
-        offers = {} if "@" in id else self.offers()
+        offers = {} if "@" in id else self._offers()
         body = {
             "id": id, "question": asked.question, "language": asked.language, "robot": project.robot,
             "within": asked.within, "place": asked.place, "visit": self.visit, "offers": offers,
@@ -180,7 +180,7 @@ class Questions:
         from lumen.interpreters.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
         from lumen.interpreters.retrieval.trials import weights_of
 
-        today = self.today()
+        today = self._today()
         known = (project.knowledge, project.questions, project.robot, language, today)
         if self._retriever is None or self._known != known:
             passages = project.knowledge.values()

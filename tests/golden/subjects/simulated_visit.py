@@ -42,7 +42,7 @@ def visit(root: Path) -> Iterator[str]:
             exhibition.run(EVERY)
             yield from (f"{exhibition.now:.2f} s {in_one_line(command_text(command))}" for command in told)
             told.clear()
-            joints = exhibition.node.setup.robot.read(Sense.JOINT)
+            joints = exhibition.services.setup.robot.read(Sense.JOINT)
             if not names:
                 names = joints.names
                 yield " ".join(["time", *names, "x", "y", "theta"])

@@ -36,12 +36,13 @@ MAX_WAITING = 50
 
 
 class ReloadTaker:
-    """Has files taken by the reload of a running exhibition."""
+    """Has files taken by the reload of a running exhibition; `installed` is called when they are on the disk."""
 
-    def __init__(self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home) -> None:
-        self._root, self._reloader, self._behavior = root, reloader, behavior
+    def __init__(
+        self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home, installed: Callable[[], None]
+    ) -> None:
+        self._root, self._reloader, self._behavior, self._installed = root, reloader, behavior, installed
         self._store = SnapshotStore(home)
-        self.installed: Callable[[], None] = lambda: None
 
     @property
     def running(self) -> str:
@@ -70,7 +71,7 @@ class ReloadTaker:
 
         def change() -> Mapping[str, bytes]:
             there = install(self._root, files)
-            self.installed()
+            self._installed()
             return there
 
         self._reloader.write(change)
@@ -97,13 +98,12 @@ class FleetPart(Part):
         self._bus, self._home = bus.unchecked, home
         self.counter = MeasureCounter(fleet.measures)
         behavior.loop.observers.append(self.counter)
-        taker = ReloadTaker(root, reloader, behavior, home)
         memory = remember(home, self._robot)
+        taker = ReloadTaker(root, reloader, behavior, home, lambda: written(home, self._robot, memory))
         self.agent = FleetAgent(
             house, self._robot, fleet.key, taker, memory, bundle_folder(root),
             save=lambda memory: keep(home, self._robot, memory), tell=tell, incident=self._incident,
         )  # fmt: skip
-        taker.installed = lambda: written(home, self._robot, memory)
         self._came: deque[Message] = deque(maxlen=MAX_WAITING)
         self._told, self._as = time.monotonic(), ""
         self._counting, self._numbered = ("", 0.0), time.monotonic()

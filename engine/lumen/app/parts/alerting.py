@@ -37,6 +37,7 @@ class AlertPart(Part, Observer):
     """
 
     patient = True
+    watches = True
 
     def __init__(
         self,
@@ -81,7 +82,6 @@ class AlertPart(Part, Observer):
         self._notice(event)
 
     def noticed(self, event: Event) -> None:
-        """What a robot notices whose brain is somewhere else, or nowhere."""
         if self._presence and self._presence.find(BRAIN) is None:
             self._notice(event)
             if event.name == "fallen":

@@ -1,7 +1,6 @@
 """The brain: the behaviour, among whoever else is there."""
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
 
 from lumen.app.causes import innermost
 from lumen.app.live_behavior import LiveBehavior
@@ -20,8 +19,7 @@ RUN_BEFORE, ENGINE = "the run before", "the engine"
 class BrainPart(Part):
     """Runs the behaviour on a robot of this process.
 
-    `recover` is asked at the beginning how to go on with the run before, or to begin. `hold` is that of the robot: what
-    it refuses does not begin, and what it notices the behaviour hears of.
+    `recover` returns how the behaviour begins: where the run before ended, or anew. `hold` is that of the robot.
     """
 
     name = BRAIN
@@ -39,10 +37,6 @@ class BrainPart(Part):
         self._recover = recover
         self._language, self._interrupted = language, False
         self._hold = hold
-        if hold:
-            hold.noticed.append(behavior.loop.happen)
-            behavior.loop.performer.refuse = partial(hold.admit, behavior=True)
-        behavior.loop.observers.append(narrator)
 
     @property
     def project(self) -> Project:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from lumen.app.film_progress import FilmProgress
 from lumen.app.film_sound import add_sound
+from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
 from lumen.errors import UsageError
 from lumen.language.commands import Command, Play, Say, Start
@@ -22,10 +23,13 @@ class FilmPart(Part, Observer):
     another robot.
     """
 
+    watches = True
+
     def __init__(
         self,
         path: Path,
         robot: Robot,
+        narrator: Narrator,
         track: AudioTrack | None = None,
         *,
         size: tuple[int, int] | None = None,
@@ -41,6 +45,7 @@ class FilmPart(Part, Observer):
         self._moments = FilmMoment
         self._film, self._path, self._track = Film(path, robot, size=size or FILM_SIZE, title=title), path, track
         self._progress = progress
+        narrator.watchers.append(self)
         self._saying = ""
         self._now = 0.0
 

@@ -8,39 +8,31 @@ from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.verbs import verb_of
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
+from lumen.robots.command_receiver import CommandListener
 
 WHO = "command"
 
 
-class ForeignCommands:
-    """Hears what a robot is given over the bus, and what it refuses; `is_brains` says of an id whether it is ours.
+class ForeignCommands(CommandListener):
+    """Tells of the commands that a robot gets over the bus, and of those that it refuses.
 
     `record` keeps an entry of the journal.
     """
 
-    def __init__(
-        self,
-        narrator: Narrator,
-        *,
-        is_brains: Callable[[str], bool] = lambda _: False,
-        record: Callable[[Mapping[str, Any]], None] = lambda _: None,
-    ) -> None:
-        self._narrator, self._is_brains, self._record = narrator, is_brains, record
+    def __init__(self, narrator: Narrator, record: Callable[[Mapping[str, Any]], None] = lambda _: None) -> None:
+        self._narrator, self._record = narrator, record
 
     def given(self, command: RobotCommand, id: str) -> None:
-        """The robot begins it."""
-        if isinstance(command, Aim) or self._is_brains(id):
+        if isinstance(command, Aim) or self.is_brains(id):
             return
         self._narrator.line(WHO, words(command))
         self._record({"command": words(command), "id": id})
 
     def refused(self, method: str, reason: str) -> None:
-        """The robot does not."""
         self._narrator.line(WHO, f"refused: {method or 'a command'}, for {reason}")
         self._record({"command": method, "refused": reason})
 
     def noticed(self, event: Event) -> None:
-        """A person stopped the robot, or let it move again."""
         by = event.data.get("by", "") if isinstance(event.data, dict) else ""
         self._narrator.line("operator", f"{event.name}, by {by}")
         self._record({event.name: by})

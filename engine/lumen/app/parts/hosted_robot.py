@@ -1,15 +1,16 @@
 """A robot that is hosted on the bus, for the brain that comes first."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from lumen.app.narrator import Narrator
 from lumen.app.parts.foreign_commands import ForeignCommands, words
 from lumen.app.parts.guard import BrainGuard
-from lumen.app.parts.kept_hold import forget_hold, keep_hold
-from lumen.app.parts.robot import RobotPart
+from lumen.app.parts.kept_hold import KeptHold, forget_hold
+from lumen.app.parts.robot import RobotPart, Urgency
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
 from lumen.language.commands import Rest, Start
@@ -17,7 +18,7 @@ from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
-from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
+from lumen.robots.deduplication_log import DEDUPLICATION_FILE
 from lumen.robots.person_hold import StoppedBy
 from lumen.robots.remote import RobotHost
 from lumen.runtime.home import home_of
@@ -27,10 +28,13 @@ from lumen.upkeep.threads import WatchedThread
 
 
 class HostedRobotPart(RobotPart):
-    """A robot whose brain is in another process; it rests where that one is gone for long.
+    """A robot whose brain is in another process; it rests if that one is gone for long.
 
-    `noticed` is called with what it notices and answers.
+    `noticed` is called with each event that the robot notices or answers.
     """
+
+    watches = False
+    """A brain in this process finds the robot on the bus, as it would in another one."""
 
     def __init__(
         self,
@@ -41,14 +45,15 @@ class HostedRobotPart(RobotPart):
         narrator: Narrator,
         noticed: Callable[[Event], None] = lambda _: None,
     ) -> None:
-        foreign = ForeignCommands(narrator, is_brains=self._is_brains, record=lambda entry: self._journal.write(entry))
-        self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given, foreign.refused, setup.hurry)
-        super().__init__(project, bus, setup, foreign, presence, server=self._host.server)
-        self._narrator, self._others, self._setup = narrator, presence, setup
         self._home = home_of(Path(project.root), project.one_of_several)
+        kept = KeptHold(self._home)
+        listeners = (_CommandsOfOthers(narrator, self), Urgency(setup), kept)
+        self._host = RobotHost(project, setup.robot, bus, setup.hall, listeners)
+        begun = self._home / DEDUPLICATION_FILE
+        super().__init__(project, bus, setup, (), presence, server=self._host.server, kept=kept, begun=begun)
+        self._narrator, self._others, self._setup = narrator, presence, setup
         self._guard: BrainGuard | None = None
         self._interrupted = False
-        self.server.follow(self._is_brains)
         self._noticed = noticed
         self._journal = Journal(None)
 
@@ -63,18 +68,18 @@ class HostedRobotPart(RobotPart):
 
     @property
     def said(self) -> dict[str, str]:
-        """What other processes hear of it: who stopped it, and when."""
+        """The fields of its presence: the brain that it obeys, the person who stopped it, and the time of that."""
         stopped = self.server.hold.stopped
-        return {"stopped_by": stopped.by, "stopped_at": stopped.since.isoformat()} if stopped else {}
+        held = {"stopped_by": stopped.by, "stopped_at": stopped.since.isoformat()} if stopped else {}
+        return {"follows": self.follows, **held}
 
     def forget(self, person: PersonName) -> None:
         """Have what names somebody taken out of the journal, by a thread that no tick waits for."""
         WatchedThread("lumen-forgetting", lambda: self._journal.forget(person)).start()
 
     def begin(self, now: float) -> None:
-        self.server.recall(DeduplicationLog(self._home / DEDUPLICATION_FILE))
         self._journal = Journal(self._home)
-        keep_hold(self.server.hold, self._home)
+        super().begin(now)
         self._guard = BrainGuard(self.robot, self._others, self._host.notice, self._say, time.monotonic)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
@@ -123,14 +128,18 @@ class HostedRobotPart(RobotPart):
         if self.follows != before and (stopped := self.server.hold.stopped):
             self._host.notice(Event("stop", {"by": stopped.by}, now))
 
-    def _is_brains(self, id: str) -> bool:
+    def record(self, entry: Mapping[str, Any]) -> None:
+        """Keep an entry in the journal of the robot's process."""
+        self._journal.write(entry)
+
+    def is_brains(self, id: str) -> bool:
+        """Return whether a command of this id comes from the brain that the robot obeys."""
         session, _, own = id.partition(".")
         return bool(own) and session == self.follows
 
-    def _given(self, command: RobotCommand, id: str) -> None:
-        """A line for each command that it is given, where no brain in this process has told of it."""
-        self.foreign.given(command, id)
-        if BRAIN in self._others.parts or isinstance(command, Aim | Live) or not self._is_brains(id):
+    def tell(self, command: RobotCommand, id: str) -> None:
+        """Print a line for a command of the brain, unless a brain in this process has done so."""
+        if BRAIN in self._others.parts or isinstance(command, Aim | Live) or not self.is_brains(id):
             return
         if isinstance(command, Perform | Record):
             self._say(words(command))
@@ -139,6 +148,21 @@ class HostedRobotPart(RobotPart):
 
     def _say(self, text: str) -> None:
         self._narrator.line("robot", text)
+
+
+class _CommandsOfOthers(ForeignCommands):
+    """Tells the commands of the brain that the robot obeys from those of others."""
+
+    def __init__(self, narrator: Narrator, part: HostedRobotPart) -> None:
+        super().__init__(narrator, part.record)
+        self._part = part
+
+    def is_brains(self, id: str) -> bool:
+        return self._part.is_brains(id)
+
+    def given(self, command: RobotCommand, id: str) -> None:
+        super().given(command, id)
+        self._part.tell(command, id)
 
 
 def stopped_there(presence: Presence) -> StoppedBy | None:

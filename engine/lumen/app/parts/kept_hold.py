@@ -3,34 +3,38 @@
 from datetime import datetime
 from pathlib import Path
 
+from lumen.robots.command_receiver import CommandListener
 from lumen.robots.person_hold import PersonHold, StoppedBy
 from lumen.runtime.home import Home
 
 STOPPED_FILE = "stopped.json"
 
 
-def keep_hold(hold: PersonHold, folder: Path) -> None:
-    """Hold the robot where the run before left it stopped, and keep in this folder who stops it from now on."""
-    home = Home(folder)
+class KeptHold(CommandListener):
+    """Keeps in a folder who stopped the robot, for the run after a crash."""
 
-    def keep(stopped: StoppedBy | None) -> None:
+    def __init__(self, folder: Path) -> None:
+        self._home = Home(folder)
+
+    def held(self, stopped: StoppedBy | None) -> None:
         if stopped:
-            home.write_json(STOPPED_FILE, {"by": stopped.by, "since": stopped.since.isoformat()})
+            self._home.write_json(STOPPED_FILE, {"by": stopped.by, "since": stopped.since.isoformat()})
         else:
-            home.remove(STOPPED_FILE)
+            self._home.remove(STOPPED_FILE)
 
-    hold.changed.append(keep)
-    if before := kept_hold(home):
-        hold.stop(before.by, before.since)
+    def restore(self, hold: PersonHold) -> None:
+        """Hold the robot if the run before left it stopped."""
+        if before := kept_hold(self._home):
+            hold.stop(before.by, before.since)
 
 
 def forget_hold(folder: Path) -> None:
-    """The run ends as a person wants it: the next one begins as usual."""
+    """Let the next run in this folder begin with a robot that may move."""
     Home(folder).remove(STOPPED_FILE)
 
 
 def kept_hold(home: Home) -> StoppedBy | None:
-    """Who had stopped the robot when the run before ended; None where nobody had."""
+    """Return the person who had stopped the robot when the run before ended; None if it was not stopped."""
     found = home.read_json(STOPPED_FILE)
     try:
         return StoppedBy(str(found["by"]), datetime.fromisoformat(found["since"]))

@@ -4,11 +4,12 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from lumen.app.answering import AnsweringThread
 from lumen.app.asking import operator_key
-from lumen.app.decisions import Decisions
+from lumen.app.decisions import DecisionRecords, Decisions
 from lumen.app.doings import Doings
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.model_switch import ModelSwitch
@@ -67,35 +68,36 @@ class OperatorPart(Part, Observer):
     `journal` writes.
 
     `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
-    last; `record` keeps an entry of the journal, `keep` what people decided. `marking` says what becomes of a mark,
+    last; `records` keep an entry of the journal, and what people decided. The folder `kept` has what outlives the run:
+    whether the language model is silenced. `marking` returns the answer to a mark,
     which the recorder hears by itself; empty where nothing is recorded.
     """
 
     patient = True
+    watches = True
 
     def __init__(
         self,
         behavior: LiveBehavior,
         narrator: Narrator,
         journal: JournalWriter,
+        records: DecisionRecords,
         *,
         stopped: Callable[[], StoppedBy | None],
         realtime: Callable[[], float],
         reloaded: Callable[[], LastReload | None] = lambda: None,
-        record: Callable[[Mapping[str, Any]], None] = lambda _: None,
-        keep: Callable[[Mapping[str, Any]], None] = lambda _: None,
         marking: Callable[[], str] = str,
+        kept: Path | None = None,
         needs: Sequence[str] = (),
     ) -> None:
-        self.needs, self._behavior, self._narrator = needs, behavior, narrator
-        self._stopped, self._realtime, self._reloaded, self._record = stopped, realtime, reloaded, record
+        self.needs, self._behavior, self._narrator, self._record = needs, behavior, narrator, records.write
+        self._stopped, self._realtime, self._reloaded = stopped, realtime, reloaded
         self._marking = marking
         self._since = 0.0
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
         self._bus = behavior.loop.bus
         runtime = behavior.loop.runtime
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
-        behavior.forgetting.append(self.steps.forget)
         self._journal = journal
         self._answering = AnsweringThread(self._bus, self.steps.steps, journal)
         self._pages = AnsweringThread(self._bus, list, journal)  # who watches waits for no `why`
@@ -104,14 +106,13 @@ class OperatorPart(Part, Observer):
         self._doings = Doings(
             lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None, behavior.loop.clock.now
         )
-        behavior.forgetting.append(lambda _: self._doings.forget())
         self._ears: Mapping[str, Any] | None = None
         self._unheed = self._bus.subscribe(key_of(behavior.project, "listening"), self._heed)
         self._unsay = self._bus.subscribe(key_of(behavior.project, TEXT_ROUTE), self._doings.told.append)
         told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
-        self._decisions = Decisions(runtime.approvals, narrator, record, keep, *told)
-        behavior.forgetting.append(lambda _: runtime.approvals.forget())
-        self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, record)
+        self._decisions = Decisions(runtime.approvals, narrator, records.write, records.keep_decisions, *told)
+        behavior.forgetters += [self.steps, self._doings, runtime.approvals]
+        self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, records.write, kept)
         self._raising = RaisedEvents(behavior.loop, self._reply)
         self._requests = RequestChecks()
         self._answers: Mapping[str, Responder] = {
@@ -123,7 +124,7 @@ class OperatorPart(Part, Observer):
             MODEL.ask: lambda m, _: self.model.switch(person_in(m), on=m.body["on"]),
             GOTO.ask: self._goto,
         }
-        behavior.loop.observers += [self.steps, self._doings, self._raising, self]
+        behavior.loop.observers += [self.steps, self._doings, self._raising]
 
     def begin(self, now: float) -> None:
         self._since = now

@@ -1,6 +1,6 @@
 """What a node is made of."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from math import inf
 
 from lumen.language.events import Event
@@ -11,13 +11,13 @@ class Part:
     """Something that lives in a node's loop; it begins when the parts that it `needs` are there.
 
     What a part does not care about it leaves as it is here: nothing. A `patient` one does nothing by itself but look
-    whether something has come or is over: that may wait for NAP, or for `wake`, which may be called from any thread.
+    whether something has come or is over: that may wait for NAP. One that `watches` is an `Observer` of the behaviour.
     """
 
     name = ""
     needs: Sequence[str] = ()
     patient = False
-    wake: Callable[[], None] = staticmethod(lambda: None)
+    watches = False
 
     @property
     def over(self) -> bool:
@@ -34,6 +34,9 @@ class Part:
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Live until `now` [s]; `changes` tell who of the other processes was lost or came back."""
+
+    def noticed(self, event: Event) -> None:
+        """Hear of an event of a robot in this process whose brain is in another one, or nowhere."""
 
     def quiet_until(self, now: float) -> float:
         """Until when nothing happens in it unless something happens elsewhere [s]; `now` where nobody knows."""

@@ -53,10 +53,11 @@ class RemoteBody:
         story: Story | None,
         speed: float,
         adopt: Callable[[Project], None],
+        refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> LiveBehavior:
         """The behaviour on this robot; whether it was away is a matter of real time, as for the robot."""
         setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
-        found = LiveBehavior(project, setup, bus, story, adopt=adopt)
+        found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse)
         found.loop.patience *= speed
         self._project = lambda: found.project
         return found
@@ -102,15 +103,11 @@ class RemoteBrainPart(BrainPart):
         presence: Presence,
         home: Home | None,
         language: str = "",
-        stopped: Callable[[], StoppedBy | None] = lambda: None,
         recover: Callable[[], Resumption | FreshStart] = FreshStart,
     ) -> None:
         super().__init__(behavior, narrator, presence, language, recover=recover)
         self.robot, self._tracking, self._others, self._home = body.robot, body.tracking, presence, home
         self.motion_module = body.motion_module
-        hold = RemoteHold(stopped)
-        behavior.loop.observers.append(hold)
-        behavior.loop.performer.refuse = hold.refuse
         self._session, self._lost = "", False
         self._earlier: dict[str, str] = {}
 

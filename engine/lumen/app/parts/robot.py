@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import inf
+from pathlib import Path
 
-from lumen.app.parts.foreign_commands import ForeignCommands
+from lumen.app.parts.kept_hold import KeptHold
 from lumen.app.parts.part import Part
 from lumen.app.setup import Setup
 from lumen.language.commands import Command, Say, Start
@@ -13,6 +14,8 @@ from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.ports import Bus, HasSpeed, Idles, Sense
 from lumen.robots.bounded_robot import ability
+from lumen.robots.command_receiver import CommandListener
+from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.sense_publisher import PublishCounts
 from lumen.robots.server import RobotServer
 from lumen.runtime.loop import Observer
@@ -23,40 +26,48 @@ from lumen.runtime.presence import ROBOT_PART, Presence
 class RobotPart(Part, Observer):
     """A robot that the brain of this node commands directly; modules command it through `server`.
 
-    What comes from elsewhere is told by `foreign`. It watches the brain's loop: what the robot says and answers is on
-    the bus, too. Where nobody shares the bus a tick waits until its readings are published, so that a run is the same
-    each time, and publishes them itself where time goes as fast as it can; else it waits for nobody. A `silent` one
-    publishes only those senses that the behaviour hears of, as events or by controllers.
+    `listeners` hear of the commands that come from elsewhere; `kept` holds the robot if the run before left it stopped,
+    and `begun` is the file of the commands that run had begun, which are not performed again.
+
+    It watches the brain's loop: what the robot says and answers is on the bus, too. On a bus of its own a tick waits
+    until its readings are published, so that a run is the same each time, and publishes them itself if time goes as
+    fast as it can. A `silent` one publishes only those senses that the behaviour hears of,
+    as events or by controllers.
     """
 
     name = ROBOT_PART
+    watches = True
 
     def __init__(
         self,
         project: Project,
         bus: Bus,
         setup: Setup,
-        foreign: ForeignCommands,
+        listeners: Sequence[CommandListener] = (),
         presence: Presence | None = None,
         *,
         server: RobotServer | None = None,
         silent: bool = False,
+        kept: KeptHold | None = None,
+        begun: Path | None = None,
     ) -> None:
-        self._silent, self._presence = silent, presence
+        self._silent, self._presence, self._kept, self._begun = silent, presence, kept, begun
         self.robot = setup.robot
         self._idles = ability(setup.robot, Idles)
-        self.foreign = foreign
         self.server = server or RobotServer(
             self._sensed(project),
             setup.robot,
             bus,
-            started=foreign.given,
-            refused=foreign.refused,
-            hurry=setup.hurry,
+            listeners=(*listeners, Urgency(setup), *filter(None, [kept])),
             direct=presence is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed is None,
         )
-        self.server.hold.noticed.append(foreign.noticed)
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
+
+    def begin(self, now: float) -> None:
+        if self._begun:
+            self.server.recall(DeduplicationLog(self._begun))
+        if self._kept:
+            self._kept.restore(self.server.hold)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self.server.sample(now)
@@ -86,6 +97,11 @@ class RobotPart(Part, Observer):
 
     def answered(self, event: Event) -> None:
         self.server.answer(event)
+
+    @property
+    def said(self) -> dict[str, str]:
+        """The fields of its presence."""
+        return {}
 
     def summary(self) -> Iterator[str]:
         yield "published: " + (", ".join(map(_counted, self.server.counts.items())) or "nothing")
@@ -119,6 +135,16 @@ class RobotPart(Part, Observer):
         if self._presence and EYES not in self._presence.parts:
             self.faces.quiet = self._presence.find(EYES) is not None
         self.faces.tick(now)
+
+
+class Urgency(CommandListener):
+    """Ends the wait of a robot's clock if a message came that stops the robot."""
+
+    def __init__(self, setup: Setup) -> None:
+        self._setup = setup
+
+    def urgent(self) -> None:
+        self._setup.hurry()
 
 
 def _counted(item: tuple[str, PublishCounts]) -> str:

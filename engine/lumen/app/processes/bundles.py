@@ -2,11 +2,13 @@
 
 import queue
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from lumen.app.parts.part import Part
 from lumen.app.reload.requests import status_key
 from lumen.interpreters.bounds import analyse
+from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import fingerprint, read_files
@@ -19,31 +21,33 @@ from lumen.upkeep.threads import WatchedThread
 MOVED = ("applied", "rolled back")
 
 
-class BundleFollower:
+class BundleFollower(Part):
     """Hears what becomes of the saved files of the brain of that project's robot, and loads them on its own thread.
 
-    `tick` hands on what was loaded. `tell` hears where the files here are not those that the brain runs on: another
-    machine may have others.
+    `use` is called with each bundle that was loaded, `tell` with a line if the files here differ from those of the
+    brain: another machine may have others.
     """
+
+    patient = True
 
     def __init__(
         self, root: Path, project: Project, bus: Bus, use: Callable[[Project], None], tell: Callable[[str], None]
     ) -> None:
-        self._root, self._robot, self._use, self._tell = root, project.one_of_several, use, tell
+        self._root, self._robot, self._adopt, self._tell = root, project.one_of_several, use, tell
         self._wanted: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._loaded: queue.SimpleQueue[Project | str] = queue.SimpleQueue()
         self._undo = bus.subscribe(status_key(project.robot), self._hear)
         self._thread = WatchedThread("lumen-bundles", self._run)
         self._thread.start()
 
-    def tick(self, now: float) -> None:
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
         while not self._loaded.empty():
             found = self._loaded.get()
             if isinstance(found, str):
                 self._tell(found)
             else:
                 self._tell("the brain's new files are active here, too")
-                self._use(found)
+                self._adopt(found)
 
     def close(self) -> None:
         self._undo()

@@ -2,7 +2,7 @@
 
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from lumen.app.live_behavior import LiveBehavior
@@ -72,9 +72,13 @@ class RunDirectory:
         """The hash of the files that are there, where this start has taken others."""
         return next((report.after for report in self.news if report.verdict == "refused"), "")
 
-    def reloader(self, behavior: LiveBehavior, narrator: Narrator, *, mode: str) -> Reloader:
-        """What takes saved files in this run; they are judged in another process."""
-        return Reloader(behavior, narrator, mode=mode, records=self.records, applied=self.announce, seen=self.refused)
+    def reloader(
+        self, behavior: LiveBehavior, narrator: Narrator, *, mode: str, wake: Callable[[], None] = lambda: None
+    ) -> Reloader:
+        """Return the reloader of this run, which judges saved files in another process; `wake` as it says there."""
+        return Reloader(
+            behavior, narrator, mode=mode, records=self.records, applied=self.announce, seen=self.refused, wake=wake
+        )
 
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool

@@ -55,6 +55,7 @@ class Reloader:
         records: RunRecords | None = None,
         applied: Callable[[Project], None] = lambda _: None,
         seen: str = "",
+        wake: Callable[[], None] = lambda: None,
         worker: FileJudge | None = None,
         quiet: float = QUIET_PERIOD,
         budget: float = BUDGET,
@@ -64,7 +65,6 @@ class Reloader:
         self._notifier = ReloadNotifier(behavior, narrator, self._records)
         self._queue = MigrationQueue(behavior, self._notifier, self._records, applied)
         self._bus = behavior.loop.bus
-        self.wake: Callable[[], None] = lambda: None
         self._came: deque[Message] = deque(maxlen=WAITING)
         project = behavior.loop.project
         self._worker = worker or ValidationWorker(Path(project.root))
@@ -81,7 +81,7 @@ class Reloader:
             noticed=self._worker.begin,
             early=self._validator.warm,
             good=lambda judged: isinstance(judged, Validation) and judged.good,
-            done=lambda: self.wake(),
+            done=wake,
         )
         self._undo = self._bus.subscribe(command_key(behavior.project.robot), self._came.append)
         self._watcher.start()

@@ -32,7 +32,7 @@ class RollbackGuard:
         self.good = _lean(behavior.loop.project)
         self.before: Project | None = None
         self._until: float | None = behavior.loop.clock.now() + PERIOD
-        behavior.loop.rescue = self._rescue
+        behavior.loop.rescuers.append(self)
 
     def begin(self, before: Project, now: float) -> None:
         """Another bundle runs since `now` [s]."""
@@ -49,7 +49,8 @@ class RollbackGuard:
         """How long it still lasts [s], None where none is under way."""
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
-    def _rescue(self, error: Exception) -> Sequence[Command] | None:
+    def rescue(self, error: Exception) -> Sequence[Command] | None:
+        """Go back to the good bundle, if the one that failed is on probation."""
         bad = self._behavior.loop.project
         if self._until is None or self.good.hash == bad.hash:
             return None

@@ -17,9 +17,6 @@ class ReloadPart(Part):
     def __init__(self, reloader: Reloader, needs: Sequence[str] = ()) -> None:
         self.needs, self._reloader = needs, reloader
 
-    def begin(self, now: float) -> None:
-        self._reloader.wake = self.wake
-
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._reloader.tick(now)
 
@@ -28,12 +25,19 @@ class ReloadPart(Part):
 
 
 class RecordsPart(Part):
-    """Keeps where the behaviour stands; it stands after the brain, whose `needs` it has."""
+    """Keeps where the behaviour stands if that `lasts`, and at the end the last of its journal.
+
+    It comes after the brain, whose `needs` it has.
+    """
 
     patient = True
 
-    def __init__(self, records: RunRecords, behavior: LiveBehavior, needs: Sequence[str] = ()) -> None:
-        self.needs, self._records, self._behavior = needs, records, behavior
+    def __init__(self, records: RunRecords, behavior: LiveBehavior, needs: Sequence[str] = (), *, lasts: bool) -> None:
+        self.needs, self._records, self._behavior, self._lasts = needs, records, behavior, lasts
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        self._records.keep(self._behavior.loop)
+        if self._lasts:
+            self._records.keep(self._behavior.loop)
+
+    def close(self) -> None:
+        self._records.close_inputs()

@@ -2,7 +2,7 @@
 
 import logging
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from math import isfinite
 from typing import Any
@@ -11,7 +11,8 @@ from lumen.errors import BusError, LumenError
 from lumen.language.events import ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Bus, Hall, Message, Robot, RobotCommand
+from lumen.ports import Bus, Hall, Message, Robot
+from lumen.robots.command_receiver import CommandListener
 from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, key_of, publish_on
 from lumen.robots.server import RobotServer
 from lumen.upkeep.threads import MessageGuard
@@ -23,11 +24,11 @@ MAX_VISITOR_DISTANCE, MAX_VISITOR_HEIGHT = 100.0, 3.0
 _log = logging.getLogger(__name__)
 
 
-class RobotHost:
+class RobotHost(CommandListener):
     """Lumen Server for a robot, and for the hall around it where it is simulated.
 
     Whoever owns the clock calls `tick`; what the robot answered and noticed since is published, and returned.
-    `started`, `refused` and `hurry` are called as by the server.
+    `listeners` hear of the commands that come over the bus.
     """
 
     def __init__(
@@ -36,12 +37,9 @@ class RobotHost:
         robot: Robot,
         bus: Bus,
         hall: Hall | None = None,
-        started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
-        refused: Callable[[str, str], None] = lambda _method, _reason: None,
-        hurry: Callable[[], None] = lambda: None,
+        listeners: Sequence[CommandListener] = (),
     ) -> None:
-        self.server = RobotServer(project, robot, bus, started=started, refused=refused, hurry=hurry)
-        self.server.hold.noticed.append(self.notice)
+        self.server = RobotServer(project, robot, bus, listeners=(self, *listeners))
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
         self._visitor_messages: deque[Message] = deque(maxlen=1_000)
         self._guard = MessageGuard(_log, "the hall")
@@ -84,6 +82,9 @@ class RobotHost:
     def waiting(self) -> bool:
         """Whether something has come, or is to be told, at the next tick."""
         return bool(self._visitor_messages or self._happened)
+
+    def noticed(self, event: Event) -> None:
+        self.notice(event)
 
     def notice(self, event: Event) -> None:
         """Tell everybody of something at the next tick, as if the robot had noticed it."""

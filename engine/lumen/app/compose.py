@@ -1,0 +1,76 @@
+"""Puts an exhibition together: the parts that its plan asks for, in the order of their rows."""
+
+import time
+from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
+from functools import cache
+
+from lumen.app.claiming import CLAIM_INTERVAL
+from lumen.app.parts.part import Part
+from lumen.app.plan import Plan
+from lumen.app.services import Services
+from lumen.feature import PartRow, resolve, rows
+
+
+def compose(plan: Plan) -> Services:
+    """Make an exhibition of its plan: all parts but those that wait until it has claimed what it is (`start`).
+
+    Raises BusError if the bus can't be reached, and whatever a part's maker raises; then all that was made is closed.
+    """
+    services = Services(plan)
+    _make(services, claimed=False)
+    return services
+
+
+def start(exhibitions: Sequence[Services]) -> None:
+    """Begin exhibitions: claim what they are, make the rest of their parts, and begin these."""
+    claim(exhibitions)
+    begin(exhibitions)
+
+
+def claim(exhibitions: Sequence[Services]) -> None:
+    """Wait until nobody else on the bus has answered that it is one of these robots, or has one of these roles.
+
+    Raises UsageError if somebody has.
+    """
+    waiting = [one.node for one in exhibitions]
+    while waiting := [node for node in waiting if node.claims()]:
+        time.sleep(CLAIM_INTERVAL)
+
+
+def begin(exhibitions: Sequence[Services]) -> None:
+    """Make the parts of exhibitions that have claimed what they are, and begin all parts."""
+    for one in exhibitions:
+        _make(one, claimed=True)
+        one.node.begin()
+
+
+def _make(services: Services, *, claimed: bool) -> None:
+    with ExitStack() as undo:
+        undo.callback(services.node.close)
+        for place, row in enumerate(part_rows()):
+            if row.claimed == claimed and all(map(services.plan.meets, row.when.split())):
+                made = resolve(row.make)(services)
+                services.add(place, *([made] if isinstance(made, Part) else made or ()))
+        undo.pop_all()
+
+
+@cache
+def part_rows() -> tuple[PartRow, ...]:
+    """Return the rows of all features in the order in which their parts are made and ticked."""
+    return tuple(ordered([row for _, row in rows("parts")]))
+
+
+def ordered(found: Iterable[PartRow]) -> list[PartRow]:
+    """Sort rows by phase, then `after` others, then by name. Raises ValueError if rows wait for each other."""
+    waiting = sorted(found, key=lambda row: (row.phase, row.name))
+    names, sorted_rows = {row.name: row.phase for row in waiting}, list[PartRow]()
+    while waiting:
+        done = {row.name for row in sorted_rows}
+        phase = waiting[0].phase
+        free = (row for row in waiting if row.phase == phase and (row.after in done or names.get(row.after) != phase))
+        if (row := next(free, None)) is None:
+            raise ValueError(f"parts wait for each other: {', '.join(row.name for row in waiting)}")
+        waiting.remove(row)
+        sorted_rows.append(row)
+    return sorted_rows

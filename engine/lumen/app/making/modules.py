@@ -1,0 +1,65 @@
+"""Lumen's own modules, in the process of an exhibition or in one of theirs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumen.app.parts.module import ModulePart
+from lumen.app.parts.module_troubles import ModuleTroublesPart
+from lumen.app.parts.part import Part
+from lumen.app.parts.robot import RobotPart
+from lumen.app.services import Services
+from lumen.errors import LumenError
+from lumen.language.modules import EYES, MODULES
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
+
+
+@dataclass(frozen=True, slots=True)
+class ModulesPlan:
+    """How modules take part: what they keep is in `folder`, None if nothing lasts.
+
+    If they are `awaited`, each tick waits for the eyes, so that what they see does not depend on the machine.
+    """
+
+    folder: Path | None = None
+    awaited: bool = False
+
+
+def modules(services: Services) -> list[Part]:
+    """Make the modules that `lumen.yaml` wants here, or those that this process is."""
+    here = [name for name, said in services.project.modules.items() if said.here]
+    wanted = [role for role in services.plan.roles if role in MODULES] if services.plan.roles else here
+    begun = [part for name in wanted if (part := _module(services, name))]
+    if not services.plan.roles:
+        _share(services, [part.name for part in begun])
+    return begun
+
+
+def troubles(services: Services) -> ModuleTroublesPart:
+    """Make the part that tells what modules elsewhere can't do."""
+    own = [part.name for part in services.node.parts if isinstance(part, ModulePart)]
+    return ModuleTroublesPart(services.project, services.bus, services.narrator.line, own)
+
+
+def _module(services: Services, name: str) -> Part | None:
+    """Make a module. In an exhibition one that can't work is told of, and the others take part.
+
+    Raises ModuleError if the process is to be that module.
+    """
+    how: ModulesPlan = services.plan.options["modules"]
+    tell = services.narrator.line
+    try:
+        return ModulePart(name, services.project, services.bus, tell, how.folder, awaited=how.awaited)
+    except LumenError as error:
+        if services.plan.roles:
+            raise
+        tell(name, str(error))
+        return None
+
+
+def _share(services: Services, names: list[str]) -> None:
+    """Say which modules are here, and leave faces to the eyes."""
+    faces = services[RobotPart].faces
+    if faces and EYES in names:
+        faces.quiet = True
+    if services.presence:
+        services.presence.parts = (ROBOT_PART, BRAIN, MOTION, *names)

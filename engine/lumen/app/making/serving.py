@@ -1,0 +1,113 @@
+"""The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
+
+from lumen.app.parts.alerting import AlertPart
+from lumen.app.parts.forgetting import ForgettingPart
+from lumen.app.parts.hosted_robot import HostedRobotPart, stopped_there
+from lumen.app.parts.operating import OperatorPart
+from lumen.app.parts.part import Part
+from lumen.app.parts.recording import RecordingPart
+from lumen.app.parts.robot import RobotPart
+from lumen.app.recovery.recording import record_inputs
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.saved_files import RecordsPart, ReloadPart
+from lumen.app.services import Services
+from lumen.app.status import LastReload
+from lumen.interpreters.bounds import analyse
+from lumen.loading.project_folders import FLEET_FILE
+from lumen.robots.person_hold import StoppedBy
+from lumen.runtime.inputs.journal_writer import JournalWriter
+from lumen.runtime.resuming import FreshStart, Resumption
+
+
+def journal(services: Services) -> None:
+    """Provide the records of the run, and the journal of what happens to the behaviour."""
+    plan, directory = services.plan, directory_of(services)
+    records = directory.records if directory else RunRecords(None)
+    rehearsed = plan.story is not None or directory is None
+    services.provide(records, record_inputs(services.behavior, records, story=plan.story, rehearsed=rehearsed))
+    if directory and not plan.story:
+        analyse(plan.project.motions.values(), plan.project.body)
+
+
+def forgetting(services: Services) -> ForgettingPart | None:
+    """Make the part that forgets a visitor, if this process knows any."""
+    project, bus = services.plan.project, services.bus
+    if services.plan.brain:
+        forget = services.behavior.forget, services[RunRecords].forget
+        return ForgettingPart(project, bus, *forget, needs=services.needs)
+    robot = services.get(HostedRobotPart)
+    return ForgettingPart(project, bus, robot.forget) if robot else None
+
+
+def reload(services: Services) -> ReloadPart:
+    """Make the part that takes saved files."""
+    mode, directory = services.plan.options["reload"], directory_of(services)
+    take = directory.reloader if directory else Reloader
+    reloader = take(services.behavior, services.narrator, mode=mode, wake=services.nap.end)
+    services.provide(reloader)
+    return ReloadPart(reloader, services.needs)
+
+
+def fleet(services: Services) -> Part | None:
+    """Make the agent of a robot that belongs to a fleet."""
+    directory = directory_of(services)
+    if directory is None or services.plan.story or not (directory.root / FLEET_FILE).exists():
+        return None
+    from lumen.app.fleet.part import fleet_part  # few exhibitions are of a fleet
+
+    reloader, tell = services[Reloader], services.tell("fleet")
+    return fleet_part(directory.root, services.bus, services.behavior, reloader, directory.home, tell, services.needs)
+
+
+def operator(services: Services) -> OperatorPart:
+    """Make the part that answers operators."""
+    directory = directory_of(services)
+    recording, reloader = services.get(RecordingPart), services.get(Reloader)
+
+    def stopped() -> StoppedBy | None:
+        robot = services.get(RobotPart)
+        if robot:
+            return robot.server.hold.stopped
+        return stopped_there(services.presence) if services.presence else None
+
+    def reloaded() -> LastReload | None:
+        return reloader.last_reload if reloader else None
+
+    return OperatorPart(
+        services.behavior,
+        services.narrator,
+        services[JournalWriter],
+        services[RunRecords],
+        stopped=stopped,
+        realtime=lambda: services.node.pace.realtime,
+        reloaded=reloaded,
+        marking=recording.marking if recording else str,
+        kept=directory.home.folder if directory and directory.home and services.lasts else None,
+        needs=services.needs,
+    )
+
+
+def records(services: Services) -> RecordsPart:
+    """Make the part that keeps where the behaviour stands, and writes the journal to its end."""
+    lasts = directory_of(services) is not None and services.plan.story is None
+    return RecordsPart(services[RunRecords], services.behavior, services.needs, lasts=lasts)
+
+
+def recovered(services: Services) -> Resumption | FreshStart:
+    """Go on with the run before, or begin; the operator's decisions and the alerts with it."""
+    directory, options = directory_of(services), services.plan.options
+    if directory is None:
+        return FreshStart()
+    fresh = options.get("fresh", True) or (services.plan.story is not None and not services.plan.roles)
+    found = directory.begin_run(services.behavior, services.plan.url, services.get(Reloader), fresh=fresh)
+    services[OperatorPart].recover(directory.records.decisions(), resumed=isinstance(found, Resumption))
+    watch = services.get(AlertPart)
+    return watch.recovered(found) if watch else found
+
+
+def directory_of(services: Services) -> RunDirectory | None:
+    """Return the directory of the run, None for a run that keeps nothing."""
+    directory: RunDirectory | None = services.plan.options.get("directory")
+    return directory

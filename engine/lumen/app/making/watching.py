@@ -1,0 +1,47 @@
+"""Recording of the bus, and alerts."""
+
+from pathlib import Path
+
+from lumen.app.alerts.desk import AlertDesk
+from lumen.app.making.serving import directory_of
+from lumen.app.parts.alerting import AlertPart
+from lumen.app.parts.hosted_robot import HostedRobotPart
+from lumen.app.parts.recording import RecordingPart
+from lumen.app.reload.alerting import RefusalPart
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.reloader import Reloader
+from lumen.app.services import Services
+from lumen.runtime.home import home_of
+from lumen.runtime.presence import BRAIN, ROBOT_PART
+
+
+def recording(services: Services) -> RecordingPart:
+    """Make the recorder of the bus, which also recovers what the run before left half written."""
+    plan = services.plan
+    file, patient = plan.options.get("record"), plan.story is not None and not plan.roles
+    tell = services.tell("recording")
+    return RecordingPart(plan.project, services.bus, tell, file, ring=services.lasts, patient=patient)
+
+
+def alerts(services: Services) -> AlertPart:
+    """Make the part that has people told of what goes wrong."""
+    plan, desk = services.plan, services.plan.options["alerts"]
+    directory, recording = directory_of(services), services.get(RecordingPart)
+    records = directory.records if directory else RunRecords(None)
+
+    def kept() -> str:
+        return records.trouble or (recording.trouble if recording else "")
+
+    def stopped() -> bool:
+        robot = services.get(HostedRobotPart)
+        return not plan.brain and robot is not None and robot.stopped()
+
+    folder = home_of(Path(plan.project.root), plan.project.one_of_several)
+    parts = plan.roles or (ROBOT_PART, BRAIN)
+    return AlertPart(desk, services.bus, folder, parts, services.presence, kept, stopped=stopped)
+
+
+def refusals(services: Services) -> RefusalPart:
+    """Make the part that has people told of refused files."""
+    desk: AlertDesk = services.plan.options["alerts"]
+    return RefusalPart(services[Reloader], desk)

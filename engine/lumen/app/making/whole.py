@@ -1,0 +1,92 @@
+"""Visitor, robot and brain of an exhibition that is in one process."""
+
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.parts.brain import BrainPart
+from lumen.app.parts.foreign_commands import ForeignCommands
+from lumen.app.parts.kept_hold import KeptHold
+from lumen.app.parts.robot import RobotPart
+from lumen.app.parts.visitor import VisitorPart
+from lumen.app.services import Services
+from lumen.language.events import Event
+from lumen.ports import RobotCommand
+from lumen.robots.command_receiver import CommandListener
+from lumen.robots.deduplication_log import DEDUPLICATION_FILE
+from lumen.runtime.home import home_of
+from lumen.runtime.resuming import FreshStart, Resumption
+
+
+def behavior(services: Services) -> None:
+    """Provide the behaviour, which moves the robot of this process."""
+
+    def refuse(command: RobotCommand) -> str:
+        return services[RobotPart].server.hold.admit(command, behavior=True)
+
+    plan = services.plan
+    published = not plan.silent
+    found = LiveBehavior(
+        plan.project,
+        services.setup,
+        services.bus,
+        plan.story,
+        published=published,
+        adopt=services.node.use,
+        refuse=refuse,
+    )
+    services.provide(found)
+
+
+def visitor(services: Services) -> VisitorPart | None:
+    """Make the visitor in the hall around the robot, if it stands in one."""
+    if (hall := services.setup.hall) is None:
+        return None
+    loop, tell = services.behavior.loop, services.narrator.visitor_action
+    return VisitorPart(services.project, services.bus, hall, loop, services.plan.story, tell)
+
+
+def robot(services: Services) -> RobotPart:
+    """Make the robot, which hears of the behaviour's steps before the narrator does."""
+    plan, options = services.plan, services.plan.options
+    directory = options.get("directory")
+    record = directory.records.write if directory and services.lasts else lambda _: None
+    listeners = (ForeignCommands(services.narrator, record), _Noticing(services.behavior))
+    begun = directory and plan.shared and home_of(directory.root, plan.project.one_of_several) / DEDUPLICATION_FILE
+    return RobotPart(
+        plan.project,
+        services.bus,
+        services.setup,
+        listeners,
+        services.presence,
+        silent=plan.silent,
+        kept=KeptHold(directory.home.folder) if directory and services.lasts else None,
+        begun=begun or None,
+    )
+
+
+def narrator(services: Services) -> None:
+    """Let the player of the story and then the narrator hear of the behaviour's steps."""
+    visitor = services.get(VisitorPart)
+    player = visitor.player if visitor else None
+    services.behavior.loop.observers += [*([player] if player else []), services.narrator]
+
+
+def brain(services: Services) -> BrainPart:
+    """Make the part that lets the behaviour take its steps."""
+
+    def recover() -> Resumption | FreshStart:
+        from lumen.app.making.serving import recovered  # rehearsals have no run before
+
+        return recovered(services)
+
+    hold = services[RobotPart].server.hold
+    how = recover if services.plan.options.get("directory") else FreshStart
+    return BrainPart(services.behavior, services.narrator, services.presence, services.plan.language, hold, how)
+
+
+class _Noticing(CommandListener):
+    """Lets the behaviour hear that a person stopped the robot."""
+
+    def __init__(self, behavior: LiveBehavior) -> None:
+        self._behavior = behavior
+
+    def noticed(self, event: Event) -> None:
+        self._behavior.loop.happen(event)

@@ -1,0 +1,136 @@
+"""Everything that an exhibition in this process is made of, found by its type."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, TypeVar
+
+from lumen.app.claiming import presence_of
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.nap import Nap
+from lumen.app.narrator import Narrator
+from lumen.app.node import Node
+from lumen.app.parts.part import Part
+from lumen.app.parts.robot import RobotPart
+from lumen.app.plan import Plan
+from lumen.app.setup import Setup
+from lumen.bus import connect
+from lumen.buses.validated import validated
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.runtime.loop import Observer
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
+
+EXHIBITION = "exhibition"
+"""The sender of the messages of an exhibition in one process."""
+
+T = TypeVar("T")
+
+
+class Services:
+    """The bus, the clock, the node and the narrator of an exhibition, its parts, and whatever they provide.
+
+    A part's maker finds what was made before it: `services[LiveBehavior]`, or `services.get(RobotPart)` if that may be
+    missing. What `provide` takes is found in the same way. Raises BusError if the bus can't be reached.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self.clock, self.nap = plan, plan.time, Nap()
+        bus = connect(plan.bus, sender="+".join(plan.roles) or EXHIBITION) if isinstance(plan.bus, str) else plan.bus
+        self.bus = validated(bus, plan.project, arrived=self.nap.end)
+        self.narrator = plan.narrator or Narrator(self.clock.now, lambda: self.project.machine)
+        self.presence = self._presence() if plan.shared else None
+        self.node = Node(
+            plan.project,
+            self.bus,
+            self.clock,
+            self.narrator,
+            presence=self.presence,
+            speed=plan.speed if plan.roles else None,
+            nap=self.nap,
+            before=plan.before,
+            paced=self._pace,
+            leaps=plan.leaps,
+        )
+        self._provided: list[object] = []
+        self._places: dict[Part, int] = {}
+
+    def __getitem__(self, kind: type[T]) -> T:
+        """Return the part or service of a kind. Raises LookupError if there is none."""
+        if (found := self.get(kind)) is None:
+            raise LookupError(f"this process has no {kind.__name__}")
+        return found
+
+    def get(self, kind: type[T]) -> T | None:
+        """Return the part or service of a kind, None if there is none."""
+        return next((one for one in (*self._provided, *self.node.parts) if isinstance(one, kind)), None)
+
+    def provide(self, *services: object) -> None:
+        """Let others find these by their types."""
+        self._provided += services
+
+    def add(self, place: int, *parts: Part) -> None:
+        """Let parts take part, after those of lower places and after those that are at this place already.
+
+        A part that `watches` hears of the behaviour's steps, if that is in this process.
+        """
+        self._places |= dict.fromkeys(parts, place)
+        if self.plan.brain and (watching := [part for part in parts if isinstance(part, Observer) and part.watches]):
+            self.behavior.loop.observers += watching
+        self.node.parts[:] = sorted([*self.node.parts, *parts], key=self._places.__getitem__)
+
+    @property
+    def project(self) -> Project:
+        """The bundle that runs."""
+        return self.node.project
+
+    @property
+    def behavior(self) -> LiveBehavior:
+        """The behaviour. Raises LookupError if another process has it."""
+        return self[LiveBehavior]
+
+    @property
+    def setup(self) -> Setup:
+        """The robot of this process. Raises LookupError if another process has it."""
+        if self.plan.setup is None:
+            raise LookupError("this process has no robot")
+        return self.plan.setup
+
+    @property
+    def lasts(self) -> bool:
+        """Whether the run has a home for what it keeps: no story does, and no guest of another run."""
+        directory = self.plan.options.get("directory")
+        return bool(directory and directory.home) and self.plan.story is None
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What the parts wait for that serve the behaviour: its robot, if that may be in another process."""
+        return (ROBOT_PART,) if self.plan.roles else ()
+
+    def tell(self, who: str) -> Callable[[str], None]:
+        """Return a function that tells lines about somebody."""
+        return partial(self.narrator.line, who)
+
+    def noticed(self, event: Event) -> None:
+        """Tell all parts of an event of a robot here whose brain is somewhere else."""
+        for part in self.node.parts:
+            part.noticed(event)
+
+    def _presence(self) -> Presence:
+        plan = self.plan
+        here = tuple(name for name, said in plan.project.modules.items() if said.here)
+        roles = plan.roles or (ROBOT_PART, BRAIN, MOTION, *here)
+        return presence_of(plan.project, self.bus, roles, self._said)
+
+    def _said(self) -> dict[str, Any]:
+        """What others hear of this process besides that it is there."""
+        robot = self.get(RobotPart)
+        body: dict[str, Any] = {"bundle": self.project.hash}
+        if self.plan.roles:
+            body["speed"] = self.plan.speed
+        if robot:
+            body |= {**robot.said, "time": round(self.node.now, 3), "realtime": self.node.pace.realtime}
+        return body
+
+    def _pace(self, realtime: float) -> None:
+        if behavior := self.get(LiveBehavior):
+            behavior.trace.pace(realtime)

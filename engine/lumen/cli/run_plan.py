@@ -1,0 +1,92 @@
+"""The plan of one robot's exhibition, as the options of `lumen run` want it."""
+
+import argparse
+import signal
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from lumen.app.making.modules import ModulesPlan
+from lumen.app.narrator import Narrator
+from lumen.app.plan import Plan
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.run_start import WHOLE
+from lumen.app.services import Services
+from lumen.app.setup import Setup
+from lumen.cli.run_choices import alert_desk, language_of
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Clock
+from lumen.runtime.home import home_of
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRun:
+    """One robot of a run: its project, its home, and the story of its visitor."""
+
+    project: Project
+    directory: RunDirectory
+    story: Story | None
+    first: bool = True
+    """Whether it is the robot whose visitor is typed, and whose console is served."""
+
+
+def running(made: Sequence[Services], project: Project) -> Project:
+    """Return the bundle that the only exhibition in a list runs; before there is one, `project`."""
+    return made[0].project if made else project
+
+
+def leave(made: Iterable[Services]) -> None:
+    """End these exhibitions so that the next run goes on where they were."""
+    for one in made:
+        one.node.interrupt(2, leave=True)
+
+
+def heed_signals(made: Sequence[Services]) -> None:
+    """Let Ctrl-C and SIGTERM interrupt these exhibitions, whichever they are then."""
+
+    def interrupt() -> None:
+        for one in made:
+            one.node.interrupt()
+
+    signal.signal(signal.SIGINT, lambda *_: interrupt())
+    signal.signal(signal.SIGTERM, lambda *_: leave(made))
+
+
+def plan_of(
+    options: argparse.Namespace,
+    one: RobotRun,
+    parts: tuple[str, ...],
+    url: str,
+    setup: Setup | None,
+    clock: Clock,
+    narrator: Narrator,
+    **more: Any,
+) -> Plan:
+    """Return the plan of a robot's exhibition, or of these parts of it; `more` are options of the plan.
+
+    Raises UsageError for a language that the project does not have.
+    """
+    project, directory, played = one.project, one.directory, options.story is not None
+    folder = None if played else home_of(directory.root, directory.robot)
+    wanted: dict[str, Any] = {
+        "directory": directory,
+        "operated": True,
+        "reload": options.reload,
+        "fresh": options.fresh or (played and not parts),
+        "alerts": None if played else alert_desk(project, parts or WHOLE, narrator),
+        "modules": ModulesPlan(folder, awaited=options.speed == "max"),
+        "console": one.first and project.console.wanted and options.speed != "max",
+    }
+    return Plan(
+        project,
+        setup,
+        url,
+        one.story,
+        narrator,
+        roles=parts,
+        clock=clock,
+        language=language_of(project, options.language),
+        speed=1.0 if options.speed == "max" else float(options.speed),
+        options={**wanted, **more},
+    )

@@ -1,0 +1,125 @@
+"""How an exhibition is composed: rows in order, conditions, claimed parts, and what is closed if a maker fails."""
+
+from collections.abc import Sequence
+
+import pytest
+
+from lumen.app import compose as composing
+from lumen.app.compose import begin, compose, ordered, part_rows, start
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.parts.brain import BrainPart
+from lumen.app.parts.part import Part
+from lumen.app.parts.robot import RobotPart
+from lumen.app.plan import Plan
+from lumen.app.services import Services
+from lumen.app.setup import set_up
+from lumen.errors import UsageError
+from lumen.feature import PartRow, Phase
+from lumen.language.events import Event
+from tests.exhibits import project
+
+HERE = "tests.app.test_compose"
+
+
+class Greeter(Part):
+    """A part of another package, which finds the behaviour by its type."""
+
+    def __init__(self, services: Services) -> None:
+        self.behavior, self.ticks, self.closed = services[LiveBehavior], 0, False
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self.ticks += 1
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def broken(services: Services) -> Part:
+    raise UsageError("it does not fit")
+
+
+def plan(**options: object) -> Plan:
+    exhibit = project()
+    return Plan(exhibit, set_up("recording", exhibit, "max"), options=options)
+
+
+def with_rows(monkeypatch: pytest.MonkeyPatch, *more: PartRow) -> None:
+    found = tuple(ordered([*part_rows(), *more]))
+    monkeypatch.setattr(composing, "part_rows", lambda: found)
+
+
+def names(*found: PartRow) -> list[str]:
+    return [row.name for row in ordered(found)]
+
+
+def test_rows_come_by_phase_then_after_others_then_by_name() -> None:
+    late, early = PartRow("late", Phase.KEEP, ""), PartRow("early", Phase.WORLD, "")
+    a, b, c = PartRow("a", Phase.SERVE, "", after="c"), PartRow("b", Phase.SERVE, ""), PartRow("c", Phase.SERVE, "")
+    assert names(late, a, c, early, b) == ["early", "b", "c", "a", "late"]
+
+
+def test_a_row_after_one_of_an_earlier_phase_or_after_none_that_there_is_comes_by_name() -> None:
+    world = PartRow("world", Phase.WORLD, "")
+    assert names(PartRow("b", Phase.SERVE, "", after="world"), world, PartRow("a", Phase.SERVE, "", after="gone")) == [
+        "world",
+        "a",
+        "b",
+    ]
+
+
+def test_rows_that_wait_for_each_other_are_named() -> None:
+    a, b = PartRow("a", Phase.SERVE, "", after="b"), PartRow("b", Phase.SERVE, "", after="a")
+    with pytest.raises(ValueError, match="parts wait for each other: a, b"):
+        ordered([a, b])
+
+
+def test_an_unknown_condition_is_named() -> None:
+    with pytest.raises(ValueError, match="there is no condition `hole`"):
+        plan().meets("hole")
+
+
+def test_the_part_of_another_package_is_ticked_before_the_brain(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_rows(monkeypatch, PartRow("greeter", Phase.SERVE, f"{HERE}:Greeter"))
+    services = compose(plan())
+    start([services])
+    services.node.tick()
+    greeter, parts = services[Greeter], services.node.parts
+    assert greeter.behavior is services.behavior
+    assert greeter.ticks == 1
+    assert parts.index(services[RobotPart]) < parts.index(greeter) < parts.index(services[BrainPart])
+    services.node.close()
+    assert greeter.closed
+
+
+def test_a_part_is_made_only_if_its_conditions_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_rows(monkeypatch, PartRow("greeter", Phase.SERVE, f"{HERE}:Greeter", "whole option:greeter"))
+    for options, there in (({}, False), ({"greeter": True}, True)):
+        services = compose(plan(**options))
+        assert (services.get(Greeter) is not None) == there
+        services.node.close()
+
+
+def test_a_claimed_part_is_made_at_the_beginning_and_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_rows(monkeypatch, PartRow("greeter", Phase.SERVE, f"{HERE}:Greeter", claimed=True))
+    services = compose(plan())
+    assert services.get(Greeter) is None
+    begin([services])
+    assert services.node.parts.index(services[Greeter]) < services.node.parts.index(services[BrainPart])
+    services.node.close()
+
+
+def test_if_a_maker_fails_the_parts_that_were_made_are_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed: list[Part] = []
+    monkeypatch.setattr(Greeter, "close", lambda greeter: closed.append(greeter))
+    rows = PartRow("greeter", Phase.SERVE, f"{HERE}:Greeter"), PartRow("zz", Phase.SERVE, f"{HERE}:broken")
+    with_rows(monkeypatch, *rows)
+    with pytest.raises(UsageError, match="it does not fit"):
+        compose(plan())
+    assert len(closed) == 1
+
+
+def test_a_kind_that_is_not_there_is_named() -> None:
+    services = compose(plan())
+    with pytest.raises(LookupError, match="this process has no Greeter"):
+        services[Greeter]
+    services.node.close()
