@@ -8,6 +8,9 @@ import sys
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from written_distribution import on_path, write_distribution
 
 from lumen.app.lint.findings import Findings
 from lumen.app.lint.physics import played
@@ -22,6 +25,8 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/rules"
 BASE = ROOT / "tests/lint/pages/base"
 
+INSTALLED = "installed"
+"""The note at modules of an installed distribution."""
 PHYSICS, OTHERS = "physics", 1
 """What is noted at examples that are about the shipped robot in simulation, and how many robots play them beside it."""
 
@@ -32,6 +37,8 @@ def laid(base: Mapping[str, bytes], sheets: Iterable[Example]) -> dict[str, byte
     """The files of the small project with those of an example laid over them."""
     files = dict(base)
     for sheet in sheets:
+        if sheet.note == INSTALLED:
+            continue
         if sheet.note == "folder":
             files[sheet.file] = Unreadable(b"it is a folder")
         elif sheet.note == "none":
@@ -55,11 +62,22 @@ def said(sheets: tuple[Example, ...]) -> list[Diagnostic]:
     """What lint says of an example; of one that was otherwise before, what it says with `--against` that."""
     if any(sheet.note == PHYSICS for sheet in sheets):
         return _played(sheets)
+    if modules := {sheet.file: sheet.text for sheet in sheets if sheet.note == INSTALLED}:
+        return _installed(modules, sheets)
     before = [sheet._replace(note="") for sheet in sheets if sheet.note == "before"]
     now, found = check_files(BASE, laid(read_files(BASE), [sheet for sheet in sheets if sheet.note != "before"]))
     if before and now and (old := check_files(BASE, laid(read_files(BASE), before))[0]):
         return [*found, *against(old, now)]
     return list(found)
+
+
+def _installed(modules: Mapping[str, str], sheets: tuple[Example, ...]) -> list[Diagnostic]:
+    """Return the findings beside a distribution of these modules, the first of which has its manifest."""
+    module = next(iter(modules)).removesuffix(".py")
+    with TemporaryDirectory() as folder:
+        write_distribution(Path(folder), module.replace("_", "-"), f"{module}:FEATURE", modules)
+        with on_path(Path(folder)):
+            return list(check_files(BASE, laid(read_files(BASE), sheets))[1])
 
 
 def _played(sheets: tuple[Example, ...]) -> list[Diagnostic]:

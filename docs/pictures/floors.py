@@ -40,6 +40,7 @@ PURPOSES: Mapping[str, str] = {
     "language": "what the YAML can say, as frozen values",
     "features": "a manifest for each feature: its rules, parts, commands",
     "feature": "what a manifest can hold, and who reads them",
+    "distributions": "which installed packages bring features",
 }
 """What each room is for."""
 
@@ -60,6 +61,7 @@ ZONES: Mapping[str, str] = {
     "language": "values",
     "features": "values",
     "feature": "values",
+    "distributions": "values",
 }
 """What a floor has to do with, by its first room; floors of one zone stand together."""
 

@@ -1,15 +1,17 @@
-"""Manifests of features: names, data and import strings of all that a feature adds to Lumen.
+"""Manifests of features: the names, data and import strings that a feature adds to Lumen.
 
-A manifest imports nothing but this module, so reading all of them costs milliseconds. The object that a row
-names is imported at its first use.
+A manifest imports nothing but this module, so reading all of them costs milliseconds. What a row names is imported
+when it is first needed. A kind whose rows have names is a mapping; every other kind is a tuple.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import IntEnum, auto
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
+
+from lumen.distributions import Distribution, distributions
 
 API = 1
 """The version of the rows below; a manifest of another version is refused."""
@@ -65,15 +67,30 @@ class PartRow:
 class Feature:
     """One capability: its rows by kind. A text such as `package.module:name` is an import string.
 
-    `parts` take part in an exhibition.
-
     `extras` are those of the distribution that install what the feature needs.
     """
 
     name: str
     api: int = API
     extras: tuple[str, ...] = ()
+
     parts: tuple[PartRow, ...] = ()
+    """Parts of an exhibition."""
+
+
+class FeatureFault(NamedTuple):
+    """Why a feature of an installed distribution, or a row of it, is ignored."""
+
+    distribution: Distribution
+    message: str
+
+
+class Found(NamedTuple):
+    """All features, the distributions of those that do not come with Lumen by the feature's name, and what is wrong."""
+
+    features: tuple[Feature, ...]
+    installed: Mapping[str, Distribution]
+    faults: tuple[FeatureFault, ...]
 
 
 def resolve(where: str) -> Any:
@@ -86,15 +103,86 @@ def resolve(where: str) -> Any:
     return getattr(found, name) if name else found
 
 
-@cache
 def features() -> tuple[Feature, ...]:
     """Return the manifests of all features, those that come with Lumen first."""
-    return tuple(resolve(where) for where in BUILT_IN)
+    return found().features
 
 
 def rows(kind: str) -> Iterator[tuple[Feature, Any]]:
-    """Iterate over the rows of a kind, such as `extras`, each with its feature; a row of a mapping is a pair."""
+    """Iterate over the rows of a kind, such as `extras`, each with its feature; a row of a mapping is a pair.
+
+    Of two rows with the same name, the second is left out.
+    """
+    names: set[str] = set()
     for feature in features():
-        found = getattr(feature, kind)
-        for row in found.items() if isinstance(found, Mapping) else found:
-            yield feature, row
+        rows_of = getattr(feature, kind)
+        if isinstance(rows_of, Mapping):
+            yield from ((feature, row) for row in rows_of.items() if row[0] not in names)
+            names.update(rows_of)
+        else:
+            yield from ((feature, row) for row in rows_of)
+
+
+def table(kind: str) -> dict[str, Any]:
+    """Return the rows of a kind that is a mapping, by name."""
+    return {name: row for _, (name, row) in rows(kind)}
+
+
+def distribution_of(feature: Feature) -> Distribution | None:
+    """Return the distribution that a feature was installed with; None if it comes with Lumen."""
+    return found().installed.get(feature.name)
+
+
+@cache
+def found() -> Found:
+    """Return all features, and what is wrong with those that do not come with Lumen."""
+    built_in = tuple(resolve(where) for where in BUILT_IN)
+    others: dict[str, tuple[Feature, Distribution]] = {}
+    faults: list[FeatureFault] = []
+    names = {feature.name: "Lumen" for feature in built_in}
+    for distribution in distributions():
+        feature, fault = _manifest(distribution)
+        if feature and feature.name in names:
+            fault = f"its feature has the name `{feature.name}`, as one of {names[feature.name]} has"
+        if feature and not fault:
+            names[feature.name] = str(distribution)
+            others[feature.name] = feature, distribution
+        else:
+            faults.append(FeatureFault(distribution, fault))
+    features = (*built_in, *(feature for feature, _ in others.values()))
+    installed = {name: distribution for name, (_, distribution) in others.items()}
+    return Found(features, installed, (*faults, *_repeated(features, installed)))
+
+
+def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
+    """Return the feature of a distribution, or None and what is wrong with its manifest."""
+    try:
+        feature = resolve(distribution.manifest)
+    except Exception as error:  # of code that is not ours
+        return None, f"its manifest `{distribution.manifest}` raised {type(error).__name__}: {error}"
+    if not isinstance(feature, Feature):
+        return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
+    if feature.api != API:
+        return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
+    if wrong := [field.name for field in fields(Feature)[2:] if not _are_rows(getattr(feature, field.name))]:
+        return None, f"`{wrong[0]}` of its manifest is neither a tuple nor a mapping"
+    return feature, ""
+
+
+def _are_rows(value: object) -> bool:
+    return isinstance(value, tuple | Mapping)
+
+
+def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distribution]) -> Iterator[FeatureFault]:
+    """Iterate over the rows that are left out because an earlier feature has one of that name."""
+    owners: dict[tuple[str, str], str] = {}
+    for feature in features:
+        distribution = installed.get(feature.name)
+        for kind in (field.name for field in fields(feature)):
+            named = getattr(feature, kind)
+            for name in named if isinstance(named, Mapping) else ():
+                owner = owners.setdefault((kind, name), feature.name)
+                if distribution and owner != feature.name:
+                    yield FeatureFault(
+                        distribution, f"its row `{name}` of `{kind}` is ignored: the feature `{owner}` has that name"
+                    )

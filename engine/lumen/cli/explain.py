@@ -99,4 +99,5 @@ _NOTES = {
     "before": "as it runs",
     "physics": "found with --physics",
     "whole": "the whole file",
+    "installed": "of an installed package",
 }

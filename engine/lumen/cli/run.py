@@ -33,6 +33,7 @@ from lumen.cli.transcript import Transcript
 from lumen.clocks.following import FollowingClock
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.stories import Story
+from lumen.loading.broken_features import broken_features
 from lumen.loading.running_project import is_substituted, project_to_run
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
@@ -112,6 +113,8 @@ def run(options: argparse.Namespace) -> int:
     path = options.project or home_of(named)
     root = project_to_run(path)
     use_model(options.model, [root])
+    for broken in broken_features():
+        complain(str(broken))
     if is_substituted(path):
         journal = home_of_run(root) / JOURNAL_FOLDER
         complain(

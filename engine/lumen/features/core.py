@@ -1,4 +1,4 @@
-"""The feature that every project has, and for now those without a manifest of their own."""
+"""The part that every project needs, and all rows without a feature of their own yet."""
 
 from lumen.feature import Feature, PartRow, Phase
 

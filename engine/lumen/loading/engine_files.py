@@ -8,21 +8,31 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
+from lumen.distributions import Distribution, distributions, metadata_folders
 from lumen.loading.packaged import PACKAGE, schema_folder, shipped_root
 
 
 @cache
 def engine() -> str:
-    """Return a hash of the state of the engine's files and of what comes with it; a file written again changes it."""
+    """Return a hash of the state of the engine's files and of what comes with it; a file written again changes it.
+
+    A distribution with features counts as a part of the engine.
+    """
     return files_hash(PACKAGE, schema_folder(), shipped_root() / "models")
 
 
 def files_hash(*folders: Path) -> str:
-    """Return a hash of which files are in these folders, and when and how long they were written; reads no file."""
+    """Return a hash of which files are in these folders, and when and how long they were written; reads no file.
+
+    The files of distributions with features are part of it.
+    """
     digest = hashlib.sha256()
-    for folder in folders:
+    others = distributions()
+    for folder in (*folders, *(place for each in others for place in _places(each))):
         for path, what, changed in sorted(listed(folder)):
             digest.update(os.fsencode(f"{folder} {path} {what} {changed}\n"))
+    if others:  # one of them may need a distribution that is installed later
+        digest.update(os.fsencode(repr((others, *metadata_folders()))))
     return digest.hexdigest()
 
 
@@ -30,12 +40,25 @@ def files_hash(*folders: Path) -> str:
 def code_hash(*names: str) -> str:
     """Return a hash of the code of these packages or modules of Lumen, the same on each machine.
 
-    Raises ModuleNotFoundError if there is none of that name: a moved package must not be left out silently.
+    Names, versions and files of distributions with features are part of it. Raises ModuleNotFoundError if there is no
+    package or module of that name: a moved package must not be left out silently.
     """
     digest = hashlib.sha256()
     for file in sorted({file for name in names for file in _sources(name)}):
         digest.update(hashlib.sha256(file.relative_to(PACKAGE).as_posix().encode() + file.read_bytes()).digest())
+    for other in distributions():
+        digest.update(repr(other).encode())
+        for place in _places(other):
+            for path in sorted(path for path, _, _ in listed(place)):
+                digest.update(hashlib.sha256(f"{place.name}/{path}".encode() + (place / path).read_bytes()).digest())
     return digest.hexdigest()
+
+
+def _places(distribution: Distribution) -> Iterator[Path]:
+    """Iterate over the folders and single files that hold the packages of a distribution."""
+    for package in distribution.packages:
+        if found := find_spec(package):
+            yield from map(Path, found.submodule_search_locations or [str(found.origin)])
 
 
 def _sources(name: str) -> Iterator[Path]:
@@ -57,8 +80,11 @@ def listed(folder: Path) -> Iterator[tuple[str, str, int]]:
     """The files below a folder: path from there, what is the same in a copy of it elsewhere, and when it was put there.
 
     What is the same is its size, when it was written, and where it leads if it is a link. The last is in [ns]; a folder
-    that can't be listed has no files.
+    that can't be listed has no files. A file has the path `.` from itself.
     """
+    if folder.is_file():
+        status = folder.stat()
+        yield ".", f"{status.st_size} {status.st_mtime_ns} ", status.st_ctime_ns
     yield from _below(str(folder), "")
 
 

@@ -20,6 +20,7 @@ from lumen.rules import (
     examples,
     expressions,
     falling,
+    features,
     fleet,
     for_jumps,
     gestures,
@@ -64,6 +65,7 @@ from lumen.rules import (
 )
 
 CHECKS: tuple[ModuleType, ...] = (
+    features,
     traps,
     schemas,
     misnamed,

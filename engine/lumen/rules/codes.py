@@ -13,6 +13,7 @@ from lumen.loading import (
     behaviors,
     bindings,
     bodies,
+    broken_features,
     complaints,
     document,
     fleet,
@@ -53,10 +54,10 @@ from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
 LOADERS = (
-    actions, behaviors, bindings, bodies, complaints, document, expression_findings, fleet, gestures, hears_keys, house,
-    keyframes, knowledge, known_words, life, linking, markdown, messages, misplaced, numbers, outline, poses, project,
-    role_names, roles, rounds, rulebook, schedules, settings, shapes, shared_keys, signal_bindings, terms, transitions,
-    units, variables, yaml_errors, yaml_nodes, yaml_reader,
+    actions, behaviors, bindings, bodies, broken_features, complaints, document, expression_findings, fleet, gestures,
+    hears_keys, house, keyframes, knowledge, known_words, life, linking, markdown, messages, misplaced, numbers,
+    outline, poses, project, role_names, roles, rounds, rulebook, schedules, settings, shapes, shared_keys,
+    signal_bindings, terms, transitions, units, variables, yaml_errors, yaml_nodes, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 
@@ -65,7 +66,7 @@ HELPERS = (aims, controller_shapes, ignores, lookups, on_request, routing_keys, 
 
 FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "hearing", "speech", "knowledge",
-    "controllers", "motions", "physics", "robot", "routes", "alerts", "fleet", "comments",
+    "controllers", "motions", "physics", "robot", "routes", "alerts", "fleet", "features", "comments",
 )  # fmt: skip
 """The families as they are listed: what is wrong with a file first."""
 

@@ -30,7 +30,10 @@ class MarkedWord(NamedTuple):
 
 
 class Example(NamedTuple):
-    """A file of an example. `note` says what text alone can't: `latin-1`, or `folder` in place of the file."""
+    """A file of an example. `note` is for more than its text: `latin-1`, or `folder` in place of the file.
+
+    `installed` is a module of an installed distribution with an entry point for the module's `FEATURE`.
+    """
 
     file: str
     language: str

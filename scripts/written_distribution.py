@@ -1,0 +1,47 @@
+"""Distributions written into a folder as an installer would leave them, and used from there by this process."""
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from importlib import invalidate_caches
+from pathlib import Path
+
+
+def write_distribution(folder: Path, name: str, manifest: str, files: Mapping[str, str], version: str = "1.0") -> None:
+    """Write a distribution with these files, and an entry point for the import string `manifest` of a feature."""
+    metadata = {
+        "METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n",
+        "entry_points.txt": f"[lumen.features]\n{name} = {manifest}\n",
+        "RECORD": "".join(f"{file},,\n" for file in files),
+    }
+    described = {f"{name.replace('-', '_')}-{version}.dist-info/{file}": text for file, text in metadata.items()}
+    for file, text in {**files, **described}.items():
+        path = folder / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def on_path(folder: Path) -> Iterator[None]:
+    """Let this process import what is in that folder, features included, as long as the context lasts."""
+    before = set(sys.modules)
+    sys.path.insert(0, str(folder))
+    _forget()
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        for name in set(sys.modules) - before:
+            if str(getattr(sys.modules[name], "__file__", "")).startswith(f"{folder}/"):
+                del sys.modules[name]
+        _forget()
+
+
+def _forget() -> None:
+    """Let Lumen find its features again: forget what its functions with a cache returned."""
+    invalidate_caches()
+    for name, module in list(sys.modules.items()):
+        if name.partition(".")[0] == "lumen":
+            for value in list(vars(module).values()):
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()

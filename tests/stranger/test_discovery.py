@@ -1,0 +1,202 @@
+"""Features are found in installed distributions; a faulty one is one finding, and everything else works without it."""
+
+import re
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+from written_distribution import on_path, write_distribution
+
+from lumen import distributions, feature
+from lumen.cli.main import main
+from lumen.feature import BUILT_IN, Feature, features, resolve
+from lumen.loading import engine_files
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from tests import ROOT
+from tests.tables import for_each
+
+PROJECT = ROOT / "tests/lint/pages/base"
+GOOD = 'from lumen.feature import Feature\nFEATURE = Feature(name="greeter", extras=("waving",))\n'
+IMPORT_STRING = re.compile(r"lumen(\.\w+)+(:\w+)?")
+
+
+class Installed:
+    """A folder of distributions that this process uses; `write` installs or replaces one."""
+
+    def __init__(self, folder: Path, contexts: ExitStack) -> None:
+        self.folder, self._contexts = folder, contexts
+
+    def write(self, name: str, manifest: str, version: str = "1.0") -> None:
+        """Install a distribution with one module, `manifest`, and use it from now on."""
+        module = name.replace("-", "_")
+        write_distribution(self.folder, name, f"{module}:FEATURE", {f"{module}.py": manifest}, version)
+        self._contexts.close()
+        self._contexts.enter_context(on_path(self.folder))
+
+
+@pytest.fixture
+def installed(tmp_path: Path) -> Iterator[Installed]:
+    with ExitStack() as contexts:
+        yield Installed(tmp_path / "packages", contexts)
+
+
+def findings() -> list[str]:
+    """Return what lint says of a sound project."""
+    return [f"{each.place.file} {each.code} | {each.message}" for each in check_files(PROJECT, read_files(PROJECT))[1]]
+
+
+def test_a_feature_of_an_installed_distribution_comes_after_those_of_lumen(installed: Installed) -> None:
+    built_in = features()
+    installed.write("lumen-greeter", GOOD)
+    *first, greeter = features()
+    assert tuple(first) == built_in
+    assert greeter == Feature(name="greeter", extras=("waving",))
+    assert str(feature.distribution_of(greeter)) == "lumen-greeter 1.0"
+    assert feature.distribution_of(built_in[0]) is None
+    assert list(feature.rows("extras"))[-1] == (greeter, "waving")
+    assert findings() == []
+
+
+FAULTY = {
+    "raises": ("1 / 0\n", "its manifest `lumen_greeter:FEATURE` raised ZeroDivisionError: division by zero"),
+    "lacks an import": (
+        "import not_installed\n",
+        "its manifest `lumen_greeter:FEATURE` raised ModuleNotFoundError: No module named 'not_installed'",
+    ),
+    "is no feature": ("FEATURE = 1\n", "its entry point names `lumen_greeter:FEATURE`, which is no `Feature`"),
+    "another API": (
+        GOOD.replace("extras", "api=2, extras"),
+        "its manifest is written for API 2, and this Lumen has API 1",
+    ),
+    "no rows": (GOOD.replace('("waving",)', "None"), "`extras` of its manifest is neither a tuple nor a mapping"),
+    "a name of Lumen's": (
+        GOOD.replace('"greeter"', '"core"'),
+        "its feature has the name `core`, as one of Lumen has",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", FAULTY)
+def test_a_faulty_manifest_is_one_finding_that_names_its_distribution(case: str, installed: Installed) -> None:
+    built_in = features()
+    manifest, message = FAULTY[case]
+    installed.write("lumen-greeter", manifest)
+    assert features() == built_in
+    assert findings() == [f"lumen.yaml broken-feature | the installed package `lumen-greeter` 1.0 is faulty: {message}"]
+
+
+@pytest.mark.process
+def test_a_run_reports_a_faulty_feature_once_and_continues(
+    installed: Installed, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = shutil.copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    installed.write("lumen-greeter", "1 / 0\n")
+    assert main(["run", str(project), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
+    error = capsys.readouterr().err
+    assert error.count("broken-feature") == 1
+    assert "the installed package `lumen-greeter` 1.0 is faulty: its manifest" in error
+
+
+def test_of_two_distributions_with_the_same_feature_the_first_counts(installed: Installed) -> None:
+    installed.write("lumen-a", GOOD)
+    installed.write("lumen-b", GOOD)
+    assert str(feature.distribution_of(features()[-1])) == "lumen-a 1.0"
+    (finding,) = findings()
+    assert "`lumen-b` 1.0" in finding
+    assert "the name `greeter`, as one of lumen-a 1.0 has" in finding
+
+
+METADATA = {
+    "a module": ("waving.py,,\n", "[lumen.features]\nwaving = waving\n", [("waving", ("waving",))]),
+    "an object": (
+        "",
+        "[lumen.features]\nwaving = waving.manifest:FEATURE\n",
+        [("waving.manifest:FEATURE", ("waving",))],
+    ),
+    "blanks and comments": (
+        "",
+        "# a = b\n\n[ lumen.features ]\n; a = b\n  x = waving : FEATURE [extra]\n\n[console_scripts]\ny = a:b\n",
+        [("waving:FEATURE", ("waving",))],
+    ),
+    "two manifests": (
+        "",
+        "[lumen.features]\nb = b:FEATURE\na = a:FEATURE",
+        [("a:FEATURE", ("a",)), ("b:FEATURE", ("b",))],
+    ),
+    "other packages": (
+        'help/x.py,sha256=abc,12\nwaving/__init__.py,,\n"data/a,b.txt",,\n../../bin/run.py,,\nalone.py,,\n',
+        "[lumen.features]\nwaving = waving:FEATURE\n",
+        [("waving:FEATURE", ("alone", "help", "waving"))],
+    ),
+    "another group": ("", "[console_scripts]\nlumen.features = waving:main\n", []),
+    "no entry points": ("", "", []),
+}
+
+
+@for_each("case", METADATA)
+def test_the_metadata_of_a_distribution_is_read(case: str, tmp_path: Path) -> None:
+    record, entry_points, expected = METADATA[case]
+    folder = tmp_path / "waving-2.0.dist-info"
+    folder.mkdir()
+    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: Waving\nVersion: 2.0\n\nName: other\n")
+    (folder / "RECORD").write_text(record)
+    (folder / "entry_points.txt").write_text(entry_points)
+    with on_path(tmp_path):
+        found = distributions.distributions()
+    assert [(each.manifest, each.packages) for each in found] == expected
+    assert {str(each) for each in found} <= {"Waving 2.0"}
+
+
+def test_of_two_folders_with_the_same_distribution_the_first_counts(tmp_path: Path) -> None:
+    for version, name in (("1.0", "lumen-greeter"), ("2.0", "Lumen_Greeter")):
+        write_distribution(tmp_path / version, name, "lumen_greeter:FEATURE", {"lumen_greeter.py": GOOD}, version)
+    with on_path(tmp_path / "2.0"), on_path(tmp_path / "1.0"):
+        assert [str(each) for each in distributions.distributions()] == ["lumen-greeter 1.0"]
+
+
+def test_the_metadata_is_read_as_python_reads_it(installed: Installed) -> None:
+    installed.write("lumen-greeter", GOOD)
+    (entry,) = entry_points(group=distributions.GROUP)
+    (found,) = distributions.distributions()
+    assert (entry.dist.name, entry.dist.version, entry.value) == found[:3]
+
+
+def test_every_fingerprint_depends_on_name_version_and_files(installed: Installed) -> None:
+    def both() -> tuple[str, str]:
+        return engine_files.engine(), engine_files.code_hash("lumen.language")
+
+    seen = [both()]
+    installed.write("lumen-greeter", GOOD)
+    seen.append(both())
+    installed.write("lumen-greeter", f"{GOOD}# more\n")
+    seen.append(both())
+    installed.write("lumen-greeter", f"{GOOD}# more\n")
+    assert both()[1] == seen[-1][1]
+    (installed.folder / "lumen_greeter-1.0.dist-info/METADATA").unlink()
+    installed.write("lumen-greeter", f"{GOOD}# more\n", "1.1")
+    seen.append(both())
+    assert len({state for state, _ in seen}) == len({code for _, code in seen}) == len(seen)
+
+
+def test_every_import_string_of_the_features_that_come_with_lumen_names_something() -> None:
+    found = [text for where in BUILT_IN for text in import_strings(resolve(where))]
+    for text in found:
+        assert resolve(text) is not None
+
+
+def import_strings(value: object) -> Iterator[str]:
+    """Iterate over the import strings in a manifest or in a part of it."""
+    if isinstance(value, str):
+        if IMPORT_STRING.fullmatch(value):
+            yield value
+        return
+    if isinstance(value, dict):
+        value = value.values()
+    elif not isinstance(value, Iterable):
+        value = [getattr(value, name) for name in getattr(type(value), "__slots__", ())]
+    for part in value:
+        yield from import_strings(part)
