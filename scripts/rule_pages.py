@@ -18,7 +18,7 @@ from lumen.app.reload.against import against
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import Unreadable, read_files
 from lumen.rules import check_files
-from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.codes import codes, families
 from lumen.rules.pages import Example, Page, page
 
 ROOT = Path(__file__).parents[1]
@@ -84,16 +84,16 @@ def _played(sheets: tuple[Example, ...]) -> list[Diagnostic]:
     """What `--physics` says of a motion in the shipped project, with the robot of the model and two others."""
     files = laid(read_files(ROOT), sheets)
     asked = [sheet.file for sheet in sheets if sheet.file.startswith("motions/")]
-    found = played(Findings((), files, str(ROOT), asked), lambda d: d.code in FAMILIES["physics"], OTHERS, keep=False)
+    found = played(Findings((), files, str(ROOT), asked), lambda d: d.code in families()["physics"], OTHERS, keep=False)
     return list(found[0].diagnostics)
 
 
 def written() -> dict[str, str]:
     """The pages of the docs, by file name."""
-    index = "".join(f"\n## [{_title(name)}]({name}.md)\n\n{_list(name)}\n" for name in FAMILIES)
+    index = "".join(f"\n## [{_title(name)}]({name}.md)\n\n{_list(name)}\n" for name in families())
     pages = {"README.md": f"{_INTRODUCTION}{index}"}
-    for name, codes in FAMILIES.items():
-        pages[f"{name}.md"] = f"# {_title(name)}\n" + "".join(f"\n{_section(page(code))}" for code in codes)
+    for name, members in families().items():
+        pages[f"{name}.md"] = f"# {_title(name)}\n" + "".join(f"\n{_section(page(code))}" for code in members)
     return pages
 
 
@@ -109,7 +109,7 @@ def _title(family: str) -> str:
 
 
 def _list(family: str) -> str:
-    return "\n".join(f"- [`{code}`]({family}.md#{code}): {CODES[code].summary}" for code in FAMILIES[family])
+    return "\n".join(f"- [`{code}`]({family}.md#{code}): {codes()[code].summary}" for code in families()[family])
 
 
 def _section(found: Page) -> str:
@@ -117,7 +117,7 @@ def _section(found: Page) -> str:
     right = "\n".join(_sheet(sheet) for sheet in found.right)
     output = "\n".join(str(d) for d in said(found.wrong))
     return (
-        f"## {found.code}\n\n*{CODES[found.code].severity}.* {found.what}\n\n{found.why}\n\n"
+        f"## {found.code}\n\n*{codes()[found.code].severity}.* {found.what}\n\n{found.why}\n\n"
         f"Wrong:\n\n{wrong}\nLint prints:\n\n```text\n{output}\n```\n\nRight:\n\n{right}"
     )
 

@@ -61,7 +61,7 @@ def _described(metadata: str) -> Iterator[Distribution]:
 
 
 def _text(folder: str, name: str) -> str:
-    """Return the text of a file of metadata, empty if there is none."""
+    """Return the text of a file of metadata, or an empty one if the file is missing."""
     try:
         with open(os.path.join(folder, name), encoding="utf-8", errors="replace") as file:
             return file.read()

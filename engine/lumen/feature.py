@@ -5,7 +5,7 @@ when it is first needed. A kind whose rows have names is a mapping; every other 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import IntEnum, auto
 from functools import cache
 from importlib import import_module
@@ -16,7 +16,13 @@ from lumen.distributions import Distribution, distributions
 API = 1
 """The version of the rows below; a manifest of another version is refused."""
 
-BUILT_IN = ("lumen.features.core:FEATURE",)
+BUILT_IN = (
+    "lumen.features.core:FEATURE",
+    "lumen.features.alerts:FEATURE",
+    "lumen.features.show:FEATURE",
+    "lumen.features.console:FEATURE",
+    "lumen.features.fleet:FEATURE",
+)
 """The manifests that come with Lumen, in the order in which their rows take part."""
 
 
@@ -76,6 +82,17 @@ class Feature:
 
     parts: tuple[PartRow, ...] = ()
     """Parts of an exhibition."""
+
+    rules: tuple[str, ...] = ()
+    """Functions that report faults of a `ProjectDraft`. Their modules declare the codes of these reports."""
+    last_rules: tuple[str, ...] = ()
+    """Such functions that run after all others: those that report unused things."""
+    codes: tuple[str, ...] = ()
+    """Other modules that declare codes, such as those that read files."""
+    pages: tuple[str, ...] = ()
+    """Packages with a `CODE.md` for codes, in the form that `lumen.rules.pages` describes."""
+    fixes: Mapping[str, str] = field(default_factory=dict)
+    """For a code, the function that proposes how to repair a finding, as `lumen.rules.fixes` describes."""
 
 
 class FeatureFault(NamedTuple):
@@ -164,13 +181,14 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
     if feature.api != API:
         return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
-    if wrong := [field.name for field in fields(Feature)[2:] if not _are_rows(getattr(feature, field.name))]:
+    if wrong := [kind for kind in _kinds() if not isinstance(getattr(feature, kind), tuple | Mapping)]:
         return None, f"`{wrong[0]}` of its manifest is neither a tuple nor a mapping"
     return feature, ""
 
 
-def _are_rows(value: object) -> bool:
-    return isinstance(value, tuple | Mapping)
+def _kinds() -> Iterator[str]:
+    """Iterate over the names of the kinds of rows."""
+    yield from (kind.name for kind in fields(Feature) if kind.name not in ("name", "api"))
 
 
 def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distribution]) -> Iterator[FeatureFault]:
@@ -178,7 +196,7 @@ def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distributio
     owners: dict[tuple[str, str], str] = {}
     for feature in features:
         distribution = installed.get(feature.name)
-        for kind in (field.name for field in fields(feature)):
+        for kind in _kinds():
             named = getattr(feature, kind)
             for name in named if isinstance(named, Mapping) else ():
                 owner = owners.setdefault((kind, name), feature.name)

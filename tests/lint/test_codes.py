@@ -8,7 +8,7 @@ from pathlib import Path
 
 import lumen
 from lumen.language.diagnostics import Severity, did_you_mean
-from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.codes import codes, families
 from lumen.rules.pages import page
 from tests.scanning import matching
 from tests.tables import for_each
@@ -39,18 +39,18 @@ def texts(tree: ast.AST) -> Iterator[str]:
 
 def test_every_code_is_declared_once_under_its_own_name() -> None:
     found = [(constant, code) for _, constant, code in declarations()]
-    assert sorted(code for _, code in found) == sorted(CODES)
+    assert sorted(code for _, code in found) == sorted(codes())
     assert all(constant == code.upper().replace("-", "_") for constant, code in found)
 
 
 def test_no_code_is_made_in_any_other_way() -> None:
     made = [n for tree in trees().values() for n in ast.walk(tree) if isinstance(n, ast.Call)]
-    assert sum(isinstance(n.func, ast.Name) and n.func.id == "Code" for n in made) == len(CODES)
+    assert sum(isinstance(n.func, ast.Name) and n.func.id == "Code" for n in made) == len(codes())
 
 
 def test_a_search_for_a_code_finds_its_declaration_only() -> None:
     """Whoever raises it uses the value; `tab` and `falls` are words as well."""
-    counted = Counter(t for f, tree in trees().items() if f.startswith(RAISING) for t in texts(tree) if t in CODES)
+    counted = Counter(t for f, tree in trees().items() if f.startswith(RAISING) for t in texts(tree) if t in codes())
     assert {code: n for code, n in counted.items() if n > 1 and "-" in code} == {}
 
 
@@ -65,10 +65,10 @@ def test_every_code_is_raised_somewhere() -> None:
     assert [code for _, constant, code in declarations() if constant not in names] == []
 
 
-@for_each("code", CODES.values())
+@for_each("code", codes().values())
 def test_every_code_says_how_bad_it_is_and_what_it_means(code) -> None:
     assert isinstance(code.severity, Severity)
-    assert code in FAMILIES[code.family]
+    assert code in families()[code.family]
     assert code.summary
     assert not code.summary.endswith(".")
     assert page(code).what

@@ -13,7 +13,7 @@ import pytest
 from lumen.app.lint import kept_findings
 from lumen.cli.main import main
 from lumen.loading import engine_files, looks
-from lumen.rules.checks import CHECKS
+from lumen.rules import traps
 from tests import ROOT
 from tests.guarded import PIPE, run_guarded
 
@@ -45,13 +45,13 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def judged(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Has an entry for each time that the rules looked."""
     times: list[int] = []
-    first = CHECKS[0].check
+    first = traps.check
 
     def counted(draft: object) -> None:
         times.append(1)
         first(draft)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(CHECKS[0], "check", counted)
+    monkeypatch.setattr(traps, "check", counted)
     return times
 
 

@@ -17,7 +17,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.document import Document
 from lumen.rules import check_files
-from lumen.rules.codes import CODES
+from lumen.rules.codes import codes
 from lumen.runtime.loop import Observer
 
 PATIENCE = 60.0
@@ -81,7 +81,7 @@ def _sound(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> bool:
     place = diagnostic.place
     height = files.get(place.file, b"").decode("utf-8", "replace").count("\n") + 2
     ordered = (place.line, place.column) <= (place.end_line, place.end_column)
-    return bool(diagnostic.message) and diagnostic.code in CODES and ordered and 1 <= place.line <= height
+    return bool(diagnostic.message) and diagnostic.code in codes() and ordered and 1 <= place.line <= height
 
 
 class Judge:

@@ -1,1 +1,1 @@
-"""Features of strangers: what a package adds that somebody installs beside Lumen, and what happens if it is faulty."""
+"""Features of packages that are installed beside Lumen: each kind of row works, and a faulty one is a finding."""

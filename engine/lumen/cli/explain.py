@@ -9,7 +9,7 @@ from lumen.cli.render.terminal_text import SEVERITY_COLOURS
 from lumen.cli.terminal import coloured, paint
 from lumen.formats.conversion_findings import CODE_MEANINGS
 from lumen.language.text_lines import lines_of
-from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.codes import codes, families
 from lumen.rules.pages import Example, Page, page
 from lumen.rules.selection import selected
 
@@ -28,25 +28,25 @@ def run(options: argparse.Namespace) -> int:
     """Show the page of a code, or list those that the word stands for; without one all."""
     word = (options.code or "").strip("[]`")
     json_wanted = options.format == "json"
-    if word in CODES:
+    if word in codes():
         found = page(word)
         print(json.dumps(_as_json(found), indent=2) if json_wanted else _text(found, coloured()))
     elif word in CODE_MEANINGS:
         what = CODE_MEANINGS[word]
         print(json.dumps({"code": word, "what": what}, indent=2) if json_wanted else f"{word}\n\n{what}")
     else:
-        codes = selected([word]) if word else CODES.keys()
-        print(_json_list(codes) if json_wanted else _list(codes, coloured()))
+        wanted = selected([word]) if word else codes().keys()
+        print(_json_list(wanted) if json_wanted else _list(wanted, coloured()))
     return 0
 
 
 def _list(wanted: Collection[str], on: bool) -> str:
     width = max(map(len, wanted))
     blocks = []
-    for name, codes in FAMILIES.items():
+    for name, members in families().items():
         rows = [
             f"  {paint(f'{code:{width}}', SEVERITY_COLOURS[entry.severity], on=on)}  {entry.summary}"
-            for code, entry in codes.items()
+            for code, entry in members.items()
             if code in wanted
         ]
         blocks += ["\n".join([paint(name, "bold", on=on), *rows])] if rows else []
@@ -54,11 +54,11 @@ def _list(wanted: Collection[str], on: bool) -> str:
 
 
 def _json_list(wanted: Collection[str]) -> str:
-    return json.dumps({"codes": [_entry(code) for code in CODES if code in wanted]}, indent=2)
+    return json.dumps({"codes": [_entry(code) for code in codes() if code in wanted]}, indent=2)
 
 
 def _entry(code: str) -> dict[str, Any]:
-    known = CODES[code]
+    known = codes()[code]
     return {"code": code, "family": known.family, "severity": str(known.severity), "summary": known.summary}
 
 
@@ -73,7 +73,7 @@ def _as_json(found: Page) -> dict[str, Any]:
 
 
 def _text(found: Page, on: bool) -> str:
-    severity, family = CODES[found.code].severity, CODES[found.code].family
+    severity, family = codes()[found.code].severity, codes()[found.code].family
     title = f"{paint(found.code, 'bold', SEVERITY_COLOURS[severity], on=on)}  {severity}, {family}"
     wrong = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.wrong)
     right = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.right)

@@ -21,9 +21,9 @@ def _files(folder: str) -> Callable[[Path], Iterable[str]]:
 
 
 def _codes(root: Path) -> Iterable[str]:
-    from lumen.rules.codes import CODES, FAMILIES  # with all rules: only for who asks for codes
+    from lumen.rules.codes import codes, families  # with all rules: only for who asks for codes
 
-    return [*CODES, *FAMILIES]
+    return [*codes(), *families()]
 
 
 def _languages(root: Path) -> Iterable[str]:

@@ -1,4 +1,4 @@
-"""What is wrong with features that were installed beside Lumen: it runs without them."""
+"""Findings about features that were installed beside Lumen and can't be used."""
 
 from lumen.distributions import Distribution
 from lumen.feature import found
@@ -14,7 +14,7 @@ def broken_features() -> list[Diagnostic]:
 
 
 def broken(distribution: Distribution, message: str) -> Diagnostic:
-    """Return the finding about one distribution; `message` says what is wrong with it."""
+    """Return the finding about one distribution; `message` is the fault."""
     hint = f"update `{distribution.name}`, or remove it: pip uninstall {distribution.name}"
     text = f"the installed package `{distribution.name}` {distribution.version} is faulty: {message}"
     return BROKEN_FEATURE.at(Place(MAIN_FILE), text, hint, cause=distribution.name)

@@ -16,7 +16,7 @@ from lumen.lsp.locating import key_at
 from lumen.lsp.names import NameKind, NameUse, covers
 from lumen.lsp.schemas import description_at
 from lumen.lsp.sentences import of_patterns, of_phrase_at, of_row_at
-from lumen.rules.codes import CODES
+from lumen.rules.codes import codes
 from lumen.rules.pages import page
 
 MAX_PHRASES = 20
@@ -47,7 +47,7 @@ def describe(analysis: Analysis, use: NameUse) -> str:
 
 def explain(diagnostic: Diagnostic) -> str:
     """The page of a finding's rule: what it means and why it matters."""
-    code = CODES.get(diagnostic.code)
+    code = codes().get(diagnostic.code)
     if code is None:
         return ""
     try:

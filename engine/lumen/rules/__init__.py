@@ -2,18 +2,20 @@
 
 from collections.abc import Callable, Mapping
 from datetime import date
+from itertools import chain
 from pathlib import Path
 
+from lumen.feature import Feature, distribution_of, resolve, rows
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.projects import Project
+from lumen.loading.broken_features import broken
 from lumen.loading.chosen_robot import as_robot, chosen_robot
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import read_files
 from lumen.loading.looks import Looks
 from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft
-from lumen.rules.checks import CHECKS
-from lumen.rules.codes import CODES
+from lumen.rules.codes import codes
 from lumen.rules.ignores import obey
 from lumen.rules.several_robots import together
 
@@ -55,8 +57,20 @@ def _checked(
     """What these files make, and everything wrong with them, as one robot reads them."""
     found = draft(files)
     found.root, found.today, found.looks = root, date.today(), looks
-    for rule in CHECKS:
+    for feature, rule in chain(rows("rules"), rows("last_rules")):
         between()
-        rule.check(found)
+        _apply(feature, rule, found)
     documents = {file: report.document for file, report in found.reports.items()}
-    return found, obey(found.diagnostics, documents, CODES)
+    return found, obey(found.diagnostics, documents, codes())
+
+
+def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
+    """Report what a rule finds; a rule that was installed beside Lumen and raises is a finding itself."""
+    distribution = distribution_of(feature)
+    if distribution is None:
+        resolve(rule)(found)
+        return
+    try:
+        resolve(rule)(found)
+    except Exception as error:  # of code that is not ours
+        found.loose.append(broken(distribution, f"its rule `{rule}` raised {type(error).__name__}: {error}"))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from lumen.language.diagnostics import Diagnostic, Severity, has_errors
 from lumen.loading.yaml_errors import TAB, YAML_SYNTAX
 from lumen.loading.yaml_nodes import DUPLICATE_KEY
-from lumen.rules.codes import CODES
+from lumen.rules.codes import codes
 from lumen.rules.fixes import Edit, Fix, edited, fixes
 
 ProjectFiles = Mapping[str, bytes]
@@ -85,10 +85,10 @@ def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[R
     What is unused or never reached is looked for where there are no errors. Behind a word that could not be used may
     be more of its file, and behind a file that could not be read more of the project; but never a new fault of form.
     """
-    if code in CODES and CODES[code].severity is not Severity.ERROR:
+    if code in codes() and codes()[code].severity is not Severity.ERROR:
         return has_errors(before)
     near = any(file == r.diagnostic.place.file or r.diagnostic.code in _HIDING for r in step)
-    return near and CODES[code].family not in ("text", "shape")
+    return near and codes()[code].family not in ("text", "shape")
 
 
 def _what(diagnostic: Diagnostic) -> tuple[str, str, str]:

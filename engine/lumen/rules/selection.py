@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.codes import codes, families
 
 
 def selected(words: Iterable[str]) -> frozenset[str]:
@@ -16,11 +16,11 @@ def selected(words: Iterable[str]) -> frozenset[str]:
 
 
 def _codes(word: str) -> Iterable[str]:
-    if word in CODES:
+    if word in codes():
         return (word,)
-    if word in FAMILIES:
-        return FAMILIES[word]
-    if found := [code for code in CODES if code.startswith(f"{word.rstrip('-')}-")]:
+    if word in families():
+        return families()[word]
+    if found := [code for code in codes() if code.startswith(f"{word.rstrip('-')}-")]:
         return found
     raise UsageError(unknown_code(word))
 
@@ -29,5 +29,5 @@ def unknown_code(word: str) -> str:
     """What to say of a word that is no code."""
     if not word:
         return "a code is missing: run `lumen explain` to list the codes"
-    hint = did_you_mean(word, [*CODES, *FAMILIES])
+    hint = did_you_mean(word, [*codes(), *families()])
     return f"there is no code `{word}`: {hint if hint.startswith('did') else 'run `lumen explain` to list the codes'}"

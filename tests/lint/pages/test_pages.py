@@ -3,19 +3,22 @@
 Lint finds in a wrong example what its page is about, at the marked word and nothing else, and nothing in a right one.
 """
 
+from importlib.resources import files
+from pathlib import Path
+
 import pytest
 from scripts.rule_pages import BASE, DOCS, said, written
 
 from lumen.loading.files import read_files
 from lumen.rules import check_files
-from lumen.rules.codes import CODES, FAMILIES
-from lumen.rules.pages import _HERE, page
+from lumen.rules.codes import codes, families
+from lumen.rules.pages import page
 from tests.scanning import matching
 from tests.tables import for_each
 
 pytestmark = pytest.mark.xdist_group("pages")
 """One worker for the whole file: what lint reports of an example is kept for the next test."""
-PLAYED = FAMILIES["physics"]
+PLAYED = families()["physics"]
 """Codes whose examples the simulated robot plays."""
 SLOW = "too-large"
 
@@ -25,7 +28,7 @@ def test_the_project_below_the_examples_is_sound() -> None:
 
 
 def test_every_code_has_a_page_and_every_page_a_code() -> None:
-    assert {file.stem for file in matching(_HERE, "*.md")} == CODES.keys()
+    assert {file.stem for file in matching(Path(str(files("lumen.rules.pages"))), "*.md")} == codes().keys()
 
 
 def judge(code: str) -> None:
@@ -40,7 +43,7 @@ def judge(code: str) -> None:
     assert said(right) == []
 
 
-@for_each("code", [code for code in CODES if code not in PLAYED and code != SLOW])
+@for_each("code", [code for code in codes() if code not in PLAYED and code != SLOW])
 def test_a_wrong_example_has_its_finding_at_the_marked_word_and_the_right_one_none(code: str) -> None:
     judge(code)
 
@@ -56,7 +59,7 @@ def test_so_have_examples_that_the_simulated_robot_plays(code: str) -> None:
     judge(code)
 
 
-@for_each("code", CODES)
+@for_each("code", codes())
 def test_a_page_says_what_and_why_in_few_words(code: str) -> None:
     found = page(code)
     assert found.what.endswith(".")

@@ -10,7 +10,7 @@ from urllib.parse import quote
 import lumen
 from lumen.app.lint.findings import Findings
 from lumen.language.diagnostics import Diagnostic, Place, Severity
-from lumen.rules.codes import CODES
+from lumen.rules.codes import codes
 from lumen.rules.fixes import Edit, fixes
 from lumen.rules.pages import page
 
@@ -51,9 +51,9 @@ def _bases(found: Findings) -> dict[str, Any]:
 
 def _rule(code: str) -> dict[str, Any]:
     """What is to be known of a code; of one of another tool no more than its name."""
-    if code not in CODES:
+    if code not in codes():
         return {"id": code}
-    known, found = CODES[code], page(code)
+    known, found = codes()[code], page(code)
     plain = f"{found.what}\n\n{found.why}"
     example = "\n\n".join(f"Wrong:\n\n```{s.language}\n{s.text}```" for s in found.wrong[:1])
     right = "\n\n".join(f"Right:\n\n```{s.language}\n{s.text}```" for s in found.right[:1])

@@ -10,10 +10,12 @@ Only who explains reads these files: lint itself does not.
 
 import re
 from functools import cache
-from pathlib import Path
+from importlib.resources import files
 from typing import NamedTuple
 
-_HERE = Path(__file__).parent
+from lumen.feature import rows
+from lumen.rules.codes import codes
+
 _FENCE = re.compile(
     r"^```(?P<language>\w+) (?P<file>\S+?)(?::(?P<line>\d+):(?P<first>\d+)-(?P<last>\d+))?(?: (?P<note>[^\n]+))?\n"
     r"(?P<text>.*?)^```$",
@@ -54,8 +56,12 @@ class Page(NamedTuple):
 
 @cache
 def page(code: str) -> Page:
-    """The page of a code that `CODES` has."""
-    text = (_HERE / f"{code}.md").read_text(encoding="utf-8")
+    """Return the page of one of `codes()`; of a code without a page, what its declaration says."""
+    found = (files(package) / f"{code}.md" for _, package in rows("pages"))
+    file = next((file for file in found if file.is_file()), None)
+    if file is None:
+        return Page(code, f"{codes()[code].summary.capitalize()}.", "", (), ())
+    text = file.read_text(encoding="utf-8")
     said, _, examples = text.partition("\nWrong:\n")
     wrong, _, right = examples.partition("\nRight:\n")
     what, _, why = said.strip().partition("\n\n")
