@@ -15,6 +15,7 @@ pytest_plugins = [
     "tests.cpu_time",
     "tests.garbage",
     "tests.progress",
+    "tests.stranger.installing",
 ]
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script

@@ -3,7 +3,6 @@
 import re
 import shutil
 from collections.abc import Iterable, Iterator
-from contextlib import ExitStack
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from lumen.loading import engine_files
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from tests import ROOT
+from tests.stranger.installing import Installed
 from tests.tables import for_each
 
 PROJECT = ROOT / "tests/lint/pages/base"
@@ -24,28 +24,8 @@ GOOD = 'from lumen.feature import Feature\nFEATURE = Feature(name="greeter", ext
 IMPORT_STRING = re.compile(r"lumen(\.\w+)+(:\w+)?")
 
 
-class Installed:
-    """A folder of distributions that this process uses; `write` installs or replaces one."""
-
-    def __init__(self, folder: Path, contexts: ExitStack) -> None:
-        self.folder, self._contexts = folder, contexts
-
-    def write(self, name: str, manifest: str, version: str = "1.0") -> None:
-        """Install a distribution with one module, `manifest`, and use it from now on."""
-        module = name.replace("-", "_")
-        write_distribution(self.folder, name, f"{module}:FEATURE", {f"{module}.py": manifest}, version)
-        self._contexts.close()
-        self._contexts.enter_context(on_path(self.folder))
-
-
-@pytest.fixture
-def installed(tmp_path: Path) -> Iterator[Installed]:
-    with ExitStack() as contexts:
-        yield Installed(tmp_path / "packages", contexts)
-
-
 def findings() -> list[str]:
-    """Return what lint says of a sound project."""
+    """Return the findings in a project that is sound by itself."""
     return [f"{each.place.file} {each.code} | {each.message}" for each in check_files(PROJECT, read_files(PROJECT))[1]]
 
 

@@ -1,0 +1,147 @@
+"""A stranger's lint rule reports, explains and repairs like one of Lumen's; a faulty one is one finding."""
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from scripts.rule_pages import said
+
+from lumen.cli.main import main
+from lumen.feature import rows
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from lumen.rules.codes import codes, families
+from lumen.rules.pages import page
+from tests import ROOT
+from tests.lsp.client import Client
+from tests.stranger.installing import Installed, Lumen
+
+BASE = ROOT / "tests/lint/pages/base"
+CODE = "small-name"
+
+FAULTY = """
+from lumen.feature import Feature
+
+FEATURE = Feature(name="faulty", rules=("faulty_rules:check", "faulty_rules:other", "faulty_rules:gone"))
+"""
+FAULTY_RULES = """
+from lumen.language.diagnostics import WARNING, Code
+
+LATER = Code("later", "names", WARNING, "found by a rule after a faulty one")
+
+def check(draft):
+    draft.settings.name.gone
+
+def other(draft):
+    draft.main(LATER, ("name",), "the rules after a faulty one are applied")
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A project whose name begins with a small letter."""
+    root = shutil.copytree(BASE, tmp_path / "project")
+    text = (root / "lumen.yaml").read_text()
+    assert "name: Small" in text
+    (root / "lumen.yaml").write_text(text.replace("name: Small", "name: small"))
+    return root
+
+
+def found(root: Path) -> Iterator[str]:
+    for each in check_files(root, read_files(root))[1]:
+        yield f"{each.place} {each.code} | {each.message}"
+
+
+@pytest.mark.process
+def test_its_finding_is_listed_and_its_code_can_be_selected(stranger: Path, project: Path, capsys) -> None:
+    assert list(found(project)) == [f"lumen.yaml:1:7 {CODE} | the name `small` begins with a small letter"]
+    for select, count in (("names", 1), ("small", 1), (CODE, 1), ("speech", 0)):
+        main(["lint", str(project), "--format", "json", "--select", select])
+        assert [d["code"] for d in json.loads(capsys.readouterr().out)["diagnostics"]] == [CODE] * count
+    assert list(families())[-1] == "names"
+
+
+@pytest.mark.process
+def test_its_code_is_explained(stranger: Path, capsys) -> None:
+    main(["explain", CODE])
+    printed = capsys.readouterr().out
+    assert f"{CODE}  warning, names" in printed
+    assert "A name begins with a capital letter." in printed
+    assert [d.code for d in said(page(CODE).wrong)] == [CODE]
+    assert said(page(CODE).right) == []
+
+
+@pytest.mark.process
+def test_its_finding_is_repaired(stranger: Path, project: Path) -> None:
+    main(["lint", str(project), "--fix"])
+    assert (project / "lumen.yaml").read_text().startswith("name: Small\n")
+
+
+@pytest.mark.process
+def test_its_finding_is_shown_in_an_editor(stranger: Path, project: Path) -> None:
+    command = ["env", f"PYTHONPATH={os.environ['PYTHONPATH']}", sys.executable, "-m", "lumen", "lsp", "--stdio"]
+    with Client(project, command) as client:
+        client.open("lumen.yaml")
+        shown = client.diagnostics("lumen.yaml")
+    assert [each["code"] for each in shown] == [CODE]
+
+
+@pytest.mark.process
+def test_a_changed_rule_changes_kept_findings(stranger: Path, stranger_lumen: Lumen, project: Path, tmp_path) -> None:
+    def lint() -> str:
+        return stranger_lumen(project, "lint", "--format", "concise").stdout
+
+    assert "begins with a small letter" in lint()
+    rules = stranger / "lumen_stranger/rules.py"
+    before = rules.read_text()
+    try:
+        rules.write_text(before.replace("begins with a small", "does not begin with a capital"))
+        assert "does not begin with a capital letter" in lint()
+    finally:
+        rules.write_text(before)
+    assert "begins with a small letter" in lint()
+
+
+def test_a_rule_that_raises_is_one_finding_and_the_others_are_applied(installed: Installed, project: Path) -> None:
+    installed.write("faulty", FAULTY, faulty_rules=FAULTY_RULES)
+    broken, other = found(project)
+    assert broken == (
+        "lumen.yaml:1:1 broken-feature | the installed package `faulty` 1.0 is faulty: "
+        "its rule `faulty_rules:check` raised AttributeError: 'str' object has no attribute 'gone'"
+    )
+    assert "later" in other
+
+
+def test_a_rule_of_lumen_that_raises_ends_lint(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def check(draft: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("lumen.rules.traps.check", check)
+    with pytest.raises(ZeroDivisionError):
+        list(found(project))
+
+
+def test_a_code_without_a_page_is_explained_by_its_summary(installed: Installed) -> None:
+    installed.write("faulty", FAULTY, faulty_rules=FAULTY_RULES)
+    assert codes()["later"].family == "names"
+    assert page("later").what == "Found by a rule after a faulty one."
+
+
+@pytest.mark.parametrize("module", ["1 / 0", "import not_installed"])
+def test_a_module_of_rules_that_cannot_be_imported_is_one_finding(
+    module: str, installed: Installed, project: Path
+) -> None:
+    manifest = FAULTY.replace("rules=", "codes=('faulty_rules',), rules=")
+    installed.write("faulty", manifest, faulty_rules=module)
+    (finding,) = found(project)
+    assert "broken-feature" in finding
+    assert "later" not in codes()
+
+
+def test_unused_things_are_reported_after_all_other_rules(installed: Installed, project: Path) -> None:
+    assert "lumen.rules.unused:check" in [rule for _, rule in rows("last_rules")]
+    assert "lumen.rules.unused:check" not in [rule for _, rule in rows("rules")]
