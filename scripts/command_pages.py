@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumen.cli.main import VERBS, command_line
+from lumen.cli.main import command_line, subcommands
 from lumen.cli.pages import page
 from lumen.cli.suggesting import Suggesting
 
@@ -23,9 +23,9 @@ INTRODUCTION = Path(__file__).with_suffix(".md")
 
 def written() -> dict[str, str]:
     """The pages of the docs, by file name."""
-    parser = command_line(VERBS)
-    index = "".join(f"- [`lumen {verb}`]({verb}.md): {summary}\n" for verb, summary in VERBS.items())
-    pages = {f"{verb}.md": _page(verb, parser.verbs[verb]) for verb in VERBS}
+    parser = command_line(subcommands())
+    index = "".join(f"- [`lumen {verb}`]({verb}.md): {row.summary}\n" for verb, row in subcommands().items())
+    pages = {f"{verb}.md": _page(verb, parser.verbs[verb]) for verb in subcommands()}
     return {"README.md": INTRODUCTION.read_text(encoding="utf-8") + index, **pages}
 
 

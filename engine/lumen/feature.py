@@ -18,12 +18,26 @@ API = 1
 
 BUILT_IN = (
     "lumen.features.core:FEATURE",
-    "lumen.features.alerts:FEATURE",
     "lumen.features.show:FEATURE",
+    "lumen.features.recording:FEATURE",
     "lumen.features.console:FEATURE",
     "lumen.features.fleet:FEATURE",
+    "lumen.features.alerts:FEATURE",
+    "lumen.features.formats:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subcommand:
+    """A subcommand of `lumen`. `after` is the one after which `lumen --help` lists it, of this or an earlier feature.
+
+    `module` has `configure`, which adds arguments to an `ArgumentParser`, and `run`, which returns the exit code.
+    """
+
+    summary: str
+    module: str
+    after: str = ""
 
 
 class Phase(IntEnum):
@@ -93,6 +107,8 @@ class Feature:
     """Packages with a `CODE.md` for codes, in the form that `lumen.rules.pages` describes."""
     fixes: Mapping[str, str] = field(default_factory=dict)
     """For a code, the function that proposes how to repair a finding, as `lumen.rules.fixes` describes."""
+
+    subcommands: Mapping[str, Subcommand] = field(default_factory=dict)
 
 
 class FeatureFault(NamedTuple):

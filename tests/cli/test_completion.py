@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from lumen.cli.main import VERBS, main
+from lumen.cli.main import main, subcommands
 from tests import ROOT
 from tests.guarded import Guarded, run_guarded
 from tests.provided import program
@@ -25,7 +25,7 @@ def completed(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
 
 
 def test_verbs_are_completed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert completed(capsys, "") == [*VERBS, "--help", "--version"]
+    assert completed(capsys, "") == [*subcommands(), "--help", "--version"]
     assert completed(capsys, "li") == ["lint"]
 
 
@@ -136,4 +136,4 @@ def test_fish_completes_with_what_it_means(path: str, tmp_path: Path) -> None:
     done = run_guarded(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     lines = done.stdout.splitlines()
     assert lines[:2] == ["lint\treport what is wrong in a project, and where", "--strict\tcount warnings as errors"]
-    assert {line.partition("\t")[0] for line in lines[2:]} >= VERBS.keys()
+    assert {line.partition("\t")[0] for line in lines[2:]} >= subcommands().keys()

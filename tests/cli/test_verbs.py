@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from scripts.command_pages import DOCS, written
 
-from lumen.cli.main import VERBS, command_line, main
+from lumen.cli.main import command_line, main, subcommands
 from lumen.cli.pages import page
 from lumen.cli.suggesting import parse
 from tests.scanning import matching
@@ -22,7 +22,7 @@ def test_the_pages_are_those_that_the_parser_makes() -> None:
     assert there == written(), "call `python scripts/command_pages.py`"
 
 
-@for_each("verb", VERBS)
+@for_each("verb", subcommands())
 def test_examples_can_be_typed(verb: str) -> None:
     parser, examples = command_line([verb]), page(verb).examples
     assert examples, f"engine/lumen/cli/pages/{verb}.md begins with examples"
@@ -33,7 +33,7 @@ def test_examples_can_be_typed(verb: str) -> None:
     assert f"  {examples[0].command}\n" in parser.verbs[verb].format_help()
 
 
-@for_each("verb", VERBS)
+@for_each("verb", subcommands())
 def test_what_is_reported_is_an_object_too_and_its_page_says_which(verb: str) -> None:
     formats = [a.choices for a in command_line([verb]).verbs[verb]._actions if "--format" in a.option_strings]
     assert (verb in NO_REPORT) != any("json" in (choices or ()) for choices in formats)

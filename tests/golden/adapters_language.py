@@ -36,7 +36,7 @@ def table(file: Path) -> dict[str, Any]:
 
 def verbs() -> dict[str, argparse.ArgumentParser]:
     """Return the parser of each subcommand by its name, that of `lumen` itself first."""
-    parser = command_line.command_line(command_line.VERBS)
+    parser = command_line.command_line(command_line.subcommands())
     return {"lumen": parser, **parser.verbs}
 
 

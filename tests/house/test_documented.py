@@ -11,7 +11,7 @@ import pytest
 from scripts.documented import ROOT, all_pages, available, check, differing, missing
 
 from lumen.cli.intermixed import Intermixed
-from lumen.cli.main import MODULES, VERBS
+from lumen.cli.main import subcommands
 from tests.tables import for_each
 
 BLOCK = re.compile(r"(?m)^```[\s\S]*?^```$")
@@ -32,10 +32,10 @@ def can_be_typed(command: str) -> bool:
     words = ["1" if re.fullmatch("[A-Z]+", word) else word for word in words if not word.startswith("…")]
     if not words or words[0].startswith("-") or words[0] == "1":
         return True
-    if words[0] not in VERBS:
+    if words[0] not in subcommands():
         return False
     parser = Intermixed()
-    importlib.import_module(f"lumen.cli.{MODULES.get(words[0], words[0])}").configure(parser)
+    importlib.import_module(subcommands()[words[0]].module).configure(parser)
     try:
         parser.parse_args(words[1:])
     except SystemExit as end:

@@ -4,7 +4,6 @@ import argparse
 import atexit
 import errno
 import gc
-import importlib
 import os
 import sys
 import time
@@ -16,6 +15,7 @@ from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.streams import complain, finish, hush, open_streams
 from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
+from lumen.feature import Subcommand, distribution_of, resolve, rows, table
 from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
@@ -28,49 +28,20 @@ def ready() -> float:
     return time.monotonic() - STARTED
 
 
-VERBS = {
-    "new": "start a project of your own",
-    "run": "run an exhibition",
-    "say": "make the robot of a running exhibition say something",
-    "stop": "make the robot of a running exhibition rest at once",
-    "resume": "let a stopped robot move again",
-    "status": "show what a running exhibition is doing",
-    "why": "explain why something happened in an exhibition",
-    "why-not": "explain why something did not happen, and what would have made it happen",
-    "goto": "make a running exhibition enter a state",
-    "model": "switch the language model of a running exhibition on or off",
-    "reload": "reload the files of a running exhibition, or show which files are active",
-    "replay": "repeat the steps of a journal, with the files that ran then or with others",
-    "story": "turn a recorded visit into a story, to keep as a test",
-    "diff": "compare two versions of a project, and preview a reload",
-    "topic": "list, print, measure and send the messages of a running exhibition",
-    "record": "record the messages of a running exhibition, for Foxglove and Lichtblick",
-    "console": "show a running exhibition in a browser, and control it from there",
-    "doctor": "check an exhibition's bus, and report what is missing",
-    "fleet": "update the robots of many houses, step by step",
-    "alerts": "send a test alert to every recipient",
-    "lint": "report what is wrong in a project, and where",
-    "explain": "explain a lint code, with an example",
-    "completion": "print the completion script for bash, zsh or fish",
-    "lsp": "run the language server for editors (LSP)",
-    "language": "add a language to a project, or list what is missing in one",
-    "schema": "print the JSON Schema of a kind of file, for editors",
-    "upgrade": "rewrite a project's files for the current vocabulary",
-    "test": "play the stories, try the sayings, and list those that fail",
-    "hear": "explain how a state reacts to a sentence, row by row",
-    "play": "play a motion on the simulated robot",
-    "memory": "list what the robot remembers, or forget a visitor",
-    "graph": "draw a behaviour as a diagram",
-    "plot": "draw a controller, its outputs for given inputs, or a motion",
-    "import": "convert another tool's statechart, motion, controller or robot",
-    "export": "write a behaviour as SCXML, for XState or as a diagram; the routes as AsyncAPI",
-}
-MODULES = {"import": "importing", "export": "exporting", "why-not": "why_not"}
-"""Modules of verbs that are words of Python, or no words of it."""
+def subcommands() -> dict[str, Subcommand]:
+    """Return all subcommands, in the order in which `lumen --help` lists them."""
+    found: dict[str, Subcommand] = table("subcommands")
+    order: list[str] = []
+    for name, row in found.items():
+        order.insert(order.index(row.after) + 1 if row.after in order else len(order), name)
+    return {name: found[name] for name in order}
 
 
 def command_line(wanted: Collection[str]) -> Suggesting:
-    """What reads the command line. Only the verbs that are wanted know their options: each is imported for that."""
+    """Return the parser of the command line. Only the wanted verbs have their options: each is imported for that.
+
+    Raises LumenError if a wanted one was installed beside Lumen and can't be imported.
+    """
     parser = Suggesting(
         prog="lumen",
         description="Describe the behaviour of a humanoid robot in YAML, and run it.",
@@ -79,16 +50,29 @@ def command_line(wanted: Collection[str]) -> Suggesting:
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=Intermixed, prog="lumen")
-    for verb, summary in VERBS.items():
+    for verb, row in subcommands().items():
         command = verbs.add_parser(
-            verb, help=summary, description=summary[0].upper() + summary[1:] + ".", formatter_class=Help
+            verb, help=row.summary, description=row.summary[0].upper() + row.summary[1:] + ".", formatter_class=Help
         )
         if verb in wanted:
-            with gc_paused():
-                module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")
-            module.configure(command)
-            command.set_defaults(run=module.run)
+            _configure(command, verb, row)
     return parser
+
+
+def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
+    try:
+        with gc_paused():
+            module = resolve(row.module)
+        module.configure(command)
+    except Exception as error:
+        feature = next(feature for feature, (name, _) in rows("subcommands") if name == verb)
+        if (distribution := distribution_of(feature)) is None:
+            raise
+        raise LumenError(
+            f"the installed package `{distribution.name}` {distribution.version} is faulty: "
+            f"its module `{row.module}` raised {type(error).__name__}: {error}"
+        ) from error
+    command.set_defaults(run=module.run)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -98,7 +82,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not arguments:
         command_line(()).print_help()
         return 2
-    options = parse(command_line(arguments[:1]), arguments)
+    try:
+        parser = command_line(arguments[:1])
+    except LumenError as error:
+        complain(f"lumen {arguments[0]}: {error}")
+        return 2
+    options = parse(parser, arguments)
     code = _run(options)
     if trouble := finish():
         complain(f"lumen {options.verb}: can't print: {trouble}")

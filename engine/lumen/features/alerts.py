@@ -1,8 +1,11 @@
 """Messages to people about trouble of an exhibition."""
 
-from lumen.feature import Feature
+from lumen.feature import Feature, Subcommand
 
 FEATURE = Feature(
     name="alerts",
     rules=("lumen.rules.alerts:check",),
+    subcommands={
+        "alerts": Subcommand("send a test alert to every recipient", "lumen.cli.alerts", after="fleet"),
+    },
 )

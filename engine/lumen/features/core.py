@@ -1,6 +1,6 @@
 """The part that every project needs, and all rows without a feature of their own yet."""
 
-from lumen.feature import Feature, PartRow, Phase
+from lumen.feature import Feature, PartRow, Phase, Subcommand
 
 MAKING = "lumen.app.making"
 TYPED = "lumen.cli.typed:typed_visitor"
@@ -160,5 +160,45 @@ FEATURE = Feature(
         "rule-syntax": "lumen.rules.fixes.misspellings:slip",
         "tab": "lumen.rules.fixes.lines:spaces",
         "unused-ignore": "lumen.rules.fixes.lines:fewer_ignores",
+    },
+    subcommands={
+        "new": Subcommand("start a project of your own", "lumen.cli.new"),
+        "run": Subcommand("run an exhibition", "lumen.cli.run"),
+        "say": Subcommand("make the robot of a running exhibition say something", "lumen.cli.say"),
+        "stop": Subcommand("make the robot of a running exhibition rest at once", "lumen.cli.stop"),
+        "resume": Subcommand("let a stopped robot move again", "lumen.cli.resume"),
+        "status": Subcommand("show what a running exhibition is doing", "lumen.cli.status"),
+        "why": Subcommand("explain why something happened in an exhibition", "lumen.cli.why"),
+        "why-not": Subcommand(
+            "explain why something did not happen, and what would have made it happen",
+            "lumen.cli.why_not",
+        ),
+        "goto": Subcommand("make a running exhibition enter a state", "lumen.cli.goto"),
+        "model": Subcommand("switch the language model of a running exhibition on or off", "lumen.cli.model"),
+        "reload": Subcommand(
+            "reload the files of a running exhibition, or show which files are active",
+            "lumen.cli.reload",
+        ),
+        "replay": Subcommand(
+            "repeat the steps of a journal, with the files that ran then or with others",
+            "lumen.cli.replay",
+        ),
+        "story": Subcommand("turn a recorded visit into a story, to keep as a test", "lumen.cli.story"),
+        "diff": Subcommand("compare two versions of a project, and preview a reload", "lumen.cli.diff"),
+        "topic": Subcommand("list, print, measure and send the messages of a running exhibition", "lumen.cli.topic"),
+        "doctor": Subcommand("check an exhibition's bus, and report what is missing", "lumen.cli.doctor"),
+        "lint": Subcommand("report what is wrong in a project, and where", "lumen.cli.lint"),
+        "explain": Subcommand("explain a lint code, with an example", "lumen.cli.explain"),
+        "completion": Subcommand("print the completion script for bash, zsh or fish", "lumen.cli.completion"),
+        "lsp": Subcommand("run the language server for editors (LSP)", "lumen.cli.lsp"),
+        "language": Subcommand("add a language to a project, or list what is missing in one", "lumen.cli.language"),
+        "schema": Subcommand("print the JSON Schema of a kind of file, for editors", "lumen.cli.schema"),
+        "upgrade": Subcommand("rewrite a project's files for the current vocabulary", "lumen.cli.upgrade"),
+        "test": Subcommand("play the stories, try the sayings, and list those that fail", "lumen.cli.test"),
+        "hear": Subcommand("explain how a state reacts to a sentence, row by row", "lumen.cli.hear"),
+        "play": Subcommand("play a motion on the simulated robot", "lumen.cli.play"),
+        "memory": Subcommand("list what the robot remembers, or forget a visitor", "lumen.cli.memory"),
+        "graph": Subcommand("draw a behaviour as a diagram", "lumen.cli.graph"),
+        "plot": Subcommand("draw a controller, its outputs for given inputs, or a motion", "lumen.cli.plot"),
     },
 )
