@@ -4,8 +4,8 @@ import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from lumen.formats.importers import format_tables
 from lumen.formats.known import FormatTable, Known
-from lumen.formats.tables import TABLES
 
 PAGE = Path(__file__).parents[1] / "docs/formats.md"
 HEADING = "## Names that are read, listed, or without meaning\n"
@@ -18,7 +18,7 @@ change that is lost without a finding.
 
 def written(page: str) -> str:
     """Return the page with its last part generated from the current tables."""
-    tables = "".join(f"\n### {name}\n\n{_table(table)}" for name, table in TABLES.items())
+    tables = "".join(f"\n### {name}\n\n{_table(table)}" for name, table in format_tables().items())
     return f"{page.partition(HEADING)[0].rstrip()}\n\n{HEADING}{_INTRODUCTION}{tables}"
 
 
@@ -45,7 +45,7 @@ def _code(names: Iterable[str]) -> str:
 
 def main() -> None:
     PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
-    print(f"wrote the tables of {len(TABLES)} formats to {PAGE.name}", file=sys.stderr)
+    print(f"wrote the tables of {len(format_tables())} formats to {PAGE.name}", file=sys.stderr)
 
 
 if __name__ == "__main__":

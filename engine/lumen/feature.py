@@ -23,7 +23,11 @@ BUILT_IN = (
     "lumen.features.console:FEATURE",
     "lumen.features.fleet:FEATURE",
     "lumen.features.alerts:FEATURE",
-    "lumen.features.formats:FEATURE",
+    "lumen.features.formats_charts:FEATURE",
+    "lumen.features.formats_motion:FEATURE",
+    "lumen.features.formats_fuzzy:FEATURE",
+    "lumen.features.formats_robots:FEATURE",
+    "lumen.features.formats_routes:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
 
@@ -38,6 +42,31 @@ class Subcommand:
     summary: str
     module: str
     after: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Importer:
+    """A kind of file of another tool that `lumen import` converts to one of ours.
+
+    `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.formats.importers`, for a
+    motion a `MotionReader` of `lumen.formats.gestures`.
+    """
+
+    kind: str
+    read: str
+
+
+@dataclass(frozen=True, slots=True)
+class Exporter:
+    """A format that `lumen export` writes. `kind` is `behavior`, `controller`, `diagram` or `project`.
+
+    `write` names a function. It gets a `MachineDefinition` or `ControllerDefinition` and a function from paths to
+    places, and returns a text and diagnostics; for a diagram it gets a `MachineDefinition`, for a project a `Project`,
+    and returns a text.
+    """
+
+    kind: str
+    write: str
 
 
 class Phase(IntEnum):
@@ -110,6 +139,13 @@ class Feature:
 
     subcommands: Mapping[str, Subcommand] = field(default_factory=dict)
 
+    importers: Mapping[str, Importer] = field(default_factory=dict)
+    """Readers of other tools' files, by the ending of a file's name in small letters, as `.scxml`."""
+    exporters: Mapping[str, Exporter] = field(default_factory=dict)
+    """Writers for `lumen export`, by the name of the format."""
+    format_tables: Mapping[str, str] = field(default_factory=dict)
+    """For a format that is imported, its `FormatTable` of names that are read, lost or without meaning."""
+
 
 class FeatureFault(NamedTuple):
     """Why a feature of an installed distribution, or a row of it, is ignored."""
@@ -159,6 +195,11 @@ def rows(kind: str) -> Iterator[tuple[Feature, Any]]:
 def table(kind: str) -> dict[str, Any]:
     """Return the rows of a kind that is a mapping, by name."""
     return {name: row for _, (name, row) in rows(kind)}
+
+
+def owner(kind: str, name: str) -> Feature:
+    """Return the feature that the row of this name belongs to; `kind` is a mapping and has the row."""
+    return next(feature for feature, (key, _) in rows(kind) if key == name)
 
 
 def distribution_of(feature: Feature) -> Distribution | None:

@@ -1,7 +1,7 @@
 """Find small changes to files of other tools that change neither the result nor the findings of `lumen import`.
 
-A change may be silent if its format's table (`lumen.formats.tables`) lists the touched name as without meaning, or if
-the import had already listed that part of the file before the change.
+A change may be silent if its format's table (`format_tables` of `lumen.formats.importers`) lists the touched name as
+without meaning, or if the import had already listed that part of the file before the change.
 """
 
 import io
@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST
-from lumen.formats.tables import TABLES
+from lumen.formats.importers import format_tables
 from tests import ROOT
 from tests.attack.changes import CHANGERS, Change, changed, normal
 from tests.attack.files import FOREIGN
@@ -144,7 +144,7 @@ def passes_silently(ending: str, change: Change, before: Outcome, after: Outcome
 
 def _means_nothing(ending: str, change: Change, *, once: bool) -> bool:
     """Return whether the touched names have no meaning, or are lost and reported `once` for the whole file."""
-    tables = [TABLES[name] for name in ENDINGS[ending]]
+    tables = [format_tables()[name] for name in ENDINGS[ending]]
     anywhere = {name for table in tables for known in table.values() for name in known.meaningless}
     for place, name in change.touched:
         for table in tables:

@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from lumen.formats.gestures import webots
-from lumen.formats.tables import TABLES
+from lumen.formats.importers import format_tables
 from tests.attack.changes import CHANGERS, changed, normal
 from tests.attack.files import FOREIGN
 from tests.attack.silence import Importer, attack_imports, passes_silently, samples
@@ -45,7 +45,7 @@ def test_a_name_without_meaning_may_change() -> None:
     seeds = (changed(Random(seed), "fis", text) for seed in range(2_000))
     change = next(one for one in seeds if one and "Name='t" in text and "\nName='qt'" in one.text)
     assert change.touched == {("[System]", "Name")}
-    assert "Name" in TABLES[".fis"]["[System]"].meaningless
+    assert "Name" in format_tables()[".fis"]["[System]"].meaningless
     assert not passes_silently("fis", change, importer.outcome("fis", text), importer.outcome("fis", change.text))
 
 

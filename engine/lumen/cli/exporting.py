@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import lumen
@@ -12,28 +11,13 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.formats.asyncapi import write_asyncapi
-from lumen.formats.conversion_findings import PlaceOfPath
-from lumen.formats.dot import dot
-from lumen.formats.fll import write_fll
-from lumen.formats.mermaid import mermaid
-from lumen.formats.scxml import write_scxml
-from lumen.formats.xstate import write_xstate
+from lumen.feature import Exporter, owner, table
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
-from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
+from lumen.loading.broken_features import resolved
 from lumen.loading.document import Document
 from lumen.loading.files import on_disk
 from lumen.loading.yaml_reader import parse
-
-Writer = Callable[[MachineDefinition, PlaceOfPath], tuple[str, list[Diagnostic]]]
-
-WRITERS: Mapping[str, Writer] = {
-    "scxml": write_scxml,
-    "xstate": write_xstate,
-    "mermaid": lambda machine, place: (mermaid(machine), []),
-    "dot": lambda machine, place: (dot(machine), []),
-}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. Parts"
         " that the format can't express are left out and listed with their lines; the exit code is then 1."
     )
-    targets = (*WRITERS, "fll", "asyncapi")
+    targets = tuple(table("exporters"))
     parser.add_argument("target", metavar="FORMAT", choices=targets, help=" | ".join(targets))
     which = "a behaviour (default: the one that lumen.yaml names) or a controller (default: the only one)"
     parser.add_argument("behavior", nargs="?", metavar="NAME", help=which)
@@ -64,26 +48,31 @@ def run(options: argparse.Namespace) -> int:
     """0 where everything could be said, 1 where something is left out."""
     root = shown_project(options.project)
     project = lumen.load(root)
-    if options.target == "asyncapi":
-        write_result(write_asyncapi(project), options.output)
+    row: Exporter = table("exporters")[options.target]
+    write = resolved(owner("exporters", options.target), row.write)
+    if row.kind == "project":
+        write_result(write(project), options.output)
         return 0
-    if options.target == "fll":
-        return _written(*_controller(root, project, options), options)
+    if row.kind == "controller":
+        name = _controller(project, options.behavior)
+        document = _document(root, f"fuzzy/{name}.yaml")
+        text, diagnostics = write(project.controllers[name], document.place)
+        return _written(text, diagnostics, document, options)
     name = options.behavior or project.behavior
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
-    document = _document(root, f"behaviors/{name}.yaml")
-    return _written(*WRITERS[options.target](project.behaviors[name], document.place), document, options)
+    document, machine = _document(root, f"behaviors/{name}.yaml"), project.behaviors[name]
+    text, diagnostics = (write(machine), []) if row.kind == "diagram" else write(machine, document.place)
+    return _written(text, diagnostics, document, options)
 
 
-def _controller(root: Path, project: Project, options: argparse.Namespace) -> tuple[str, list[Diagnostic], Document]:
-    """The text of a controller, and what it leaves out."""
-    name = options.behavior or (next(iter(project.controllers)) if len(project.controllers) == 1 else "")
+def _controller(project: Project, wanted: str | None) -> str:
+    """Return the name of the controller to write: the wanted one, else the only one."""
+    name = wanted or (next(iter(project.controllers)) if len(project.controllers) == 1 else "")
     if name not in project.controllers:
         hint = did_you_mean(name, project.controllers, "fuzzy/ has")
         raise UsageError(f"no controller `{name}`: {hint}" if name else f"name a controller: {hint}")
-    document = _document(root, f"fuzzy/{name}.yaml")
-    return *write_fll(project.controllers[name], document.place), document
+    return name
 
 
 def _written(text: str, diagnostics: list[Diagnostic], document: Document, options: argparse.Namespace) -> int:

@@ -3,7 +3,6 @@
 import argparse
 import re
 import sys
-from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,14 +15,11 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
+from lumen.feature import distribution_of, rows
 from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.fcl import read_fcl
-from lumen.formats.fis import read_fis
-from lumen.formats.fll import read_fll
-from lumen.formats.gestures import GESTURE_ENDINGS, choregraphe_list, read_gesture
+from lumen.formats.gestures import choregraphe_list, read_gesture
+from lumen.formats.importers import FileReader, endings, importer, reader
 from lumen.formats.robot_models import begins_robot
-from lumen.formats.scxml import read_scxml
-from lumen.formats.xstate import read_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.interpreters.limits import Excess, overspeed
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
@@ -42,10 +38,8 @@ from lumen.loading.yaml_reader import parse
 from lumen.rules.motions import TOO_FAST
 from lumen.upkeep.garbage import gc_paused
 
-Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
-
-CHARTS: Mapping[str, Reader] = {".scxml": read_scxml, ".xml": read_scxml, ".json": read_xstate}
-CONTROLLERS: Mapping[str, Reader] = {".fll": read_fll, ".fcl": read_fcl, ".fis": read_fis}
+BEGINNINGS = {b"<": ".scxml", b"{": ".json"}
+"""The ending that a file without a known one should have, by its first sign."""
 READ, WRITTEN = 20, 50
 """How much of the time [%] a large chart takes until it is read, and from there until it is written."""
 
@@ -57,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         " controller file, or a robot (URDF, MJCF) into a body file whose roles are guessed. Parts that"
         " can't be converted are left out and listed with their lines; the exit code is then 1. If Lumen could not load"
         " the result, nothing is written, and the exit code is 2."
-    )
+    ) + "".join(f" The installed package `{name}` adds {', '.join(added)}." for name, added in _added().items())
     add = parser.add_argument
     add(
         "file",
@@ -94,10 +88,10 @@ def run(options: argparse.Namespace) -> int:
         return _robot(options, content, title)
     if hint := choregraphe_list(content):
         raise UsageError(f"{options.file} is the file list of a Choregraphe project and contains no motion: {hint}")
-    body = _body(options.project) if options.file.suffix.lower() in GESTURE_ENDINGS else None
-    fuzzy = CONTROLLERS.get(options.file.suffix.lower())
-    kind = "motion" if body else "controller" if fuzzy else "behavior"
-    read = partial(_gesture, body, options) if body else fuzzy or _chart(options.file, content)
+    kind, read = _reader(options.file, content)
+    body = _body(options.project) if kind == "motion" else None
+    if body:
+        read = partial(_gesture, body, options)
     with progress() as tell, gc_paused():  # else it looks through a large chart again and again
         tell(0, 100, f"% of {options.file}: reading")
         try:
@@ -153,15 +147,27 @@ def _title(path: Path) -> str:
     return re.sub(r"[\s#*]+", "_", path.stem)
 
 
-def _chart(path: Path, content: bytes) -> Reader:
-    """By the file's ending, else by how it begins."""
-    if path.suffix.lower() in CHARTS:
-        return CHARTS[path.suffix.lower()]
-    start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
-    if start not in (b"<", b"{"):
-        endings = ", ".join((*GESTURE_ENDINGS, *CONTROLLERS))
-        raise UsageError(f"{path} is not SCXML, XState's JSON, a motion or a controller ({endings})")
-    return read_scxml if start == b"<" else read_xstate
+def _added() -> dict[str, list[str]]:
+    """Return the endings of files that packages installed beside Lumen read, by package."""
+    found: dict[str, list[str]] = {}
+    for feature, (ending, _) in rows("importers"):
+        if distribution := distribution_of(feature):
+            found.setdefault(distribution.name, []).append(ending)
+    return found
+
+
+def _reader(path: Path, content: bytes) -> tuple[str, FileReader]:
+    """Return the kind of our file, and the function that reads the other tool's: by its ending, else its first sign."""
+    ending = path.suffix
+    if importer(ending) is None:
+        start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
+        if start not in BEGINNINGS:
+            known = ", ".join((*endings("motion"), *endings("controller")))
+            raise UsageError(f"{path} is not SCXML, XState's JSON, a motion or a controller ({known})")
+        ending = BEGINNINGS[start]
+    row = importer(ending)
+    assert row is not None
+    return row.kind, reader(ending)
 
 
 def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -> str:

@@ -15,7 +15,7 @@ from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.streams import complain, finish, hush, open_streams
 from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
-from lumen.feature import Subcommand, distribution_of, resolve, rows, table
+from lumen.feature import Subcommand, owner, resolve, table
 from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
@@ -65,13 +65,9 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
             module = resolve(row.module)
         module.configure(command)
     except Exception as error:
-        feature = next(feature for feature, (name, _) in rows("subcommands") if name == verb)
-        if (distribution := distribution_of(feature)) is None:
-            raise
-        raise LumenError(
-            f"the installed package `{distribution.name}` {distribution.version} is faulty: "
-            f"its module `{row.module}` raised {type(error).__name__}: {error}"
-        ) from error
+        from lumen.loading.broken_features import blamed  # only if it is needed
+
+        raise blamed(owner("subcommands", verb), row.module, error) from error
     command.set_defaults(run=module.run)
 
 

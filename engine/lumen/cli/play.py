@@ -16,7 +16,8 @@ from lumen.cli.progress import ProgressListener, progress
 from lumen.cli.projects import shown_project
 from lumen.errors import ProjectError, UsageError
 from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
+from lumen.formats.gestures import read_gesture
+from lumen.formats.importers import endings
 from lumen.interpreters.limits import overspeed
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
@@ -166,7 +167,8 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
 def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> MotionDefinition:
     """The motion of that name or in that file, whatever is wrong with other files of the project."""
     path = Path(name)
-    if path.suffix.lower() in GESTURE_ENDINGS:
+    foreign = endings("motion")
+    if path.suffix.lower() in foreign:
         return _foreign(body_of(found), path, options)
     if path.suffix in (".yaml", ".yml"):
         from lumen.motion import Motion as MotionFile
@@ -175,8 +177,8 @@ def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> Moti
             raise UsageError(f"no file {path}")
         return MotionFile.load(path)
     if path.is_file():
-        endings = f"{', '.join(GESTURE_ENDINGS[:-1])} or {GESTURE_ENDINGS[-1]}"
-        raise UsageError(f"{path} is not a motion: its name must end in .yaml, {endings}")
+        listed = f"{', '.join(foreign[:-1])} or {foreign[-1]}"
+        raise UsageError(f"{path} is not a motion: its name must end in .yaml, {listed}")
     report = found.reports.get(f"motions/{name}.yaml")
     if report and has_errors(report.diagnostics):
         raise ProjectError(report.diagnostics)

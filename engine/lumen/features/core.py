@@ -200,5 +200,13 @@ FEATURE = Feature(
         "memory": Subcommand("list what the robot remembers, or forget a visitor", "lumen.cli.memory"),
         "graph": Subcommand("draw a behaviour as a diagram", "lumen.cli.graph"),
         "plot": Subcommand("draw a controller, its outputs for given inputs, or a motion", "lumen.cli.plot"),
+        "import": Subcommand(
+            "convert another tool's statechart, motion, controller or robot",
+            "lumen.cli.importing",
+        ),
+        "export": Subcommand(
+            "write a behaviour as SCXML, for XState or as a diagram; the routes as AsyncAPI",
+            "lumen.cli.exporting",
+        ),
     },
 )

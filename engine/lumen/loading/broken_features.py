@@ -1,7 +1,10 @@
 """Findings about features that were installed beside Lumen and can't be used."""
 
+from typing import Any
+
 from lumen.distributions import Distribution
-from lumen.feature import found
+from lumen.errors import LumenError
+from lumen.feature import Feature, distribution_of, found, resolve
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
 from lumen.loading.project_folders import MAIN_FILE
 
@@ -18,3 +21,26 @@ def broken(distribution: Distribution, message: str) -> Diagnostic:
     hint = f"update `{distribution.name}`, or remove it: pip uninstall {distribution.name}"
     text = f"the installed package `{distribution.name}` {distribution.version} is faulty: {message}"
     return BROKEN_FEATURE.at(Place(MAIN_FILE), text, hint, cause=distribution.name)
+
+
+def resolved(feature: Feature, where: str) -> Any:
+    """Return what an import string of a feature names.
+
+    Raises LumenError with the name of the distribution if a feature is faulty that was installed beside Lumen.
+    """
+    try:
+        return resolve(where)
+    except Exception as error:
+        raise blamed(feature, where, error) from error
+
+
+def blamed(feature: Feature, where: str, error: Exception) -> LumenError:
+    """Return an error that names the distribution in whose module `error` was raised.
+
+    Raises `error` itself if the feature comes with Lumen.
+    """
+    distribution = distribution_of(feature)
+    if distribution is None:
+        raise error
+    finding = broken(distribution, f"its module `{where}` raised {type(error).__name__}: {error}")
+    return LumenError(f"{finding.message} ({finding.hint})")

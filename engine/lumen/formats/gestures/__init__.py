@@ -1,19 +1,23 @@
 """Motions of other tools, as ours."""
 
-from typing import Any
+from pathlib import PurePath
+from typing import Any, Protocol
 
-from lumen.formats.conversion_findings import LOST, ConversionFindings, broken, decoded
-from lumen.formats.gestures.choregraphe import choregraphe_list, read_choregraphe
-from lumen.formats.gestures.joint_curves import JointCurves
+from lumen.formats.conversion_findings import LOST, ConversionFindings, broken
+from lumen.formats.gestures.choregraphe import choregraphe_list
+from lumen.formats.gestures.joint_curves import JointCurves, MotionFile
 from lumen.formats.gestures.motion_writer import MotionWriter
-from lumen.formats.gestures.naoqi import read_naoqi
-from lumen.formats.gestures.webots import read_webots
+from lumen.formats.importers import reader
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.robots import Body
 
-GESTURE_ENDINGS = (".motion", ".xar", ".py")
+__all__ = ["MotionReader", "choregraphe_list", "read_gesture"]
 
-__all__ = ["GESTURE_ENDINGS", "choregraphe_list", "read_gesture"]
+
+class MotionReader(Protocol):
+    """Reads the curves of all joints from a file of another tool. Raises ForeignFileError."""
+
+    def __call__(self, file: MotionFile, findings: ConversionFindings) -> JointCurves: ...
 
 
 def read_gesture(
@@ -25,7 +29,8 @@ def read_gesture(
     joints need. Raises ForeignFileError if the file holds no motion.
     """
     findings = ConversionFindings()
-    curves = _curves(file, content, body, findings, timeline)
+    read: MotionReader = reader(PurePath(file).suffix)
+    curves = read(MotionFile(file, content, timeline, body.hands), findings)
     data = MotionWriter(body, findings, retime).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
     if not data["keyframes"]:
         message = f"the file moves no joint of {body.name}"
@@ -34,14 +39,3 @@ def read_gesture(
             raise broken(Place(file), "not-a-motion", message)
         raise broken(lost[0].place, "not-a-motion", f"{message}: {lost[0].message}")
     return data, findings.diagnostics
-
-
-def _curves(file: str, content: bytes, body: Body, findings: ConversionFindings, timeline: str) -> JointCurves:
-    if file.lower().endswith(".xar"):
-        return read_choregraphe(file, content, findings, timeline, body.hands)
-    text = decoded(file, content)
-    return (
-        read_naoqi(file, text, findings, timeline)
-        if file.lower().endswith(".py")
-        else read_webots(file, text, findings)
-    )

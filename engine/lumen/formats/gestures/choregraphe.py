@@ -11,7 +11,7 @@ from math import inf, radians
 from typing import NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings, ForeignFileError, broken
-from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, number
+from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, MotionFile, number
 from lumen.formats.known import FormatTable, Known
 from lumen.formats.known_elements import local, tell_losses
 from lumen.formats.xml_elements import XmlElement, parse_xml
@@ -90,22 +90,20 @@ class Flags(NamedTuple):
         return (frame - self.first + 1) / self.fps
 
 
-def read_choregraphe(
-    file: str, content: bytes, findings: ConversionFindings, timeline: str = "", hands: Collection[str] = ()
-) -> JointCurves:
+def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
     """The curves of the timeline of that name, or of the only one if no name is given. Raises ForeignFileError.
 
-    `hands` are the robot's hands besides NAO's: their keys are openings.
+    `hands` of the file are the robot's hands besides NAO's: their keys are openings.
     """
-    root = parse_xml(file, content, most=MAX_CHOREGRAPHE_ELEMENTS)
+    root = parse_xml(file.name, file.content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
         raise broken(root.place, "not-a-motion", f"this is not a Choregraphe behaviour: it begins with `{local(root)}`")
     if (version := root.get("xar_version", VERSION)) != VERSION:
         message = f"`xar_version` is {version[:20]}: the file is read as version {VERSION}"
         findings.changed(root.place, message, "compare the motion with the original")
     timelines = dict(_timelines(root))
-    chosen = _chosen(root, timelines, timeline)
-    _others(root, chosen, findings, asked=bool(timeline))
+    chosen = _chosen(root, timelines, file.timeline)
+    _others(root, chosen, findings, asked=bool(file.timeline))
     _tell_around(root, chosen, findings)
     flags = _flags(chosen, findings)
     curves: dict[str, list[CurvePoint]] = {}
@@ -122,7 +120,7 @@ def read_choregraphe(
             )
         if joint in curves:
             findings.lost(curve.place, f"a second curve for `{joint}` is left out")
-        elif points := list(_points(curve, _played(keys, curve, flags, findings), flags, findings, hands)):
+        elif points := list(_points(curve, _played(keys, curve, flags, findings), flags, findings, file.hands)):
             curves[joint] = points
     return curves
 

@@ -1,6 +1,6 @@
 """Joint curves of any origin."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from lumen.formats.gestures.literals import MAX_NUMBER
@@ -21,6 +21,15 @@ class CurvePoint(NamedTuple):
     straight: bool = False
     handle_in: BezierHandle = (0.0, 0.0)
     handle_out: BezierHandle = (0.0, 0.0)
+
+
+class MotionFile(NamedTuple):
+    """A file of another tool. `timeline` names one of several motions in it; `hands` are joints that open and close."""
+
+    name: str
+    content: bytes
+    timeline: str = ""
+    hands: Collection[str] = ()
 
 
 JointCurves = Mapping[str, list[CurvePoint]]

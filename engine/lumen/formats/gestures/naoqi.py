@@ -13,8 +13,8 @@ from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from typing import Any
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves
+from lumen.formats.conversion_findings import ConversionFindings, broken, decoded
+from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, MotionFile
 from lumen.formats.gestures.literals import MAX_NUMBER, NotWrittenOutError, value_of, written
 from lumen.formats.gestures.naoqi_calls import ALMOTION_CALLS, CALLS, CHAINS, PAUSE, WAIT, is_reading
 from lumen.formats.gestures.statements import (
@@ -46,13 +46,13 @@ _OLD = (
 """What Python 2 wrote otherwise, and how it is read."""
 
 
-def read_naoqi(file: str, text: str, findings: ConversionFindings, timeline: str = "") -> JointCurves:
+def read_naoqi(file: MotionFile, findings: ConversionFindings) -> JointCurves:
     """The curves that the file hands to ALMotion, or a function of that name. Raises ForeignFileError for none."""
-    tree = _tree(file, text)
+    tree = _tree(file.name, decoded(file.name, file.content))
     for rounds in (MAX_ROUNDS, 0):
         found = ConversionFindings()
         try:
-            curves = _read(file, tree, found, timeline, rounds)
+            curves = _read(file.name, tree, found, file.timeline, rounds)
         except _TooManyStepsError as error:
             if rounds:
                 continue

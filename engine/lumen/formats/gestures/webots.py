@@ -6,9 +6,9 @@ leaves a joint alone. Teams of RoboCup's 3D league write V1.1 (`soccer.py`), whi
 
 import re
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.conversion_findings import ConversionFindings, broken, decoded
 from lumen.formats.gestures.cells import Cell, cells_of
-from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
+from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, MotionFile, number
 from lumen.formats.gestures.soccer import SOCCER_VERSION, read_soccer
 from lumen.formats.known import FormatTable, Known
 from lumen.language.counts import counted
@@ -29,12 +29,13 @@ _TIME = re.compile(r"(?:(?:(\d{1,6}):)?(\d{1,6}):)?(\d{1,9})", re.ASCII)
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
 
-def read_webots(file: str, text: str, findings: ConversionFindings) -> JointCurves:
+def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
     """The curves of a motion, joined by lines. Raises ForeignFileError where it is none."""
-    lines = list(cells_of(file, text, ","))
+    text = decoded(file.name, file.content)
+    lines = list(cells_of(file.name, text, ","))
     if lines and [word for word, _ in lines[0][:2]] == [FIRST_CELL, SOCCER_VERSION]:
-        return read_soccer(file, text, findings)
-    joints = _joints(file, lines)
+        return read_soccer(file.name, text, findings)
+    joints = _joints(file.name, lines)
     curves: dict[str, list[CurvePoint]] = {joint: [] for joint, _ in joints}
     renamed = False
     for cells in lines:

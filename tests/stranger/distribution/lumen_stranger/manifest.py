@@ -1,6 +1,6 @@
 """The manifest of the stranger's feature."""
 
-from lumen.feature import Feature, Subcommand
+from lumen.feature import Exporter, Feature, Importer, Subcommand
 
 FEATURE = Feature(
     name="stranger",
@@ -10,4 +10,7 @@ FEATURE = Feature(
     subcommands={
         "greet": Subcommand("greet visitors with the name of an exhibition", "lumen_stranger.greet", after="plot"),
     },
+    importers={".states": Importer("behavior", "lumen_stranger.lists:read_states")},
+    exporters={"states": Exporter("behavior", "lumen_stranger.lists:write_states")},
+    format_tables={"lists of states": "lumen_stranger.lists:KNOWN"},
 )

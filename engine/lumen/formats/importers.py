@@ -1,0 +1,43 @@
+"""Other tools' files that can be imported, by the ending of their names: rows of manifests."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from lumen.feature import Importer, owner, resolve, table
+from lumen.formats.known import FormatTable
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.broken_features import resolved
+
+
+class FileReader(Protocol):
+    """Converts a file to the data of one of our YAML files, and lists what can't be converted.
+
+    `title` is for formats whose files have no name of their own. Raises ForeignFileError.
+    """
+
+    def __call__(self, file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]: ...
+
+
+def importer(ending: str) -> Importer | None:
+    """Return the row for files whose names have that ending, in letters of any size."""
+    found: Importer | None = table("importers").get(ending.lower())
+    return found
+
+
+def endings(kind: str) -> tuple[str, ...]:
+    """Return the endings of all files that become a `behavior`, a `controller` or a `motion`."""
+    return tuple(ending for ending, row in table("importers").items() if row.kind == kind)
+
+
+def reader(ending: str) -> Any:
+    """Return the function that reads files with that ending, which has a row.
+
+    Raises LumenError if a package that was installed beside Lumen has it, and can't be imported.
+    """
+    name = ending.lower()
+    return resolved(owner("importers", name), table("importers")[name].read)
+
+
+def format_tables() -> Mapping[str, FormatTable]:
+    """Return the names of each format that are read, lost or without meaning, by the kind of place in a file."""
+    return {name: resolve(where) for name, where in table("format_tables").items()}
