@@ -139,6 +139,11 @@ class Feature:
 
     subcommands: Mapping[str, Subcommand] = field(default_factory=dict)
 
+    finding_formats: Mapping[str, str] = field(default_factory=dict)
+    """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
+    verdict_formats: Mapping[str, str] = field(default_factory=dict)
+    """For `lumen test --format NAME`, the function from a `Verdict` to text."""
+
     importers: Mapping[str, Importer] = field(default_factory=dict)
     """Readers of other tools' files, by the ending of a file's name in small letters, as `.scxml`."""
     exporters: Mapping[str, Exporter] = field(default_factory=dict)

@@ -7,7 +7,7 @@ from pathlib import Path
 import lumen
 from lumen.app.lint.findings import Findings
 from lumen.cli.projects import shown_project
-from lumen.cli.render import FORMATS, render
+from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
     parser.add_argument(
         "--format",
-        choices=tuple(FORMATS),
+        choices=finding_formats(),
         default="text",
         help="format of the list of omissions (default: text)",
     )

@@ -11,7 +11,7 @@ from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.importing_robot import body_faults, robot_body, write_beside
 from lumen.cli.progress import progress
-from lumen.cli.render import FORMATS, render
+from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
@@ -74,7 +74,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add(
         "--format",
-        choices=tuple(FORMATS),
+        choices=finding_formats(),
         default="text",
         help="format of the list of omissions (default: text)",
     )

@@ -9,7 +9,7 @@ from lumen.app.lint.targets import FindingsOf, LintTarget, Wanted, lint, lint_ta
 from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
-from lumen.cli.render import FORMATS, render
+from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.cli.workers_option import configure_workers
 from lumen.errors import UsageError
@@ -20,7 +20,7 @@ from lumen.upkeep.garbage import gc_paused
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("paths", nargs="*", metavar="PATH", help="projects, or files of a project (default: this folder or one above)")
-    add("--format", choices=tuple(FORMATS), default="text", help="output format (default: text)")
+    add("--format", choices=finding_formats(), default="text", help="output format (default: text)")
     add("--select", metavar="CODES", action="append", help="show only these codes, first letters of codes, or families")
     add("--ignore", metavar="CODES", action="append", help="do not show these")
     add(

@@ -15,7 +15,7 @@ from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
 from lumen.cli.verdict import JudgedSaying, Verdict
-from lumen.cli.verdicts import FORMATS, text
+from lumen.cli.verdicts import render, text, verdict_formats
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
 from lumen.interpreters.explaining.sayings import tried as tried_sayings
@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="[PROJECT] STORY",
         help="the project's folder, then stories or files of sayings: names, files or 'safety_*' (default: all)",
     )
-    add("--format", choices=tuple(FORMATS), default="text", help="output format (default: text)")
+    add("--format", choices=verdict_formats(), default="text", help="output format (default: text)")
     configure_model(parser)
     add("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
     add("-x", "--exitfirst", action="store_true", help="stop at the first story that fails")
@@ -95,7 +95,7 @@ def run(options: argparse.Namespace) -> int:
     if live:
         _print("\n".join(text.conclusion(verdict, coloured=coloured())))
     else:
-        _deliver(FORMATS[options.format](verdict), options.output)
+        _deliver(render(options.format, verdict), options.output)
     return 0 if verdict.well else 1
 
 

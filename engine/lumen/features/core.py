@@ -209,4 +209,17 @@ FEATURE = Feature(
             "lumen.cli.exporting",
         ),
     },
+    finding_formats={
+        "text": "lumen.cli.render.text:render",
+        "concise": "lumen.cli.render.concise:render",
+        "json": "lumen.cli.render.json:render",
+        "sarif": "lumen.cli.render.sarif:render",
+        "github": "lumen.cli.render.github:render",
+        "junit": "lumen.cli.render.junit:render",
+    },
+    verdict_formats={
+        "text": "lumen.cli.verdicts.text:render",
+        "json": "lumen.cli.verdicts.json:render",
+        "junit": "lumen.cli.verdicts.junit:render",
+    },
 )

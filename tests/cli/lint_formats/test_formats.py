@@ -9,7 +9,7 @@ import pytest
 from jsonschema import Draft4Validator
 
 from lumen.app.lint.findings import Findings
-from lumen.cli.render import FORMATS, render
+from lumen.cli.render import finding_formats, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
 from lumen.loading.files import Unreadable
 from tests.fetched import fetched
@@ -45,7 +45,7 @@ FOUND = Findings(
 )  # fmt: skip
 
 
-@for_each("format", FORMATS)
+@for_each("format", finding_formats())
 def test_findings_read_as_they_did(format: str) -> None:
     expected = next(HERE.glob(f"{format}.*")).read_bytes().decode()
     assert _without_pages(render(format, [FOUND])) + "\n" == expected
@@ -56,7 +56,7 @@ def _without_pages(shown: str) -> str:
     return re.sub(r'"rules": \[\n.*?\n          \]', '"rules": []', shown, flags=re.DOTALL)
 
 
-@for_each("format", FORMATS)
+@for_each("format", finding_formats())
 def test_no_findings(format: str) -> None:
     shown = render(format, [Findings((), FILES)])
     assert "error" not in re.sub(r'errors="0"|sarif-v2.1.0/errata01', "", shown)

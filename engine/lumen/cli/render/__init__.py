@@ -1,10 +1,11 @@
 """Findings for people and for machines: each format a small function from findings to text."""
 
-from collections.abc import Mapping, Sequence
-from importlib import import_module
-from typing import Protocol, cast
+from collections.abc import Sequence
+from typing import Protocol
 
 from lumen.app.lint.findings import Findings
+from lumen.feature import owner, table
+from lumen.loading.broken_features import resolved
 
 
 class Renderer(Protocol):
@@ -13,18 +14,15 @@ class Renderer(Protocol):
     def __call__(self, found: Sequence[Findings], *, coloured: bool = False) -> str: ...
 
 
-FORMATS: Mapping[str, str] = {
-    "text": "with the line of the file, for people",
-    "concise": "a line for each finding",
-    "json": "one object, for programs",
-    "sarif": "SARIF 2.1.0, for code scanning",
-    "github": "annotations for GitHub Actions",
-    "junit": "JUnit XML, for continuous integration",
-}
-"""Each format, and what it is for; it is the module of its name here."""
+def finding_formats() -> tuple[str, ...]:
+    """Return the names of all formats."""
+    return tuple(table("finding_formats"))
 
 
 def render(format: str, found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """The findings in that format; empty where there are none and the format has no summary."""
-    module = import_module(f"lumen.cli.render.{format}")
-    return cast(Renderer, module.render)(found, coloured=coloured)
+    """Return the findings in that format; empty if there are none and the format has no summary.
+
+    Raises LumenError if a package that was installed beside Lumen has the format, and can't be imported.
+    """
+    renderer: Renderer = resolved(owner("finding_formats", format), table("finding_formats")[format])
+    return renderer(found, coloured=coloured)

@@ -1,14 +1,18 @@
 """Verdicts for people and for machines: each format a small function from a verdict to text."""
 
-from collections.abc import Callable, Mapping
-
 from lumen.cli.verdict import Verdict
-from lumen.cli.verdicts.json import render as render_json
-from lumen.cli.verdicts.junit import render as render_junit
-from lumen.cli.verdicts.text import render as render_text
+from lumen.feature import owner, table
+from lumen.loading.broken_features import resolved
 
-FORMATS: Mapping[str, Callable[[Verdict], str]] = {
-    "text": render_text,
-    "json": render_json,
-    "junit": render_junit,
-}
+
+def verdict_formats() -> tuple[str, ...]:
+    """Return the names of all formats."""
+    return tuple(table("verdict_formats"))
+
+
+def render(format: str, verdict: Verdict) -> str:
+    """Return the verdict in that format.
+
+    Raises LumenError if a package that was installed beside Lumen has the format, and can't be imported.
+    """
+    return str(resolved(owner("verdict_formats", format), table("verdict_formats")[format])(verdict))

@@ -10,6 +10,8 @@ FEATURE = Feature(
     subcommands={
         "greet": Subcommand("greet visitors with the name of an exhibition", "lumen_stranger.greet", after="plot"),
     },
+    finding_formats={"count": "lumen_stranger.counting:findings"},
+    verdict_formats={"count": "lumen_stranger.counting:verdict"},
     importers={".states": Importer("behavior", "lumen_stranger.lists:read_states")},
     exporters={"states": Exporter("behavior", "lumen_stranger.lists:write_states")},
     format_tables={"lists of states": "lumen_stranger.lists:KNOWN"},
