@@ -9,6 +9,7 @@ import re
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import cache
 from typing import NamedTuple
 
 GROUP = "lumen.features"
@@ -33,6 +34,7 @@ class Distribution(NamedTuple):
         return f"{self.name} {self.version}"
 
 
+@cache
 def distributions() -> tuple[Distribution, ...]:
     """Return the distributions with features on the import path, by name; one with two manifests comes twice."""
     first: dict[str, list[Distribution]] = {}

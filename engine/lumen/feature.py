@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from enum import IntEnum, auto
 from functools import cache
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
 from lumen.distributions import Distribution, distributions
 
@@ -243,9 +243,21 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
     if feature.api != API:
         return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
-    if wrong := [kind for kind in _kinds() if not isinstance(getattr(feature, kind), tuple | Mapping)]:
-        return None, f"`{wrong[0]}` of its manifest is neither a tuple nor a mapping"
-    return feature, ""
+    return feature, next(_wrong_kinds(feature), "")
+
+
+def _wrong_kinds(feature: Feature) -> Iterator[str]:
+    """Describe each kind of rows that has another type than `Feature` declares, or has a row of another type."""
+    declared = get_type_hints(Feature)
+    for kind in _kinds():
+        form, value = get_origin(declared[kind]), getattr(feature, kind)
+        row = next(each for each in reversed(get_args(declared[kind])) if each is not Ellipsis)
+        if not isinstance(value, form):
+            yield f"`{kind}` of its manifest is no {form.__name__.lower()}"
+            continue
+        rows_of = value.values() if isinstance(value, Mapping) else value
+        if wrong := [each for each in rows_of if not isinstance(each, get_origin(row) or row)]:
+            yield f"`{kind}` of its manifest has the row `{wrong[0]!r}`, which is no `{row.__name__}`"
 
 
 def _kinds() -> Iterator[str]:

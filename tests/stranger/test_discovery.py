@@ -52,7 +52,13 @@ FAULTY = {
         GOOD.replace("extras", "api=2, extras"),
         "its manifest is written for API 2, and this Lumen has API 1",
     ),
-    "no rows": (GOOD.replace('("waving",)', "None"), "`extras` of its manifest is neither a tuple nor a mapping"),
+    "no rows": (GOOD.replace('("waving",)', "None"), "`extras` of its manifest is no tuple"),
+    "a text for a tuple": (GOOD.replace('("waving",)', '"waving"'), "`extras` of its manifest is no tuple"),
+    "no mapping": (GOOD.replace("extras=", "subcommands="), "`subcommands` of its manifest is no mapping"),
+    "a row of another type": (
+        GOOD.replace('extras=("waving",)', 'subcommands={"wave": "waving"}'),
+        "`subcommands` of its manifest has the row `'waving'`, which is no `Subcommand`",
+    ),
     "a name of Lumen's": (
         GOOD.replace('"greeter"', '"core"'),
         "its feature has the name `core`, as one of Lumen has",
