@@ -116,6 +116,17 @@ def test_a_rule_that_raises_is_one_finding_and_the_others_are_applied(installed:
     assert "later" in other
 
 
+def test_a_repair_that_raises_names_its_distribution(
+    installed: Installed, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    manifest = FAULTY.replace("rules=", 'fixes={"later": "faulty_rules:check"}, rules=')
+    installed.write("faulty", manifest, faulty_rules=FAULTY_RULES)
+    assert main(["lint", str(project), "--fix"]) == 2
+    assert "the installed package `faulty` 1.0 is faulty: its module `faulty_rules:check` raised TypeError" in (
+        capsys.readouterr().err
+    )
+
+
 def test_a_rule_of_lumen_that_raises_ends_lint(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def check(draft: object) -> None:
         raise ZeroDivisionError

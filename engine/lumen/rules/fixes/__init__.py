@@ -6,24 +6,38 @@ A fix is a proposal: whoever applies one lints again and keeps it only where the
 
 from collections.abc import Mapping
 
-from lumen.feature import resolve, table
+from lumen.feature import owner, resolve, table
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.broken_features import blamed
 from lumen.rules.codes import codes
 from lumen.rules.fixes.edits import Edit, FileText, Fix, edited
 from lumen.rules.fixes.misspellings import outnumbered, slip
 
 __all__ = ["Edit", "FileText", "Fix", "edited", "fixes"]
 
+SLIP = "lumen.rules.fixes.misspellings:slip"
+"""The repair of a word that is unknown or wrong, if its code has no other."""
+
 
 def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
-    """What may repair this finding, the likeliest first; nothing where only its author can know."""
+    """Return what may repair this finding, the likeliest first; nothing if only its author can know.
+
+    Raises LumenError if the repair belongs to a package that was installed beside Lumen, and raises.
+    """
     content = files.get(diagnostic.place.file)
-    where = table("fixes").get(diagnostic.code)
-    fixer = resolve(where) if where else slip if diagnostic.code.startswith(("unknown-", "wrong-")) else None
-    if content is None or fixer is None:
+    where = table("fixes").get(diagnostic.code, SLIP if diagnostic.code.startswith(("unknown-", "wrong-")) else "")
+    if content is None or not where:
         return []
     source = FileText(diagnostic.place.file, content)
-    proposed: list[Fix] = fixer(diagnostic, source)
-    if fixer is not slip or codes()[diagnostic.code].family == "shape":
+    proposed = slip(diagnostic, source) if where == SLIP else _proposed(where, diagnostic, source)
+    if where != SLIP or codes()[diagnostic.code].family == "shape":
         return proposed
     return [fix for fix in proposed for edit in fix.edits if not outnumbered(source.at(edit.place), edit.text, files)]
+
+
+def _proposed(where: str, diagnostic: Diagnostic, source: FileText) -> list[Fix]:
+    try:
+        proposed: list[Fix] = resolve(where)(diagnostic, source)
+    except Exception as error:
+        raise blamed(owner("fixes", diagnostic.code), where, error) from error
+    return proposed

@@ -14,6 +14,7 @@ from importlib.resources import files
 from typing import NamedTuple
 
 from lumen.feature import rows
+from lumen.loading.broken_features import resolved
 from lumen.rules.codes import codes
 
 _FENCE = re.compile(
@@ -56,8 +57,11 @@ class Page(NamedTuple):
 
 @cache
 def page(code: str) -> Page:
-    """Return the page of one of `codes()`; of a code without a page, what its declaration says."""
-    found = (files(package) / f"{code}.md" for _, package in rows("pages"))
+    """Return the page of one of `codes()`; of a code without a page, its summary.
+
+    Raises LumenError if a package of pages was installed beside Lumen and can't be imported.
+    """
+    found = (files(resolved(feature, package)) / f"{code}.md" for feature, package in rows("pages"))
     file = next((file for file in found if file.is_file()), None)
     if file is None:
         return Page(code, f"{codes()[code].summary.capitalize()}.", "", (), ())
