@@ -11,10 +11,10 @@ from lumen.app.exploring import Explored, explored
 from lumen.app.kept_explorations import KeptExplorations
 from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.app.stories import home_of, tests_of
+from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
-from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.cli.verdicts import render, text, verdict_formats
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError

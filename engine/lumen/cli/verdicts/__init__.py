@@ -1,6 +1,6 @@
 """Verdicts for people and for machines: each format a small function from a verdict to text."""
 
-from lumen.cli.verdict import Verdict
+from lumen.app.verdict import Verdict
 from lumen.feature import owner, table
 from lumen.loading.broken_features import resolved
 

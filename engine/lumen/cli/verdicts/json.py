@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
-from lumen.cli.verdict import JudgedSaying, Verdict
+from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
 from lumen.runtime.coverage import Coverage

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
+from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.cli.junit_xml import JunitCase, JunitFailure, JunitSuite, junit_xml
-from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.cli.verdicts import text
 
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
+from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.cli.printing import clock_time
 from lumen.cli.terminal import paint
-from lumen.cli.verdict import JudgedSaying, Verdict
 from lumen.interpreters.retrieval.ranking import QuestionTrial, WrongAnswer
 from lumen.runtime.coverage import Coverage
 
