@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from lumen.app.lint.findings import Findings
-from lumen.cli.verdict import Verdict
+from lumen.app.verdict import Verdict
 
 
 def findings(found: Sequence[Findings], *, coloured: bool = False) -> str:
