@@ -56,6 +56,7 @@ def found(root: Path) -> Iterator[str]:
         yield f"{each.place} {each.code} | {each.message}"
 
 
+@pytest.mark.once
 @pytest.mark.process
 def test_its_finding_is_listed_and_its_code_can_be_selected(stranger: Path, project: Path, capsys) -> None:
     assert list(found(project)) == [f"lumen.yaml:1:7 {CODE} | the name `small` begins with a small letter"]
