@@ -1,11 +1,11 @@
 """The changes between two projects, part by part, and all of them in one line."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from itertools import groupby
-from typing import TypeVar
 
 from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.entries import entry_changes
 from lumen.interpreters.changes.formatting import code, how_many
 from lumen.interpreters.changes.machines import machine_changes
 from lumen.interpreters.changes.parts import controller_changes, motion_changes, route_changes
@@ -14,8 +14,6 @@ from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4
 """Changes that a summary names; of what there is more of, it gives the number."""
-
-T = TypeVar("T")
 
 _PARTS = (
     "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
@@ -53,33 +51,37 @@ def summary(found: Sequence[Change]) -> str:
 
 def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from _settings(old, new)
-    yield from _named(
+    yield from entry_changes(
         "behavior", "behaviour", Risk.BEHAVIOR, "behaviors/{}.yaml",
         {name: (name, machine) for name, machine in old.behaviors.items()},
         {name: (name, machine) for name, machine in new.behaviors.items()},
         lambda before, after: machine_changes(after[0], before[1], after[1]),
     )  # fmt: skip
-    yield from _named(
+    yield from entry_changes(
         "controller", "controller", Risk.MOTION, "fuzzy/{}.yaml", old.controllers, new.controllers, controller_changes
     )
-    yield from _named("motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes)
+    yield from entry_changes(
+        "motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes
+    )
     libraries = old.gestures, new.gestures
-    yield from _named("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
-    yield from _named("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
-    for found in _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
+    yield from entry_changes("gestures", "library of gestures", Risk.MOTION, "motions/gestures/{}.yaml", *libraries)
+    yield from entry_changes("life", "style of life", Risk.MOTION, "motions/life/{}.yaml", old.life, new.life)
+    for found in entry_changes("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
         uses = (new.routes.get(found.about) or old.routes[found.about]).uses
         yield replace(found, file=uses[0].file) if uses else found
-    yield from _named("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
-    yield from _named("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
+    yield from entry_changes("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
+    yield from entry_changes("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
-    for found in _named("passage", "passage", Risk.COSMETIC, "{}", old.knowledge, new.knowledge):
+    for found in entry_changes("passage", "passage", Risk.COSMETIC, "{}", old.knowledge, new.knowledge):
         yield replace(found, file=files[found.about])
     asked = "set of questions", Risk.BEHAVIOR, "knowledge/questions/{}.yaml"
-    yield from _named("questions", *asked, old.questions, new.questions)
-    yield from _named("message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages)
-    yield from _named("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
+    yield from entry_changes("questions", *asked, old.questions, new.questions)
+    yield from entry_changes(
+        "message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages
+    )
+    yield from entry_changes("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
     tried = "file of sayings", Risk.COSMETIC, "behaviors/sayings/{}.yaml"
-    yield from _named("sayings", *tried, old.sayings, new.sayings)
+    yield from entry_changes("sayings", *tried, old.sayings, new.sayings)
 
 
 def _settings(old: Project, new: Project) -> Iterator[Change]:
@@ -104,23 +106,3 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
         if before != after:
             risk = Risk.BEHAVIOR if field == "behavior" else Risk.COSMETIC
             yield Change("setting", field, f"`{field}` is now {code(after)}, not {code(before)}", risk, "lumen.yaml")
-
-
-def _named(
-    kind: str,
-    title: str,
-    risk: Risk,
-    file: str,
-    old: Mapping[str, T],
-    new: Mapping[str, T],
-    inside: Callable[[T, T], Iterator[Change]] | None = None,
-) -> Iterator[Change]:
-    """What was added or removed, and the changes inside of what is in both."""
-    for name in dict.fromkeys((*old, *new)):
-        if name in old and name in new:
-            if old[name] != new[name]:
-                whole = Change(kind, name, f"{title} `{name}` changed", risk, file.format(name))
-                yield from inside(old[name], new[name]) if inside else (whole,)
-        else:
-            how = "added" if name in new else "removed"
-            yield Change(kind, name, f"{title} `{name}` {how}", risk, file.format(name))

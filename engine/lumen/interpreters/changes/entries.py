@@ -1,0 +1,31 @@
+"""What differs in a mapping from names to values."""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TypeVar
+
+from lumen.interpreters.changes.change import Change, Risk
+
+T = TypeVar("T")
+
+
+def entry_changes(
+    kind: str,
+    title: str,
+    risk: Risk,
+    file: str,
+    old: Mapping[str, T],
+    new: Mapping[str, T],
+    inside: Callable[[T, T], Iterator[Change]] | None = None,
+) -> Iterator[Change]:
+    """Yield what was added or removed, and the changes inside of what is in both.
+
+    `title` names a value, as in `place`; `{}` in `file` stands for the value's name.
+    """
+    for name in dict.fromkeys((*old, *new)):
+        if name in old and name in new:
+            if old[name] != new[name]:
+                whole = Change(kind, name, f"{title} `{name}` changed", risk, file.format(name))
+                yield from inside(old[name], new[name]) if inside else (whole,)
+        else:
+            how = "added" if name in new else "removed"
+            yield Change(kind, name, f"{title} `{name}` {how}", risk, file.format(name))
