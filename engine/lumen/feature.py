@@ -9,12 +9,13 @@ from dataclasses import dataclass, field, fields
 from enum import IntEnum, auto
 from functools import cache
 from importlib import import_module
-from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
 
 from lumen.distributions import Distribution, distributions
 
 API = 1
 """The version of the rows below; a manifest of another version is refused."""
+
 
 BUILT_IN = (
     "lumen.features.core:FEATURE",
@@ -30,6 +31,41 @@ BUILT_IN = (
     "lumen.features.formats_routes:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
+
+
+RiskName = Literal["cosmetic", "behavior", "motion", "wiring", "restart"]
+"""The part of a running exhibition that a change can touch, as `lumen diff` prints it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Section:
+    """A section of lumen.yaml: how its settings are read, checked and compared.
+
+    The settings are an object of a frozen dataclass of which each field has a default. `project.section(TYPE)` returns
+    them.
+    """
+
+    read: str
+    """`read(data, report)` returns the settings. `data` is the whole lumen.yaml, without what its schema refuses.
+
+    It is called only if lumen.yaml has the section, and reports its findings by their paths in `data`.
+    """
+    schema: str = ""
+    """The JSON Schema of the section, a mapping, which may refer to `$defs` of schemas/lumen.schema.json.
+
+    Empty if that file itself has the section, for editors that read no manifests.
+    """
+    title: str = ""
+    """The name of the section in a list of changes, such as `the console`; without it the list quotes both values.
+
+    With `entries` it names one of them, such as `place`.
+    """
+    risk: RiskName = "cosmetic"
+    """The risk of a change. With `restart` the old settings stay active until the next start."""
+    entries: str = ""
+    """The field of the settings that maps names to entries, which are compared one by one."""
+    of_house: bool = False
+    """Whether the section belongs to the house: then no bundle of a fleet changes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,10 +158,8 @@ class Feature:
     name: str
     api: int = API
     extras: tuple[str, ...] = ()
-
     parts: tuple[PartRow, ...] = ()
     """Parts of an exhibition."""
-
     rules: tuple[str, ...] = ()
     """Functions that report faults of a `ProjectDraft`. Their modules declare the codes of these reports."""
     last_rules: tuple[str, ...] = ()
@@ -136,20 +170,19 @@ class Feature:
     """Packages with a `CODE.md` for codes, in the form that `lumen.rules.pages` describes."""
     fixes: Mapping[str, str] = field(default_factory=dict)
     """For a code, the function that proposes how to repair a finding, as `lumen.rules.fixes` describes."""
-
     subcommands: Mapping[str, Subcommand] = field(default_factory=dict)
-
     finding_formats: Mapping[str, str] = field(default_factory=dict)
     """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
     verdict_formats: Mapping[str, str] = field(default_factory=dict)
     """For `lumen test --format NAME`, the function from a `Verdict` to text."""
-
     importers: Mapping[str, Importer] = field(default_factory=dict)
     """Readers of other tools' files, by the ending of a file's name in small letters, as `.scxml`."""
     exporters: Mapping[str, Exporter] = field(default_factory=dict)
     """Writers for `lumen export`, by the name of the format."""
     format_tables: Mapping[str, str] = field(default_factory=dict)
     """For a format that is imported, its `FormatTable` of names that are read, lost or without meaning."""
+    sections: Mapping[str, Section] = field(default_factory=dict)
+    """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
 
 
 class FeatureFault(NamedTuple):

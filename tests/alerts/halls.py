@@ -18,6 +18,7 @@ from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
+from lumen.language.alerts import Alerts
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
@@ -114,7 +115,7 @@ class Hall:
         return node
 
     def _desk(self, project: Project, *parts: str) -> AlertDesk:
-        return AlertDesk(project.alerts, Origin(project.name, project.robot, parts), self.folder, print)
+        return AlertDesk(project.section(Alerts), Origin(project.name, project.robot, parts), self.folder, print)
 
     def happen(self, name: str, **data: Any) -> None:
         """The robot notices something."""

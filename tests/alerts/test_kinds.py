@@ -14,7 +14,7 @@ from lumen.app.parts import alerting
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
-from lumen.language.alerts import KINDS
+from lumen.language.alerts import KINDS, Alerts
 from lumen.language.events import Event
 from lumen.runtime import presence
 from lumen.runtime.home import Home
@@ -221,7 +221,7 @@ def test_the_processes_tell_of_the_broker_the_disk_and_the_files(hall: Hall, mon
     hall.bus.publish("lumen.config.command", {"command": "stop"})
     assert hall.told("stopped") == "a person stopped it"
     assert origins(hall, "refused") == origins(hall, "stopped") == [["brain"]]
-    assert brain.project.alerts.to
+    assert brain.project.section(Alerts).to
 
 
 @pytest.mark.usefixtures("quick")

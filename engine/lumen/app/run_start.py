@@ -133,7 +133,7 @@ def _why(error: LumenError) -> str:
 
 def _alerts(settings: Settings | None, directory: RunDirectory) -> Alerts:
     """Return whom to tell: as the files say, else the last good ones."""
-    if settings and settings.alerts.to:
-        return settings.alerts
+    if settings and (alerts := settings.section(Alerts)).to:
+        return alerts
     good = directory.last_good()
-    return good.alerts if good else Alerts()
+    return good.section(Alerts) if good else Alerts()

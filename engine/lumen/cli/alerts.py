@@ -6,6 +6,7 @@ import json
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.errors import UsageError
+from lumen.language.alerts import Alerts
 from lumen.loading.own_project import own_project
 from lumen.loading.project import main_settings
 
@@ -25,9 +26,9 @@ def run(options: argparse.Namespace) -> int:
     """0 where all were reached; raises UsageError where nobody is to be told."""
     root = own_project(options.project)
     settings = main_settings(root)
-    if settings is None or not settings.alerts.to:
+    if settings is None or not (alerts := settings.section(Alerts)).to:
         raise UsageError(f"no alert recipients: list them in {root / 'lumen.yaml'} under `alerts:`, `to:`")
-    desk = AlertDesk(settings.alerts, Origin(settings.name or root.name, settings.robot), root, lambda _: None)
+    desk = AlertDesk(alerts, Origin(settings.name or root.name, settings.robot), root, lambda _: None)
     told = []
     for whom, why in desk.test():
         told.append({"to": whom, "arrived": not why, "reason": why})

@@ -8,6 +8,7 @@ from lumen.app.alerts.desk import AlertDesk
 from lumen.app.narrator import Narrator
 from lumen.app.stories import stories_of
 from lumen.errors import UsageError
+from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -17,7 +18,8 @@ from lumen.loading.units import seconds
 def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator) -> AlertDesk:
     """Return the desk that sends alerts about these parts."""
     origin = Origin(project.name, project.robot, tuple(parts))
-    return AlertDesk(project.alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
+    alerts = project.section(Alerts)
+    return AlertDesk(alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:

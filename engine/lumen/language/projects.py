@@ -1,9 +1,9 @@
 """A whole project as one immutable bundle."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
-from lumen.language.alerts import Alerts
 from lumen.language.console_settings import ConsoleSettings
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
@@ -22,12 +22,15 @@ from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.routing_keys import default_key
 from lumen.language.sayings import SayingSet
+from lumen.language.sections import Sections, section_of
 from lumen.language.shared import SharedKey
 from lumen.language.show import Show
 from lumen.language.stories import Story
 
 DEFAULT_PATIENCE = 60.0
 """How long saved files wait for what is under way [s] where the project does not say."""
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +49,14 @@ class Project:
     `robots:`; each has a project of its own, of the same files. `house` is the name that they have in common.
     `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
-    wherever it runs. `patience` [s] is how long saved files wait for what is under way; `alerts` are told of what goes
-    wrong; `places` are those of the hall that the robot knows by name; `show` is what goes to lamps, screens and sound
-    desks; `journal` is how long it is kept what happened, `record` what is recorded of the bus, `console` where its
-    pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their
-    aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot,
+    wherever it runs. `patience` [s] is how long saved files wait for what is under way; `places` are those of the hall
+    that the robot knows by name; `show` is what goes to lamps, screens and sound desks; `journal` is how long it is
+    kept what happened, `record` what is recorded of the bus, `console` where its pages are. `replay_check` is how saved
+    files are tried on recorded visits. `aliases` is whether routes have their aliases: None for as long as no other
+    robot is seen on the bus. `imperfections` are those of a simulated robot,
     `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is tried with,
-    `shared` what the robots of the house have in common.
+    `shared` what the robots of the house have in common. `sections` are what lumen.yaml says of features by the keys of
+    their sections; `section` returns those of one.
     """
 
     root: str
@@ -80,7 +84,6 @@ class Project:
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
-    alerts: Alerts = field(default_factory=Alerts)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
     show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
@@ -93,6 +96,7 @@ class Project:
     told_apart: bool = False
     house: str = ""
     shared: Mapping[str, SharedKey] = field(default_factory=dict)
+    sections: Sections = field(default_factory=dict)
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
     @property
@@ -110,6 +114,14 @@ class Project:
         """The robot, and those that one of the modules serves besides (`robots` of `eyes`)."""
         others = self.modules[EYES].options.get("robots", ()) if EYES in self.modules else ()
         return tuple(dict.fromkeys((self.robot, *others)))
+
+    def section(self, kind: type[T]) -> T:
+        """Return the settings of this type, its defaults if lumen.yaml lacks the section."""
+        return section_of(self.sections, kind)
+
+    def with_section(self, key: str, settings: object) -> "Project":
+        """Return the project with other settings in the section of that key."""
+        return replace(self, sections={**self.sections, key: settings})
 
     def key_of(self, route: str) -> str:
         """The routing key of a route, which the project need not list if it is one of Lumen's own."""

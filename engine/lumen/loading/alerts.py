@@ -23,8 +23,9 @@ from lumen.loading.routes import duration
 WHERE: NodePath = ("alerts",)
 
 
-def build_alerts(data: Mapping[str, Any], report: DocumentReport) -> Alerts:
-    """Whom to tell, from data in the shape of the schema; a recipient whose way was refused is left out."""
+def read_alerts(main: Mapping[str, Any], report: DocumentReport) -> Alerts:
+    """Return whom to tell, from the data of lumen.yaml; a recipient whose way was refused is left out."""
+    data = main["alerts"]
     interval = duration(data, "interval", report, WHERE, positive=True)
     usual = _quiet(data)
     found = [_recipient(row, usual, (*WHERE, "to", i)) for i, row in enumerate(data.get("to", ()))]

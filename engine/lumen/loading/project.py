@@ -46,6 +46,7 @@ from lumen.loading.project_folders import (
     GESTURES_FOLDER,
     LIFE_FOLDER,
     MAIN_FILE,
+    MAIN_KIND,
     MESSAGES,
     MODELS,
     MOTIONS,
@@ -183,13 +184,13 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         patience=settings.patience,
         modules=settings.modules,
         show=settings.show,
-        alerts=settings.alerts,
         places=settings.places,
         journal=settings.journal,
         aliases=settings.aliases,
         record=settings.record,
         replay_check=settings.replay_check,
         console=settings.console,
+        sections=settings.sections,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )
@@ -198,7 +199,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
 def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings] | None:
     """lumen.yaml, as that robot reads it."""
     build = partial(build_settings, robot=robot)
-    return _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build(data, report), robot)
+    return _read(found, MAIN_FILE, content, MAIN_KIND, lambda data, report, name: build(data, report), robot)
 
 
 def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.sayings import SAYINGS_FOLDER
 
-MAIN_FILE = "lumen.yaml"
+MAIN_FILE, MAIN_KIND = "lumen.yaml", "lumen"
 FLEET_FILE = "fleet.yaml"
 """The houses, and whose orders a robot accepts; lint checks it with a project, and no bundle contains it."""
 
@@ -47,7 +47,7 @@ FOLDERS = (
 KINDS: Mapping[str, str] = {folder.path: folder.kind for folder in FOLDERS}
 """The kind of file in each folder."""
 
-FILE_KINDS = tuple(dict.fromkeys(("lumen", *KINDS.values(), "fleet")))
+FILE_KINDS = tuple(dict.fromkeys((MAIN_KIND, *KINDS.values(), "fleet")))
 """All kinds of file; each has a `schemas/KIND.schema.json`."""
 
 PROJECT_FOLDERS = tuple(dict.fromkeys(folder.path.partition("/")[0] for folder in FOLDERS))

@@ -16,7 +16,9 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.misindented import KeyNames, key_names, misindented
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
+from lumen.loading.project_folders import MAIN_KIND
 from lumen.loading.pruning import prune
+from lumen.loading.sections import with_sections
 from lumen.loading.torn_texts import quoting, whole_translation
 from lumen.loading.yaml_nodes import read_text
 
@@ -68,12 +70,13 @@ def misfits(kind: str, text: str) -> int | None:
 
 
 def load_schema(kind: str) -> Any:
-    """The JSON Schema of a kind of file, as data."""
+    """Return the JSON Schema of a kind of file, as data; that of lumen.yaml has the sections of all features."""
     file = schema_folder() / f"{kind}.schema.json"
     try:
-        return json.loads(file.read_bytes())
+        schema = json.loads(file.read_bytes())
     except (OSError, ValueError) as error:
         raise LumenError(f"Lumen's own {file} can't be read ({error}): reinstall Lumen, or restore the file") from None
+    return with_sections(schema) if kind == MAIN_KIND else schema
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:

@@ -3,12 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import Any
+from typing import Any, TypeVar
 from zoneinfo import available_timezones
 
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
-from lumen.language.alerts import Alerts
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, did_you_mean, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
@@ -19,14 +18,15 @@ from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
 from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
 from lumen.language.routes import Route
+from lumen.language.sections import Sections, section_of
 from lumen.language.shared import SharedKey
 from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
-from lumen.loading.alerts import build_alerts
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
 from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
+from lumen.loading.sections import read_sections
 from lumen.loading.shared_keys import build_shared
 from lumen.loading.show import build_show
 from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
@@ -44,6 +44,8 @@ UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not t
 HOW = "add `replay: warn` or `replay: refuse`, or delete it"
 
 NO_SUCH_ROBOT = Code("no-such-robot", "robot", ERROR, "lumen.yaml has no robot of that name")
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,6 @@ class Settings:
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
-    alerts: Alerts = field(default_factory=Alerts)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
     show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
@@ -83,6 +84,11 @@ class Settings:
     record: RecordingSettings = field(default_factory=RecordingSettings)
     replay_check: ReplayCheck = field(default_factory=ReplayCheck)
     console: ConsoleSettings = field(default_factory=ConsoleSettings)
+    sections: Sections = field(default_factory=dict)
+
+    def section(self, kind: type[T]) -> T:
+        """Return the settings of this type, its defaults if lumen.yaml lacks the section."""
+        return section_of(self.sections, kind)
 
 
 def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settings:
@@ -119,7 +125,6 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
         modules={name: _module(name, row) for name, row in modules.items()},
-        alerts=build_alerts(data.get("alerts", {}), report),
         places=_places(data, report),
         show=build_show(modules.get(SHOW, {})),
         journal=journal,
@@ -128,6 +133,7 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         record=_record(data, report),
         replay_check=_replay_check(data, journal, report),
         console=_console(data.get("console")),
+        sections=read_sections(data, report),
     )
 
 

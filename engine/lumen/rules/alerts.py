@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from lumen.language.addresses import credentials_of
-from lumen.language.alerts import Mail, Recipient, Webhook
+from lumen.language.alerts import Alerts, Mail, Recipient, Webhook
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.loading.alerts import WHERE
 from lumen.loading.document_report import DocumentReport
@@ -45,7 +45,7 @@ def check(draft: ProjectDraft) -> None:
         if isinstance(row, Mapping):
             _way(report, row, (*WHERE, "to", i))
             _quiet(report, row, (*WHERE, "to", i))
-    for recipient in settings.alerts.to:
+    for recipient in settings.section(Alerts).to:
         _reached(report, recipient)
 
 

@@ -4,14 +4,15 @@ import re
 from collections.abc import Mapping
 
 from lumen.errors import UsageError
+from lumen.feature import rows
 from lumen.loading.files import belongs
 from lumen.loading.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
-    "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules", "alerts",
+    "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules",
     "console", "journal", "record", "imperfections", "shared",
 )  # fmt: skip
-"""What lumen.yaml says of a house and its robots: no bundle changes it."""
+"""What lumen.yaml says of a house and its robots, beside the sections of features: no bundle changes it."""
 
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 _KEY = re.compile(r"""["']?([\w-]+)["']?\s*:""")
@@ -32,8 +33,9 @@ def at_home(shared: bytes, own: bytes) -> bytes:
 
     Raises UsageError where one of them is not written with a key at the left edge of each block.
     """
-    ours = {key: text for key, text in _blocks(own) if key in HOUSE_KEYS}
-    kept = [text for key, text in _blocks(shared) if key not in HOUSE_KEYS]
+    of_house = {*HOUSE_KEYS, *(key for _, (key, row) in rows("sections") if row.of_house)}
+    ours = {key: text for key, text in _blocks(own) if key in of_house}
+    kept = [text for key, text in _blocks(shared) if key not in of_house]
     ended = [text if text.endswith("\n") else f"{text}\n" for text in (*kept, *ours.values())]
     return "".join(ended).encode()
 

@@ -11,6 +11,7 @@ from lumen.app.parts.brain import ENGINE, RUN_BEFORE
 from lumen.app.parts.part import Part
 from lumen.buses.validated import ValidatedBus
 from lumen.interpreters.statechart import Step
+from lumen.language.alerts import Alerts
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.modules import MODULES
@@ -101,7 +102,7 @@ class AlertPart(Part, Observer):
         self._look_at_disk("records", self._kept())
 
     def use(self, project: Project) -> None:
-        self._desk.use(project.alerts)
+        self._desk.use(project.section(Alerts))
 
     def helpless(self, reason: str) -> None:
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")

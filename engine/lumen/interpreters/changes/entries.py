@@ -1,4 +1,4 @@
-"""What differs in a mapping from names to values."""
+"""The changes in a mapping from names to values."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import TypeVar
@@ -17,9 +17,9 @@ def entry_changes(
     new: Mapping[str, T],
     inside: Callable[[T, T], Iterator[Change]] | None = None,
 ) -> Iterator[Change]:
-    """Yield what was added or removed, and the changes inside of what is in both.
+    """Yield each value that was added or removed, and the changes inside of those that are in both.
 
-    `title` names a value, as in `place`; `{}` in `file` stands for the value's name.
+    `title` names a value, as in `place`; `{}` in `file` is replaced by the value's name.
     """
     for name in dict.fromkeys((*old, *new)):
         if name in old and name in new:

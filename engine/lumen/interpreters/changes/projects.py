@@ -10,16 +10,17 @@ from lumen.interpreters.changes.formatting import code, how_many
 from lumen.interpreters.changes.machines import machine_changes
 from lumen.interpreters.changes.parts import controller_changes, motion_changes, route_changes
 from lumen.interpreters.changes.restart_fields import RESTART_FIELDS
+from lumen.interpreters.changes.sections import section_changes
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4
 """Changes that a summary names; of what there is more of, it gives the number."""
 
 _PARTS = (
-    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
+    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "places", "show",
     "life", "gestures", "knowledge", "questions", "sayings", "shared",
 )  # fmt: skip
-_SELF = ("root", "hash", "documents")
+_SELF = ("root", "hash", "documents", "sections")
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:
@@ -69,6 +70,7 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     for found in entry_changes("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
         uses = (new.routes.get(found.about) or old.routes[found.about]).uses
         yield replace(found, file=uses[0].file) if uses else found
+    yield from section_changes(old, new, entries=True)
     yield from entry_changes("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
     yield from entry_changes("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
@@ -96,8 +98,7 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
             yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is now the first language", Risk.BEHAVIOR, "lumen.yaml")
-    if old.alerts != new.alerts:
-        yield Change("alerts", "", "the recipients of alerts (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
+    yield from section_changes(old, new, entries=False)
     if old.show != new.show:
         sentence = "the output to lamps, screens and sound desks (`modules.show`) changed"
         yield Change("show", "", sentence, Risk.WIRING, "lumen.yaml")

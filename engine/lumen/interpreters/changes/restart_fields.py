@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from lumen.interpreters.changes.sections import live_sections
 from lumen.language.projects import Project
 
 RESTART_FIELDS: Mapping[str, str] = {
@@ -19,5 +20,6 @@ RESTART_FIELDS: Mapping[str, str] = {
 
 
 def live(old: Project, new: Project) -> Project:
-    """The new bundle as far as it can be active at once: `RESTART_FIELDS` are as in the old one."""
-    return replace(new, **{name: getattr(old, name) for name in RESTART_FIELDS})
+    """The new bundle as far as it can be active at once: the rest, such as `RESTART_FIELDS`, is as in the old one."""
+    fixed = {name: getattr(old, name) for name in RESTART_FIELDS}
+    return replace(new, **fixed, sections=live_sections(old, new))

@@ -1,0 +1,51 @@
+"""The changes in the sections of lumen.yaml that features add."""
+
+from collections.abc import Iterator, Mapping
+
+from lumen.feature import Section, rows
+from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.entries import entry_changes
+from lumen.interpreters.changes.formatting import code
+from lumen.language.projects import Project
+
+MAIN_FILE = "lumen.yaml"
+
+
+def section_changes(old: Project, new: Project, *, entries: bool) -> Iterator[Change]:
+    """Yield the changes of the sections that are compared entry by entry, or of all others."""
+    for _, (key, row) in rows("sections"):
+        before, after = _both(old, new, key)
+        if before == after or bool(row.entries) != entries:
+            continue
+        risk = Risk[row.risk.upper()]
+        if row.entries:
+            named = _entries(before, row), _entries(after, row)
+            yield from entry_changes(row.title, row.title, risk, MAIN_FILE, *named)
+        elif risk is Risk.RESTART:
+            yield Change("fixed", key, f"{row.title} changed: it takes effect at the next start", risk, MAIN_FILE)
+        elif row.title:
+            yield Change(key.rpartition(".")[2], "", f"{row.title} changed", risk, MAIN_FILE)
+        else:
+            yield Change("setting", key, f"`{key}` is now {code(after)}, not {code(before)}", risk, MAIN_FILE)
+
+
+def live_sections(old: Project, new: Project) -> dict[str, object]:
+    """Return the new sections, but those that take effect at the next start as they were."""
+    fixed = {key for _, (key, row) in rows("sections") if row.risk == "restart"}
+    kept = {key: settings for key, settings in old.sections.items() if key in fixed}
+    return {**{key: settings for key, settings in new.sections.items() if key not in fixed}, **kept}
+
+
+def _both(old: Project, new: Project, key: str) -> tuple[object, object]:
+    """Return a section before and after; its defaults for the project that lacks it, None twice if both do."""
+    before, after = old.sections.get(key), new.sections.get(key)
+    if before is None and after is not None:
+        before = type(after)()
+    elif after is None and before is not None:
+        after = type(before)()
+    return before, after
+
+
+def _entries(settings: object, row: Section) -> Mapping[str, object]:
+    entries: Mapping[str, object] = getattr(settings, row.entries)
+    return entries

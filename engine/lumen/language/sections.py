@@ -1,0 +1,17 @@
+"""The settings of features, which stand in sections of lumen.yaml."""
+
+from collections.abc import Mapping
+from typing import TypeVar
+
+T = TypeVar("T")
+
+Sections = Mapping[str, object]
+"""The settings by their keys in lumen.yaml, without those that say no more than their defaults."""
+
+
+def section_of(sections: Sections, kind: type[T]) -> T:
+    """Return the settings of this type, its defaults if there are none."""
+    for settings in sections.values():
+        if isinstance(settings, kind):
+            return settings
+    return kind()
