@@ -108,7 +108,8 @@ def device(speaker: RabbitMQ) -> Iterator[Callable[..., Device]]:
 def museum(project: Project) -> Callable[..., Project]:
     def make(**links: Any) -> Project:
         messages = {**project.messages, **MESSAGES}
-        return replace(project, routes={**project.routes, **ROUTES}, messages=messages, show=Show(**links))
+        linked = project.with_section("modules.show", Show(**links))
+        return replace(linked, routes={**project.routes, **ROUTES}, messages=messages)
 
     return make
 

@@ -1,8 +1,15 @@
 """Lamps, screens and sounds of a hall."""
 
-from lumen.feature import Feature
+from lumen.feature import Feature, Section
 
 FEATURE = Feature(
     name="show",
     rules=("lumen.rules.show:check",),
+    sections={
+        "modules.show": Section(
+            read="lumen.loading.show:read_show",
+            title="the output to lamps, screens and sound desks (`modules.show`)",
+            risk="wiring",
+        )
+    },
 )

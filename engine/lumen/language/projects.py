@@ -24,7 +24,6 @@ from lumen.language.routing_keys import default_key
 from lumen.language.sayings import SayingSet
 from lumen.language.sections import Sections, section_of
 from lumen.language.shared import SharedKey
-from lumen.language.show import Show
 from lumen.language.stories import Story
 
 DEFAULT_PATIENCE = 60.0
@@ -50,13 +49,12 @@ class Project:
     `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
     wherever it runs. `patience` [s] is how long saved files wait for what is under way; `places` are those of the hall
-    that the robot knows by name; `show` is what goes to lamps, screens and sound desks; `journal` is how long it is
-    kept what happened, `record` what is recorded of the bus, `console` where its pages are. `replay_check` is how saved
-    files are tried on recorded visits. `aliases` is whether routes have their aliases: None for as long as no other
-    robot is seen on the bus. `imperfections` are those of a simulated robot,
-    `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is tried with,
-    `shared` what the robots of the house have in common. `sections` are what lumen.yaml says of features by the keys of
-    their sections; `section` returns those of one.
+    that the robot knows by name; `journal` is how long it is kept what happened, `record` what is recorded of the bus,
+    `console` where its pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether
+    routes have their aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a
+    simulated robot, `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is
+    tried with, `shared` what the robots of the house have in common. `sections` are what lumen.yaml says of features by
+    the keys of their sections; `section` returns those of one.
     """
 
     root: str
@@ -85,7 +83,6 @@ class Project:
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
-    show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)

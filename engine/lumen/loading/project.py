@@ -183,7 +183,6 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         bus=settings.bus,
         patience=settings.patience,
         modules=settings.modules,
-        show=settings.show,
         places=settings.places,
         journal=settings.journal,
         aliases=settings.aliases,

@@ -22,6 +22,11 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
     return found
 
 
+def is_section(key: str) -> bool:
+    """Return whether a feature reads the section of this key."""
+    return any(key == each for _, (each, _) in rows("sections"))
+
+
 def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
     """Return the JSON Schema of lumen.yaml with the sections that it lacks."""
     for _, (key, row) in rows("sections"):

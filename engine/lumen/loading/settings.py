@@ -13,22 +13,20 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePat
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.house import RobotSpec
 from lumen.language.imperfections import Imperfections
-from lumen.language.modules import SHOW, ModuleSettings
+from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
 from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
 from lumen.language.routes import Route
 from lumen.language.sections import Sections, section_of
 from lumen.language.shared import SharedKey
-from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
 from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
-from lumen.loading.sections import read_sections
+from lumen.loading.sections import is_section, read_sections
 from lumen.loading.shared_keys import build_shared
-from lumen.loading.show import build_show
 from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
@@ -77,7 +75,6 @@ class Settings:
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
-    show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
     stand: str = ""
     aliases: bool | None = None
@@ -126,7 +123,6 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         patience=_patience(data, report),
         modules={name: _module(name, row) for name, row in modules.items()},
         places=_places(data, report),
-        show=build_show(modules.get(SHOW, {})),
         journal=journal,
         stand=own.stand,
         aliases=False if several else data.get("aliases"),
@@ -164,8 +160,8 @@ def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic |
 
 
 def _module(name: str, row: Mapping[str, Any]) -> ModuleSettings:
-    """What is said of the show is in `Settings.show`, and counts while it runs."""
-    options = {} if name == SHOW else {key: value for key, value in row.items() if key != "here"}
+    """Return the settings of a module; a module with a section of its own has its options there."""
+    options = {} if is_section(f"modules.{name}") else {key: value for key, value in row.items() if key != "here"}
     return ModuleSettings(row.get("here", False), options)
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.language.modules import SHOW
 from lumen.language.show import (
     MQTT_PORT,
     MQTT_TLS_PORT,
@@ -13,10 +14,12 @@ from lumen.language.show import (
     Show,
     TopicMapping,
 )
+from lumen.loading.document_report import DocumentReport
 
 
-def build_show(data: Mapping[str, Any]) -> Show:
-    """The devices, from data in the shape of the schema; a link that was refused is left out."""
+def read_show(main: Mapping[str, Any], report: DocumentReport) -> Show:
+    """Return the devices, from the data of lumen.yaml; a link that was refused is left out."""
+    data = main["modules"][SHOW]
     return Show(_mqtt(data.get("mqtt", {})), _osc(data.get("osc", {})), _dmx(data.get("dmx", {})))
 
 

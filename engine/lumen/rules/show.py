@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from lumen.interpreters.message_fields import FieldKind, SchemaField, message_fields
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.routes import Direction, Route
-from lumen.language.show import SHOW_PATH, DmxLink, MqttLink, OscLink, may_come_from_devices
+from lumen.language.show import SHOW_PATH, DmxLink, MqttLink, OscLink, Show, may_come_from_devices
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.references import known_route
@@ -25,13 +25,13 @@ def check(draft: ProjectDraft) -> None:
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return
-    ways = _Ways(draft, report)
-    if settings.show.mqtt:
-        ways.mqtt(settings.show.mqtt)
-    if settings.show.osc:
-        ways.osc(settings.show.osc)
-    if settings.show.dmx:
-        ways.dmx(settings.show.dmx)
+    ways, show = _Ways(draft, report), settings.section(Show)
+    if show.mqtt:
+        ways.mqtt(show.mqtt)
+    if show.osc:
+        ways.osc(show.osc)
+    if show.dmx:
+        ways.dmx(show.dmx)
 
 
 class _Ways:

@@ -17,7 +17,7 @@ MAX_SUMMARY_CHANGES = 4
 """Changes that a summary names; of what there is more of, it gives the number."""
 
 _PARTS = (
-    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "places", "show",
+    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "places",
     "life", "gestures", "knowledge", "questions", "sayings", "shared",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents", "sections")
@@ -99,9 +99,6 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is now the first language", Risk.BEHAVIOR, "lumen.yaml")
     yield from section_changes(old, new, entries=False)
-    if old.show != new.show:
-        sentence = "the output to lamps, screens and sound desks (`modules.show`) changed"
-        yield Change("show", "", sentence, Risk.WIRING, "lumen.yaml")
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)
         if before != after:

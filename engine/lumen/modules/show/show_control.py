@@ -26,7 +26,7 @@ TICK = 0.2
 
 
 class ShowControl(Module):
-    """Carries routes to the devices of `Project.show`, and what they send to routes that may come from devices.
+    """Carries routes to the devices of `modules.show`, and what they send to routes that may come from devices.
 
     A device that is not there, or a message that can't be carried, costs a line and nothing else. Whatever changes in
     lumen.yaml counts when that is saved: connections are made anew.
@@ -46,7 +46,7 @@ class ShowControl(Module):
         return sum(self._refused.counts.values())
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        show, routes = self.project.show, self.project.routes
+        show, routes = self.project.section(Show), self.project.routes
         out = [name for name in show.routes if name in routes and routes[name].direction is Direction.OUT]
         return {name: partial(self._send, name) for name in sorted(out)}
 
@@ -89,14 +89,15 @@ class ShowControl(Module):
 
     def _link(self) -> None:
         """Open what lumen.yaml says now, where that is not what is open."""
-        project, before = self.project, self._linked
-        if before and (before.show, before.routes, before.messages) == (project.show, project.routes, project.messages):
+        show, routes, messages = self.project.section(Show), self.project.routes, self.project.messages
+        before = self._linked
+        if before and (before.section(Show), before.routes, before.messages) == (show, routes, messages):
             return
         self._unlink()
-        self._linked = project
+        self._linked = self.project
         for name in ("mqtt", "osc", "dmx"):
             try:
-                if found := getattr(self, f"_{name}")(project.show):
+                if found := getattr(self, f"_{name}")(show):
                     self._links[name] = found
                     found.begin()
             except (ModuleError, ImportError) as error:
