@@ -46,14 +46,15 @@ class Section:
     """
 
     read: str
-    """`read(data, report)` returns the settings. `data` is the whole lumen.yaml, without what its schema refuses.
+    """An import string of `read(data, report)`, which returns the settings if lumen.yaml has the section.
 
-    It is called only if lumen.yaml has the section, and reports its findings by their paths in `data`.
+    `data` is all of lumen.yaml, without the nodes that its schema refuses. `report(CODE, path, message, hint)` adds a
+    finding at a path in `data`.
     """
     schema: str = ""
-    """The JSON Schema of the section, a mapping, which may refer to `$defs` of schemas/lumen.schema.json.
+    """An import string of the JSON Schema of the section, a `dict` without `$ref`.
 
-    Empty if that file itself has the section, for editors that read no manifests.
+    Empty if schemas/lumen.schema.json has the section, for editors that read no manifests.
     """
     title: str = ""
     """The name of the section in a list of changes, such as `the console`; without it the list quotes both values.
@@ -66,6 +67,10 @@ class Section:
     """The field of the settings that maps names to entries, which are compared one by one."""
     of_house: bool = False
     """Whether the section belongs to the house: then no bundle of a fleet changes it."""
+
+    def __post_init__(self) -> None:
+        if self.risk not in (risks := get_args(RiskName)):
+            raise ValueError(f"a section has no risk `{self.risk}`: choose one of {', '.join(risks)}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,6 +62,11 @@ class JsonSchema:
             return self._told(data)
         return iter(self._explaining.iter_errors(data)) if self._quick else self._guessed(data)
 
+    @property
+    def is_sound(self) -> bool:
+        """Whether this is a JSON Schema whose patterns and references can be used."""
+        return self._quick is not None
+
     @cached_property
     def _quick(self) -> "jsonschema_rs.Validator | None":
         """jsonschema-rs's validator; None for what it takes for unsound."""
@@ -85,7 +90,7 @@ class JsonSchema:
     @cached_property
     def _only_quick(self) -> bool:
         """Whether jsonschema would have to look for key patterns by itself, and with `re`."""
-        return {"unevaluatedProperties", "patternProperties"} <= set(_keywords(self.schema))
+        return {"unevaluatedProperties", "patternProperties"} <= set(keywords(self.schema))
 
     def _told(self, data: Any) -> "Iterator[ValidationError]":
         """What is wrong, in jsonschema-rs's words."""
@@ -130,13 +135,13 @@ def _prepared(schema: Any) -> Any:
     return prepared
 
 
-def _keywords(schema: Any) -> Iterator[str]:
-    """All keywords that stand in a schema."""
+def keywords(schema: Any) -> Iterator[str]:
+    """Iterate over all keywords in a schema."""
     for keyword, inner in schema.items() if isinstance(schema, dict) else ():
         yield keyword
         named = isinstance(inner, dict) and keyword in _NAMED
         for part in inner.values() if named else inner if isinstance(inner, list) else (inner,):
-            yield from _keywords(part)
+            yield from keywords(part)
 
 
 @cache

@@ -1,39 +1,78 @@
 """The sections of lumen.yaml that features add: their settings, and their part of the schema."""
 
 from collections.abc import Mapping
-from functools import reduce
+from contextlib import suppress
+from dataclasses import replace
+from functools import cache, reduce
 from typing import Any
 
-from lumen.feature import resolve, rows
+from lumen.feature import Section, distribution_of, resolve, rows, table
+from lumen.interpreters.json_schema import JsonSchema, keywords
+from lumen.loading.broken_features import broken
 from lumen.loading.document_report import DocumentReport
 
 
 def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, object]:
     """Return the settings of each section in the data of lumen.yaml; those that equal their defaults are left out.
 
-    Therefore a section that only repeats its defaults makes the same project as one that is absent.
+    Therefore a section that only repeats its defaults makes the same project as one that is absent. If an installed
+    feature can't read its section, that is reported, and the section is left out.
     """
     found: dict[str, object] = {}
-    for _, (key, row) in rows("sections"):
-        if _has(data, key):
-            settings = resolve(row.read)(data, report)
+    for feature, (key, row) in rows("sections"):
+        if not _has(data, key):
+            continue
+        try:
+            settings = _read(row, data, report)
             if settings != type(settings)():
                 found[key] = settings
+        except Exception as error:
+            distribution = distribution_of(feature)
+            if distribution is None:
+                raise
+            fault = broken(distribution, f"reading `{key}` raised {type(error).__name__}: {error}")
+            place = report.document.place(tuple(key.split(".")), key=True)
+            report.diagnostics.append(replace(fault, place=place))
     return found
 
 
 def is_section(key: str) -> bool:
     """Return whether a feature reads the section of this key."""
-    return any(key == each for _, (each, _) in rows("sections"))
+    return key in table("sections")
 
 
 def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the JSON Schema of lumen.yaml with the sections that it lacks."""
+    """Return the JSON Schema of lumen.yaml with the sections that it lacks.
+
+    A section whose own schema can't be used accepts everything, until it is read and that is reported.
+    """
     for _, (key, row) in rows("sections"):
         if row.schema:
             *above, name = key.split(".")
             parent = reduce(lambda node, step: node["properties"][step], above, schema)
-            parent["properties"].setdefault(name, resolve(row.schema))
+            own: Mapping[str, Any] = {}
+            with suppress(Exception):
+                own = _schema(row.schema)
+            parent["properties"].setdefault(name, own)
+    return schema
+
+
+def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> object:
+    """Return the settings of a section. Raises any exception of its feature, and TypeError for another result."""
+    if row.schema:
+        _schema(row.schema)
+    settings: object = resolve(row.read)(data, report)
+    if row.entries and not isinstance(getattr(settings, row.entries), Mapping):
+        raise TypeError(f"`{row.entries}` of its settings is no mapping")
+    return settings
+
+
+@cache
+def _schema(where: str) -> Mapping[str, Any]:
+    """Return the JSON Schema that an import string names. Raises TypeError if there is no usable one."""
+    schema = resolve(where)
+    if not isinstance(schema, dict) or "$ref" in keywords(schema) or not JsonSchema(schema).is_sound:
+        raise TypeError(f"`{where}` is no JSON Schema, or has `$ref`")
     return schema
 
 

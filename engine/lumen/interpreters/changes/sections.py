@@ -1,6 +1,8 @@
 """The changes in the sections of lumen.yaml that features add."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
 
 from lumen.feature import Section, rows
 from lumen.interpreters.changes.change import Change, Risk
@@ -21,6 +23,8 @@ def section_changes(old: Project, new: Project, *, entries: bool) -> Iterator[Ch
         if row.entries:
             named = _entries(before, row), _entries(after, row)
             yield from entry_changes(row.title, row.title, risk, MAIN_FILE, *named)
+            if _without(before, row) != _without(after, row):
+                yield Change("setting", key, f"`{key}` changed", risk, MAIN_FILE)
         elif risk is Risk.RESTART:
             yield Change("fixed", key, f"{row.title} changed: it takes effect at the next start", risk, MAIN_FILE)
         elif row.title:
@@ -49,3 +53,8 @@ def _both(old: Project, new: Project, key: str) -> tuple[object, object]:
 def _entries(settings: object, row: Section) -> Mapping[str, object]:
     entries: Mapping[str, object] = getattr(settings, row.entries)
     return entries
+
+
+def _without(settings: Any, row: Section) -> Any:
+    """Return the settings without their entries."""
+    return replace(settings, **{row.entries: {}})
