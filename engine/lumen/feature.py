@@ -68,6 +68,11 @@ class Section:
     of_house: bool = False
     """Whether the section belongs to the house: then no bundle of a fleet changes it."""
 
+    @property
+    def fixed(self) -> bool:
+        """Whether a change takes effect at the next start."""
+        return self.risk == "restart"
+
     def __post_init__(self) -> None:
         if self.risk not in (risks := get_args(RiskName)):
             raise ValueError(f"a section has no risk `{self.risk}`: choose one of {', '.join(risks)}")

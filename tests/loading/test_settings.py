@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from lumen.language.console_settings import ConsoleSettings
 from lumen.language.show import Show
 from lumen.loading.project import main_settings
 from lumen.loading.settings import Settings
@@ -13,4 +14,4 @@ def test_the_console_is_for_this_computer_alone_and_no_device_is_reached(main: s
     if main is not None:
         (tmp_path / "lumen.yaml").write_text(main, "utf-8")
     settings = main_settings(tmp_path) or Settings()
-    assert (settings.console.host, settings.section(Show)) == ("127.0.0.1", Show())
+    assert (settings.section(ConsoleSettings).host, settings.section(Show)) == ("127.0.0.1", Show())

@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
 
     root, reach = project_to_run(options.project), partial(reach_exhibition, options.project, options.bus)
     found = main_settings(root)
-    said = found.console if found else ConsoleSettings()
+    said = found.section(ConsoleSettings) if found else ConsoleSettings()
     port = said.port if options.port is None else options.port
     console = Console(
         reach, root, options.host or said.host, port, pins=pins_from(said.pins, os.environ), hosts=said.hosts

@@ -14,6 +14,7 @@ from lumen.app.run_start import WHOLE
 from lumen.app.services import Services
 from lumen.app.setup import Setup
 from lumen.cli.run_choices import alert_desk, language_of
+from lumen.language.console_settings import ConsoleSettings
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
@@ -76,7 +77,7 @@ def plan_of(
         "fresh": options.fresh or (played and not parts),
         "alerts": None if played else alert_desk(project, parts or WHOLE, narrator),
         "modules": ModulesPlan(folder, awaited=options.speed == "max"),
-        "console": one.first and project.console.wanted and options.speed != "max",
+        "console": one.first and project.section(ConsoleSettings).wanted and options.speed != "max",
     }
     return Plan(
         project,

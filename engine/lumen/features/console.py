@@ -1,6 +1,6 @@
 """The pages in a browser that show an exhibition and control it."""
 
-from lumen.feature import Feature, Subcommand
+from lumen.feature import Feature, Section, Subcommand
 
 FEATURE = Feature(
     name="console",
@@ -11,5 +11,13 @@ FEATURE = Feature(
             "lumen.cli.console",
             after="record",
         ),
+    },
+    sections={
+        "console": Section(
+            read="lumen.loading.console:read_console",
+            title="the console",
+            risk="restart",
+            of_house=True,
+        )
     },
 )

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
-from lumen.language.console_settings import ConsoleSettings
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.gestures import GestureLibrary
@@ -49,12 +48,12 @@ class Project:
     `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
     wherever it runs. `patience` [s] is how long saved files wait for what is under way; `places` are those of the hall
-    that the robot knows by name; `journal` is how long it is kept what happened, `record` what is recorded of the bus,
-    `console` where its pages are. `replay_check` is how saved files are tried on recorded visits. `aliases` is whether
-    routes have their aliases: None for as long as no other robot is seen on the bus. `imperfections` are those of a
-    simulated robot, `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is
-    tried with, `shared` what the robots of the house have in common. `sections` are what lumen.yaml says of features by
-    the keys of their sections; `section` returns those of one.
+    that the robot knows by name; `journal` is how long it is kept what happened, `record` what is recorded of the bus.
+    `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their aliases: None
+    for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot, `knowledge` the
+    passages by name, `questions` what they are tried with, `sayings` what `hears` is tried with, `shared` what the
+    robots of the house have in common. `sections` are what lumen.yaml says of features by the keys of their sections;
+    `section` returns those of one.
     """
 
     root: str
@@ -87,7 +86,6 @@ class Project:
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)
     replay_check: ReplayCheck = field(default_factory=ReplayCheck)
-    console: ConsoleSettings = field(default_factory=ConsoleSettings)
     hash: str = ""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False

@@ -188,7 +188,6 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         aliases=settings.aliases,
         record=settings.record,
         replay_check=settings.replay_check,
-        console=settings.console,
         sections=settings.sections,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},

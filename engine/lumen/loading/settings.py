@@ -8,7 +8,6 @@ from zoneinfo import available_timezones
 
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
-from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, did_you_mean, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.house import RobotSpec
@@ -80,7 +79,6 @@ class Settings:
     aliases: bool | None = None
     record: RecordingSettings = field(default_factory=RecordingSettings)
     replay_check: ReplayCheck = field(default_factory=ReplayCheck)
-    console: ConsoleSettings = field(default_factory=ConsoleSettings)
     sections: Sections = field(default_factory=dict)
 
     def section(self, kind: type[T]) -> T:
@@ -128,7 +126,6 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         aliases=False if several else data.get("aliases"),
         record=_record(data, report),
         replay_check=_replay_check(data, journal, report),
-        console=_console(data.get("console")),
         sections=read_sections(data, report),
     )
 
@@ -240,18 +237,6 @@ def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSetting
         )
         ring = None
     return RecordingSettings(ring=ring or 0.0, camera=said.get("camera", True), **numbers)
-
-
-def _console(said: Any) -> ConsoleSettings:
-    if not isinstance(said, Mapping):
-        return ConsoleSettings()
-    return ConsoleSettings(
-        wanted=True,
-        port=int(said.get("port", CONSOLE_PORT)),
-        host=said.get("host", CONSOLE_HOST),
-        pins=dict(said.get("pins", {})),
-        hosts=tuple(said.get("hosts", ())),
-    )
 
 
 def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:

@@ -3,6 +3,7 @@
 import re
 from ipaddress import ip_address
 
+from lumen.language.console_settings import ConsoleSettings
 from lumen.language.diagnostics import ERROR, Code
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.routes import PASSWORD_IN_FILE
@@ -14,9 +15,11 @@ _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
 def check(draft: ProjectDraft) -> None:
     """Report a console that anybody could steer the robot from."""
     settings, report = draft.settings, draft.main
-    if settings is None or report is None or not settings.console.wanted:
+    if settings is None or report is None:
         return
-    console = settings.console
+    console = settings.section(ConsoleSettings)
+    if not console.wanted:
+        return
     for role, pin in console.pins.items():
         if not _VARIABLE.fullmatch(pin):
             hint = f"write `{role}: $LUMEN_PIN_{role.upper()}`, and put the PIN into that environment variable"

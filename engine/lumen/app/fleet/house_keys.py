@@ -4,13 +4,13 @@ import re
 from collections.abc import Mapping
 
 from lumen.errors import UsageError
-from lumen.feature import rows
+from lumen.feature import table
 from lumen.loading.files import belongs
 from lumen.loading.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules",
-    "console", "journal", "record", "imperfections", "shared",
+    "journal", "record", "imperfections", "shared",
 )  # fmt: skip
 """What lumen.yaml says of a house and its robots, beside the sections of features: no bundle changes it."""
 
@@ -33,7 +33,7 @@ def at_home(shared: bytes, own: bytes) -> bytes:
 
     Raises UsageError where one of them is not written with a key at the left edge of each block.
     """
-    of_house = {*HOUSE_KEYS, *(key for _, (key, row) in rows("sections") if row.of_house)}
+    of_house = {*HOUSE_KEYS, *(key for key, row in table("sections").items() if row.of_house)}
     ours = {key: text for key, text in _blocks(own) if key in of_house}
     kept = [text for key, text in _blocks(shared) if key not in of_house]
     ended = [text if text.endswith("\n") else f"{text}\n" for text in (*kept, *ours.values())]

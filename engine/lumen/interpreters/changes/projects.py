@@ -10,7 +10,7 @@ from lumen.interpreters.changes.formatting import code, how_many
 from lumen.interpreters.changes.machines import machine_changes
 from lumen.interpreters.changes.parts import controller_changes, motion_changes, route_changes
 from lumen.interpreters.changes.restart_fields import RESTART_FIELDS
-from lumen.interpreters.changes.sections import section_changes
+from lumen.interpreters.changes.sections import AT_NEXT_START, section_changes
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4
@@ -70,7 +70,7 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     for found in entry_changes("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
         uses = (new.routes.get(found.about) or old.routes[found.about]).uses
         yield replace(found, file=uses[0].file) if uses else found
-    yield from section_changes(old, new, entries=True)
+    yield from section_changes(old, new, lambda row: bool(row.entries))
     yield from entry_changes("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
     yield from entry_changes("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
@@ -90,15 +90,15 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     """What else lumen.yaml says."""
     for name, title in RESTART_FIELDS.items():
         if getattr(old, name) != getattr(new, name):
-            sentence = f"{title} changed: it takes effect at the next start"
-            yield Change("fixed", name, sentence, Risk.RESTART, "lumen.yaml")
+            yield Change("fixed", name, f"{title} changed: {AT_NEXT_START}", Risk.RESTART, "lumen.yaml")
+    yield from section_changes(old, new, lambda row: row.fixed and not row.entries)
     for language in dict.fromkeys((*old.languages, *new.languages)):
         if (language in old.languages) != (language in new.languages):
             how = "added" if language in new.languages else "removed"
             yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is now the first language", Risk.BEHAVIOR, "lumen.yaml")
-    yield from section_changes(old, new, entries=False)
+    yield from section_changes(old, new, lambda row: not (row.fixed or row.entries))
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)
         if before != after:

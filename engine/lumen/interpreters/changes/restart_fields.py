@@ -13,7 +13,6 @@ RESTART_FIELDS: Mapping[str, str] = {
     "stage": "the stage",
     "imperfections": "the robot's imperfections",
     "bus": "the broker's address",
-    "console": "the console",
     "modules": "the settings of the modules",
 }
 """Fields of `Project` that are active only from the next start on, and what they are called."""

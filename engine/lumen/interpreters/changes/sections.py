@@ -1,23 +1,24 @@
 """The changes in the sections of lumen.yaml that features add."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from lumen.feature import Section, rows
+from lumen.feature import Section, table
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.entries import entry_changes
 from lumen.interpreters.changes.formatting import code
 from lumen.language.projects import Project
 
+AT_NEXT_START = "it takes effect at the next start"
 MAIN_FILE = "lumen.yaml"
 
 
-def section_changes(old: Project, new: Project, *, entries: bool) -> Iterator[Change]:
-    """Yield the changes of the sections that are compared entry by entry, or of all others."""
-    for _, (key, row) in rows("sections"):
+def section_changes(old: Project, new: Project, among: Callable[[Section], bool]) -> Iterator[Change]:
+    """Yield the changes of sections, among those of certain rows."""
+    for key, row in table("sections").items():
         before, after = _both(old, new, key)
-        if before == after or bool(row.entries) != entries:
+        if before == after or not among(row):
             continue
         risk = Risk[row.risk.upper()]
         if row.entries:
@@ -25,8 +26,8 @@ def section_changes(old: Project, new: Project, *, entries: bool) -> Iterator[Ch
             yield from entry_changes(row.title, row.title, risk, MAIN_FILE, *named)
             if _without(before, row) != _without(after, row):
                 yield Change("setting", key, f"`{key}` changed", risk, MAIN_FILE)
-        elif risk is Risk.RESTART:
-            yield Change("fixed", key, f"{row.title} changed: it takes effect at the next start", risk, MAIN_FILE)
+        elif row.fixed:
+            yield Change("fixed", key, f"{row.title} changed: {AT_NEXT_START}", risk, MAIN_FILE)
         elif row.title:
             yield Change(key.rpartition(".")[2], "", f"{row.title} changed", risk, MAIN_FILE)
         else:
@@ -35,7 +36,7 @@ def section_changes(old: Project, new: Project, *, entries: bool) -> Iterator[Ch
 
 def live_sections(old: Project, new: Project) -> dict[str, object]:
     """Return the new sections, but those that take effect at the next start as they were."""
-    fixed = {key for _, (key, row) in rows("sections") if row.risk == "restart"}
+    fixed = {key for key, row in table("sections").items() if row.fixed}
     kept = {key: settings for key, settings in old.sections.items() if key in fixed}
     return {**{key: settings for key, settings in new.sections.items() if key not in fixed}, **kept}
 
