@@ -14,7 +14,6 @@ import shutil
 import statistics
 import tempfile
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,6 +24,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.language.retention import RecordingSettings
 from lumen.runtime.loop import TICK_PERIOD
 
 ROOT = Path(__file__).parents[1]
@@ -47,7 +47,7 @@ def live(robot: str, camera: bool | None, seconds: float) -> Round:
     folder = Path(tempfile.mkdtemp())
     try:
         project = lumen.load(ROOT)
-        project = replace(project, record=replace(project.record, camera=bool(camera)))
+        project = project.with_section("record", RecordingSettings(camera=bool(camera)))
         story = project.stories["visitor"]
         path = folder / "tour.mcap"
         setup, directory = set_up(robot, project, "1", story), RunDirectory(folder)

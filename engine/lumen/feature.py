@@ -29,6 +29,8 @@ BUILT_IN = (
     "lumen.features.formats_fuzzy:FEATURE",
     "lumen.features.formats_robots:FEATURE",
     "lumen.features.formats_routes:FEATURE",
+    "lumen.features.journal:FEATURE",
+    "lumen.features.reload:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
 

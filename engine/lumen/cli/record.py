@@ -26,6 +26,7 @@ from lumen.language.counts import counted
 from lumen.language.iso_time import file_stamp
 from lumen.language.operator_requests import MARK, STATUS
 from lumen.language.projects import Project
+from lumen.language.retention import RecordingSettings
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
 from lumen.loading.running_project import project_to_run
@@ -115,7 +116,8 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
         tape = FileTape(free, folder, first, lambda began: journal_files(root, began, time.time(), reached.home))
     except OSError as error:
         raise UsageError(f"{path} can't be written: {error.strerror}") from None
-    recorder = Recorder(bus, project, [tape], camera=project.record.camera and not options.no_camera, extra=view)
+    camera = project.section(RecordingSettings).camera and not options.no_camera
+    recorder = Recorder(bus, project, [tape], camera=camera, extra=view)
     try:
         recorder.start()
         _wait(bus, tape, span)

@@ -1,6 +1,6 @@
 """Recordings of the messages of an exhibition."""
 
-from lumen.feature import Feature, Subcommand
+from lumen.feature import Feature, Section, Subcommand
 
 FEATURE = Feature(
     name="recording",
@@ -11,4 +11,5 @@ FEATURE = Feature(
             after="topic",
         ),
     },
+    sections={"record": Section(read="lumen.loading.retention:read_record", of_house=True)},
 )

@@ -15,8 +15,6 @@ from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EYES, ModuleSettings
 from lumen.language.motions import MotionDefinition
-from lumen.language.replay_check import ReplayCheck
-from lumen.language.retention import JournalRetention, RecordingSettings
 from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.routing_keys import default_key
@@ -48,12 +46,10 @@ class Project:
     `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
     wherever it runs. `patience` [s] is how long saved files wait for what is under way; `places` are those of the hall
-    that the robot knows by name; `journal` is how long it is kept what happened, `record` what is recorded of the bus.
-    `replay_check` is how saved files are tried on recorded visits. `aliases` is whether routes have their aliases: None
-    for as long as no other robot is seen on the bus. `imperfections` are those of a simulated robot, `knowledge` the
-    passages by name, `questions` what they are tried with, `sayings` what `hears` is tried with, `shared` what the
-    robots of the house have in common. `sections` are what lumen.yaml says of features by the keys of their sections;
-    `section` returns those of one.
+    that the robot knows by name. `aliases` is whether routes have their aliases: None for as long as no other robot is
+    seen on the bus. `imperfections` are those of a simulated robot, `knowledge` the passages by name, `questions` what
+    they are tried with, `sayings` what `hears` is tried with, `shared` what the robots of the house have in common.
+    `sections` are what lumen.yaml says of features by the keys of their sections; `section` returns those of one.
     """
 
     root: str
@@ -82,10 +78,7 @@ class Project:
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
-    journal: JournalRetention = field(default_factory=JournalRetention)
     aliases: bool | None = None
-    record: RecordingSettings = field(default_factory=RecordingSettings)
-    replay_check: ReplayCheck = field(default_factory=ReplayCheck)
     hash: str = ""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False

@@ -8,14 +8,12 @@ from zoneinfo import available_timezones
 
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
-from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, did_you_mean, nearest
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, did_you_mean, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.house import RobotSpec
 from lumen.language.imperfections import Imperfections
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
-from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
-from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
 from lumen.language.routes import Route
 from lumen.language.sections import Sections, section_of
 from lumen.language.shared import SharedKey
@@ -26,19 +24,11 @@ from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.sections import is_section, read_sections
 from lumen.loading.shared_keys import build_shared
-from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS
+from lumen.loading.units import ANGLES, LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the robot does not start on the stage")
-IDLE_CHECK = Code(
-    "idle-check",
-    "reload",
-    WARNING,
-    "saved files can't be checked against recorded visits: the visits or a setting are missing",
-)
 UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not the name of a time zone")
-
-HOW = "add `replay: warn` or `replay: refuse`, or delete it"
 
 NO_SUCH_ROBOT = Code("no-such-robot", "robot", ERROR, "lumen.yaml has no robot of that name")
 
@@ -74,11 +64,8 @@ class Settings:
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
-    journal: JournalRetention = field(default_factory=JournalRetention)
     stand: str = ""
     aliases: bool | None = None
-    record: RecordingSettings = field(default_factory=RecordingSettings)
-    replay_check: ReplayCheck = field(default_factory=ReplayCheck)
     sections: Sections = field(default_factory=dict)
 
     def section(self, kind: type[T]) -> T:
@@ -93,7 +80,7 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
     """
     if not isinstance(data, Mapping):
         return Settings()
-    modules, journal = data.get("modules", {}), _journal(data, report)
+    modules = data.get("modules", {})
     robots, several = build_robots(data, report), told_robots(data)
     if robot and robot not in robots:
         hint = did_you_mean(robot, robots, "there are")
@@ -121,11 +108,8 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         patience=_patience(data, report),
         modules={name: _module(name, row) for name, row in modules.items()},
         places=_places(data, report),
-        journal=journal,
         stand=own.stand,
         aliases=False if several else data.get("aliases"),
-        record=_record(data, report),
-        replay_check=_replay_check(data, journal, report),
         sections=read_sections(data, report),
     )
 
@@ -167,21 +151,6 @@ def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:
     return DEFAULT_PATIENCE if length is None else length
 
 
-def _replay_check(data: Mapping[str, Any], journal: JournalRetention, report: DocumentReport) -> ReplayCheck:
-    said, mode = data.get("reload", {}), data.get("reload", {}).get("replay", "")
-    budget = duration(said, "budget", report, ("reload",), positive=True)
-    if budget is not None and budget > MAX_BUDGET:
-        hint = f"write at most {MAX_BUDGET:g}s: a saved file waits for the whole check"
-        report(BAD_DURATION, ("reload", "budget"), f"{budget:g} s is too long for a check", hint=hint)
-        budget = None
-    if "budget" in said and not mode:
-        report(IDLE_CHECK, ("reload", "budget"), "`budget` has no effect without `replay`", hint=HOW)
-    if mode and not journal.wanted:
-        where, what = ("reload", "replay"), "`replay` has no visits to play: `journal` does not keep any"
-        report(IDLE_CHECK, where, what, hint="set `journal` to keep visits, or delete `replay`")
-    return ReplayCheck(mode, budget or DEFAULT_BUDGET)
-
-
 def _timezone(data: Mapping[str, Any], report: DocumentReport) -> str:
     name: str = data.get("timezone", "")
     try:
@@ -214,29 +183,6 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
             return None
         spans.append((low * unit, high * unit))
     return Stage(*spans)
-
-
-def _journal(data: Mapping[str, Any], report: DocumentReport) -> JournalRetention:
-    said = data.get("journal", {})
-    return JournalRetention(**{key: value for key, value in said.items() if finite(value, report, ("journal", key))})
-
-
-def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSettings:
-    said = data.get("record", {})
-    numbers = {key: said[key] for key in ("keep", "size") if key in said and finite(said[key], report, ("record", key))}
-    ring = duration(said, "ring", report, ("record",))
-    if ring is not None and not SHORTEST_RING <= ring <= LONGEST_RING:
-        message = (
-            f"`ring` can't be {said['ring']}: it must be from {SHORTEST_RING:g} s to {LONGEST_RING / 3600:g} hours"
-        )
-        report(
-            BAD_DURATION,
-            ("record", "ring"),
-            message,
-            hint="write a common value such as `10min`, or delete `ring` to keep nothing",
-        )
-        ring = None
-    return RecordingSettings(ring=ring or 0.0, camera=said.get("camera", True), **numbers)
 
 
 def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:

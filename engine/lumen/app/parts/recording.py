@@ -21,6 +21,7 @@ from lumen.formats.recordings.recorded import Recorded, RecordedNotes
 from lumen.formats.recordings.recording_file import demand_recording, renamed, writable
 from lumen.language.counts import counted
 from lumen.language.projects import Project
+from lumen.language.retention import RecordingSettings
 from lumen.runtime.home import home_of
 
 Telling = Callable[[str], None]
@@ -46,15 +47,16 @@ class RecordingPart(Part):
         patient: bool = False,
     ) -> None:
         self._project, self._tell, self._root = project, tell, Path(project.root)
+        self._said = project.section(RecordingSettings)
         self._robot = project.one_of_several
         self._folder = RecordingsFolder(home_of(self._root, self._robot))
-        self._view = RobotView(project, tell) if file or (ring and project.record.ring) else None
+        self._view = RobotView(project, tell) if file or (ring and self._said.ring) else None
         self._rescue = RecordingRescue(self._folder, tell, self._rescued) if ring else None
         self._file = self._begin(file) if file else None
-        self._ring = self._ringing() if ring and project.record.ring else None
+        self._ring = self._ringing() if ring and self._said.ring else None
         tapes: list[RecordingTape] = [tape for tape in (self._file, self._ring) if tape]
         self._recorder = (
-            Recorder(bus.unchecked, project, tapes, camera=project.record.camera, patient=patient, extra=self._view)
+            Recorder(bus.unchecked, project, tapes, camera=self._said.camera, patient=patient, extra=self._view)
             if tapes
             else None
         )
@@ -69,7 +71,7 @@ class RecordingPart(Part):
     def marking(self) -> str:
         """What becomes of a mark; empty where nothing is recorded."""
         if self._ring:
-            minutes = self._project.record.ring / 60
+            minutes = self._said.ring / 60
             return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
         return f"everything is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
 
@@ -114,7 +116,7 @@ class RecordingPart(Part):
             demand_recording()
             return RingTape(
                 self._folder,
-                self._project.record,
+                self._said,
                 lambda: [notes_of(self._project)],
                 self._kept,
                 lambda path: self._tell(f"kept: {path}"),

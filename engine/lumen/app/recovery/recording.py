@@ -37,11 +37,12 @@ def record_inputs(
 
 def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
     """Where it is written, None where nothing is to be kept."""
-    folder, retention = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER, project.journal
+    retention = wanted = project.section(JournalRetention)
+    folder = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER
     if rehearsed:
         folder, retention = folder / REHEARSED_FOLDER, REHEARSED
     files = JournalFolder(folder, retention.keep, retention.size)
-    if not project.journal.wanted:
+    if not wanted.wanted:
         files.clear()
         return None
     if rehearsed:

@@ -26,6 +26,7 @@ from lumen.interpreters.changes import changes, live
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.replay_check import ReplayCheck
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
 from lumen.ports import Message
@@ -209,7 +210,7 @@ class Reloader:
         elif self._mode == "off":
             self._notifier.tell(self._answer("refused", "the exhibition was started with --reload off"), [order])
         elif order.verb in ("reload", "dry-run"):
-            if self._running.replay_check.mode:
+            if self._running.section(ReplayCheck).mode:
                 order.answer(self._answer("judging", "playing the recorded visits with the saved files").to_json())
             self._watcher.ask(order)
         elif order.verb == "rollback" and (before := queue.rollback_guard.before):

@@ -117,7 +117,7 @@ class BundleValidator:
         self, running: Project, project: Project, found: Iterable[Change], *, always: bool = False
     ) -> VisitsCheck | None:
         """What the files that run want to be known of visits; a fault of ours costs that, and not the reload."""
-        check = running.replay_check
+        check = running.section(ReplayCheck)
         if always and not check.mode:
             check = ReplayCheck("warn")
         if not check.mode or all(change.risk is Risk.COSMETIC and change.kind != "text" for change in found):

@@ -1,0 +1,8 @@
+"""The journal of inputs, from which `lumen replay` repeats visits."""
+
+from lumen.feature import Feature, Section
+
+FEATURE = Feature(
+    name="journal",
+    sections={"journal": Section(read="lumen.loading.retention:read_journal", of_house=True)},
+)

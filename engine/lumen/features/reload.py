@@ -1,0 +1,13 @@
+"""The check of saved files on recorded visits."""
+
+from lumen.feature import Feature, Section
+
+FEATURE = Feature(
+    name="reload",
+    sections={
+        "reload": Section(
+            read="lumen.loading.replay_check:read_replay_check",
+            title="the check of saved files on recorded visits (`reload`)",
+        )
+    },
+)
