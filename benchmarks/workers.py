@@ -24,6 +24,7 @@ import lumen
 from lumen.app.lint.physics import play_case
 from lumen.app.workers.work_kit import WorkKit, models_in
 from lumen.app.workers.workers import Workers, cores, workers_of
+from lumen.language.imperfections import Imperfections
 from lumen.loading.files import read_files
 from lumen.rules.physics.cases import cases
 
@@ -37,7 +38,7 @@ def played(workers: Workers, motion: str, robots: int) -> tuple[float, list[obje
     case = next(number for number, case in enumerate(found) if case.motion.name == motion)
     kit = WorkKit({"": read_files(ROOT)}, models_in(ROOT))
     began = time.perf_counter()
-    tasks = [(case, robot, project.imperfections) for robot in range(robots)]
+    tasks = [(case, robot, project.section(Imperfections)) for robot in range(robots)]
     outcomes = dict(workers.results(play_case, kit, tasks))
     return time.perf_counter() - began, [outcomes[number] for number in sorted(outcomes)]
 

@@ -31,6 +31,7 @@ BUILT_IN = (
     "lumen.features.formats_routes:FEATURE",
     "lumen.features.journal:FEATURE",
     "lumen.features.reload:FEATURE",
+    "lumen.features.simulation:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
 

@@ -13,6 +13,7 @@ from lumen.app.workers.work_kit import WorkKit, models_in
 from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import WorkersError
 from lumen.extras import MissingExtraError
+from lumen.language.imperfections import Imperfections
 from lumen.loading.files import read_files
 from lumen.rules.physics.cases import cases
 from tests import ROOT
@@ -35,7 +36,7 @@ def test_a_cluster_of_which_one_worker_dies_plays_what_this_process_plays(cluste
     standing = [number for number, case in enumerate(found) if case.motion.tracks and not case.before]
     shortest = min(standing, key=lambda number: found[number].motion.duration)
     kit = WorkKit({"": read_files(ROOT)}, models_in(ROOT))
-    tasks = [(shortest, robot, project.imperfections) for robot in range(3)]
+    tasks = [(shortest, robot, project.section(Imperfections)) for robot in range(3)]
     here = [outcome.to_json() for _, outcome in Workers().results(play_case, kit, tasks)]
     marked = [(*task, str(tmp_path / "died")) for task in tasks]
     there = sorted(workers_of(cluster).results(play_or_die, kit, marked), key=lambda row: row[0])

@@ -40,7 +40,7 @@ def _simulated(
             project.body,
             model_files(project)[0],
             project.robots[name].at,
-            imperfections or project.imperfections,
+            imperfections or project.section(Imperfections),
             project.stage,
         )
         for name, project in projects.items()

@@ -60,7 +60,7 @@ def set_up(
     if kind == "simulation":
         from lumen.robots.simulation import SimulatedRobot, available
 
-        lacking = imperfections or project.imperfections
+        lacking = imperfections or project.section(Imperfections)
         simulated = SimulatedRobot(project.body, *model_files(project), imperfections=lacking, stage=project.stage)
         return Setup(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
     if kind == "recording":

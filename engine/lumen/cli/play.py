@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -73,8 +72,8 @@ def run(options: argparse.Namespace) -> int:
     if found.settings is None or found.body is None:
         raise ProjectError(found.diagnostics)
     project = assemble(found, str(root.absolute()))
-    lacking = imperfections_of(options.imperfections) or project.imperfections
-    project = replace(project, imperfections=lacking)
+    if lacking := imperfections_of(options.imperfections):
+        project = project.with_section("imperfections", lacking)
     video = film_path(options.video, "simulation")
     with one_object(options.format) as say:
         played = _played(project, motion, options.speed, video, film_size(options.size))

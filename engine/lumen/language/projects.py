@@ -9,7 +9,6 @@ from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.gestures import GestureLibrary
 from lumen.language.hall_places import HallPlace
 from lumen.language.house import RobotSpec
-from lumen.language.imperfections import Imperfections
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
@@ -47,9 +46,9 @@ class Project:
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
     wherever it runs. `patience` [s] is how long saved files wait for what is under way; `places` are those of the hall
     that the robot knows by name. `aliases` is whether routes have their aliases: None for as long as no other robot is
-    seen on the bus. `imperfections` are those of a simulated robot, `knowledge` the passages by name, `questions` what
-    they are tried with, `sayings` what `hears` is tried with, `shared` what the robots of the house have in common.
-    `sections` are what lumen.yaml says of features by the keys of their sections; `section` returns those of one.
+    seen on the bus. `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is
+    tried with, `shared` what the robots of the house have in common. `sections` are what lumen.yaml says of features by
+    the keys of their sections; `section` returns those of one.
     """
 
     root: str
@@ -73,7 +72,6 @@ class Project:
     timezone: str = ""
     story: str = ""
     stage: Stage | None = None
-    imperfections: Imperfections = field(default_factory=Imperfections)
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)

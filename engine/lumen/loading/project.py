@@ -179,7 +179,6 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         timezone=settings.timezone,
         story=settings.story,
         stage=settings.stage,
-        imperfections=settings.imperfections,
         bus=settings.bus,
         patience=settings.patience,
         modules=settings.modules,

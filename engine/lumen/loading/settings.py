@@ -11,7 +11,6 @@ from lumen.interpreters.wall_clock import zone
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, did_you_mean, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.house import RobotSpec
-from lumen.language.imperfections import Imperfections
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
@@ -59,7 +58,6 @@ class Settings:
     routes: Mapping[str, Route] = field(default_factory=dict)
     removed_routes: frozenset[str] = frozenset()
     stage: Stage | None = None
-    imperfections: Imperfections = field(default_factory=Imperfections)
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
@@ -103,7 +101,6 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         routes=build_routes({name: row for name, row in rows.items() if row is not None}, report, stand=own.stand),
         removed_routes=frozenset(name for name, row in rows.items() if row is None),
         stage=_stage(data, report),
-        imperfections=Imperfections(**data.get("imperfections", {})),
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
         modules={name: _module(name, row) for name, row in modules.items()},

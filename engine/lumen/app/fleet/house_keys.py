@@ -10,7 +10,7 @@ from lumen.loading.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules",
-    "imperfections", "shared",
+    "shared",
 )  # fmt: skip
 """What lumen.yaml says of a house and its robots, beside the sections of features: no bundle changes it."""
 

@@ -9,6 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.loading.engine_files import code_hash
 from lumen.loading.lending import model_files
@@ -37,7 +38,7 @@ class OutcomeCache:
         passages = {file: content for file, content in files.items() if file.startswith("models/passages/")}
         shapes = [content for path, content in models.items() if path.parent.name != "passages"]
         self._models = _digest(
-            [*shapes, project.hall.encode(), repr(project.imperfections).encode(), _engine().encode()]
+            [*shapes, project.hall.encode(), repr(project.section(Imperfections)).encode(), _engine().encode()]
         )
         self._passages = _digest(passages.values())
 

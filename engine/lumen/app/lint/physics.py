@@ -49,7 +49,8 @@ def played(
     if project is None:
         return found, []
     demand("simulation", "--physics", "mujoco", "dm_control")
-    project = replace(project, imperfections=imperfections or project.imperfections)
+    if imperfections:
+        project = project.with_section("imperfections", imperfections)
     every = cases(project)
     chosen = [number for number, case in enumerate(every) if not found.asked or case.file in found.asked]
     memory = OutcomeCache(project, found.files) if keep else None
@@ -90,7 +91,7 @@ def _play(
     """Case, robot and outcome of what is not known, as they come; robot by robot, since each has a model to compile."""
     every = cases(project)
     tasks = [
-        (case, robot, project.imperfections)
+        (case, robot, project.section(Imperfections))
         for robot in range(robots + 1)
         for case, outcomes in known.items()
         if robot not in outcomes

@@ -11,7 +11,6 @@ RESTART_FIELDS: Mapping[str, str] = {
     "body": "the robot's model",
     "hall": "the hall",
     "stage": "the stage",
-    "imperfections": "the robot's imperfections",
     "bus": "the broker's address",
     "modules": "the settings of the modules",
 }

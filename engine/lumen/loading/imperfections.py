@@ -1,0 +1,12 @@
+"""`imperfections:` of lumen.yaml, from its data to `Imperfections`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.imperfections import Imperfections
+from lumen.loading.document_report import DocumentReport
+
+
+def read_imperfections(data: Mapping[str, Any], report: DocumentReport) -> Imperfections:
+    """Return the imperfections of the simulated robot; those that lumen.yaml does not mention are on."""
+    return Imperfections(**data["imperfections"])
