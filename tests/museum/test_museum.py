@@ -14,6 +14,7 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Publish, Start, Volume
 from lumen.language.events import Event
+from lumen.language.hall_places import HallPlaces
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.loading.lending import model_files
@@ -104,7 +105,7 @@ def test_a_visit_at_honest_physics(museum: Project, story: str, places: list[str
     def measure(now: float) -> None:
         if len(watch.arrived) > len(off):
             name, doubt = watch.arrived[-1]
-            place = museum.places[name]
+            place = museum.section(HallPlaces).by_name[name]
             x, y = robot.world.data.xpos[robot.world.torso][:2]
             off.append((name, dist((x, y), (place.x, place.y)), doubt))
 

@@ -1,7 +1,6 @@
 """Each robot says where it believes to be, and is led to a place by it; what it claims is held against the truth."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from math import hypot
 
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from lumen.interpreters.dead_reckoning import turned
 from lumen.language.commands import Posture
 from lumen.language.events import Event
-from lumen.language.hall_places import HallPlace
+from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.projects import Project
 from lumen.language.robots import Body as RobotBody
 from lumen.ports import Joints, Robot, Sense, Whereabouts
@@ -58,7 +57,7 @@ def test_it_is_led_to_a_place(robot: Body, project: Project) -> None:
         robot.advance(0.02)
         robot.poll()
     assert where(robot) == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=0.01)
-    events = led(robot, replace(project, places={"organ": ORGAN}), "organ", 60.0)
+    events = led(robot, project.with_section("places", HallPlaces({"organ": ORGAN})), "organ", 60.0)
     assert [event.name for event in events] == ["arrived", "done.command.d1"]
     here = where(robot)
     assert hypot(here.x - ORGAN.x, here.y - ORGAN.y) <= 0.1
@@ -74,7 +73,7 @@ def test_between_two_places_a_metre_apart_it_is_where_it_claims_to_be(
     robot = any_robot(body, seed)
     places = {"organ": HallPlace(0.5, 0.3), "clock": HallPlace(-0.5, 0.3, 0.0)}
     for name in ("organ", "clock"):
-        events = led(robot, replace(project, places=places), name, 120.0)
+        events = led(robot, project.with_section("places", HallPlaces(places)), name, 120.0)
         assert [event.name for event in events] == ["arrived", "done.command.d1"]
         claimed, place, real = where(robot), places[name], truth(robot)
         assert hypot(real.x - claimed.x, real.y - claimed.y) <= claimed.doubt

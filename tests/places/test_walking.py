@@ -1,7 +1,6 @@
 """Behaviours that walk to places, with the recording robot: in order, in time, and told of what goes wrong."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -12,7 +11,7 @@ from lumen.interpreters.migration import MigrationPlan
 from lumen.interpreters.statechart import Step, deserialize, serialize
 from lumen.language.commands import Walk
 from lumen.language.events import Event
-from lumen.language.hall_places import HallPlace
+from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.loop import BehaviorLoop, Observer
 from lumen.statechart import Machine
@@ -34,7 +33,7 @@ class Guide(Observer):
         self.machine = Machine.from_dict(data, "tour")
         self.robot = RecordingRobot(BODY, behaves)
         self.clock = VirtualClock()
-        self.project = project(behaviors={"tour": self.machine}, places=places)
+        self.project = project(behaviors={"tour": self.machine}, sections={"places": HallPlaces(places)})
         self.loop = BehaviorLoop(self.project, self.robot, MemoryBus(), self.clock)
         self.loop.observers.append(self)
         self.events: list[str] = []
@@ -142,7 +141,7 @@ def test_a_robot_that_can_not_walk_says_so() -> None:
 def test_a_place_that_is_moved_meanwhile_is_walked_to_where_it_is_now() -> None:
     guide = Guide({"a": {"do": {"walk": {"to": "organ"}}, "onDone": "b"}, "b": {}})
     guide.live(3.0)
-    moved = replace(guide.project, places={"organ": HallPlace(0.0, 1.0)})
+    moved = guide.project.with_section("places", HallPlaces({"organ": HallPlace(0.0, 1.0)}))
     guide.loop.runtime.project = moved
     guide.live(40.0)
     assert guide.states == {"b"}
@@ -153,13 +152,13 @@ def test_a_place_that_is_moved_meanwhile_is_walked_to_where_it_is_now() -> None:
 def test_a_place_that_is_taken_away_meanwhile_fails_and_one_the_robot_stood_at_is_left() -> None:
     guide = Guide({"a": {"do": {"walk": {"to": "organ"}}, "onError": "b"}, "b": {}})
     guide.live(3.0)
-    guide.loop.runtime.project = replace(guide.project, places={})
+    guide.loop.runtime.project = guide.project.with_section("places", HallPlaces({}))
     guide.live(2.0)
     assert guide.states == {"b"}
     still = Guide({"a": {}})
     still.live(1.0)
     assert still.place == "door"
-    still.loop.runtime.project = replace(still.project, places={})
+    still.loop.runtime.project = still.project.with_section("places", HallPlaces({}))
     still.live(1.0)
     assert (still.place, still.events) == ("", ["arrived door", "left door"])
 
@@ -188,7 +187,7 @@ def test_a_reload_in_mid_walk_is_walked_on_with_and_where_the_robot_is_is_kept()
     guide = Guide({"a": {"do": {"walk": {"to": "organ"}}, "onDone": "b"}, "b": {}})
     guide.live(3.0)
     for places in ({"organ": HallPlace(0.0, 1.0)}, {"organ": HallPlace(0.0, 1.0), "clock": HallPlace(2.0, 2.0)}):
-        later = replace(guide.project, places=places)
+        later = guide.project.with_section("places", HallPlaces(places))
         planned = guide.loop.plan(later)
         assert isinstance(planned, MigrationPlan)
         guide.loop.apply(later, planned)

@@ -1,6 +1,6 @@
 """The part that every project needs, and all rows without a feature of their own yet."""
 
-from lumen.feature import Feature, PartRow, Phase, Subcommand
+from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 
 MAKING = "lumen.app.making"
 TYPED = "lumen.cli.typed:typed_visitor"
@@ -221,5 +221,14 @@ FEATURE = Feature(
         "text": "lumen.cli.verdicts.text:render",
         "json": "lumen.cli.verdicts.json:render",
         "junit": "lumen.cli.verdicts.junit:render",
+    },
+    sections={
+        "places": Section(
+            read="lumen.loading.hall_places:read_hall_places",
+            title="place",
+            risk="behavior",
+            entries="by_name",
+            of_house=True,
+        ),
     },
 )

@@ -1,6 +1,7 @@
 """The places of a hall that the robot can be sent to by name."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 DEFAULT_WITHIN = 0.25
 """How near a robot has to be to count as being at a place [m], where the place does not say."""
@@ -18,3 +19,10 @@ class HallPlace:
     y: float
     heading: float | None = None
     within: float = DEFAULT_WITHIN
+
+
+@dataclass(frozen=True, slots=True)
+class HallPlaces:
+    """The places of the hall that the robot knows by name."""
+
+    by_name: Mapping[str, HallPlace] = field(default_factory=dict)

@@ -7,7 +7,6 @@ from typing import TypeVar
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.gestures import GestureLibrary
-from lumen.language.hall_places import HallPlace
 from lumen.language.house import RobotSpec
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.life import LifeStyle
@@ -44,11 +43,11 @@ class Project:
     `robots:`; each has a project of its own, of the same files. `house` is the name that they have in common.
     `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
-    wherever it runs. `patience` [s] is how long saved files wait for what is under way; `places` are those of the hall
-    that the robot knows by name. `aliases` is whether routes have their aliases: None for as long as no other robot is
-    seen on the bus. `knowledge` the passages by name, `questions` what they are tried with, `sayings` what `hears` is
-    tried with, `shared` what the robots of the house have in common. `sections` are what lumen.yaml says of features by
-    the keys of their sections; `section` returns those of one.
+    wherever it runs. `patience` [s] is how long saved files wait for what is under way. `aliases` is whether routes
+    have their aliases: None for as long as no other robot is seen on the bus. `knowledge` the passages by name,
+    `questions` what they are tried with, `sayings` what `hears` is tried with, `shared` what the robots of the house
+    have in common. `sections` are what lumen.yaml says of features by the keys of their sections; `section` returns
+    those of one.
     """
 
     root: str
@@ -75,7 +74,6 @@ class Project:
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
-    places: Mapping[str, HallPlace] = field(default_factory=dict)
     aliases: bool | None = None
     hash: str = ""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)

@@ -182,7 +182,6 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         bus=settings.bus,
         patience=settings.patience,
         modules=settings.modules,
-        places=settings.places,
         aliases=settings.aliases,
         sections=settings.sections,
         hash=fingerprint(found.files),

@@ -9,7 +9,6 @@ from zoneinfo import available_timezones
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, did_you_mean, nearest
-from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.house import RobotSpec
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
@@ -19,11 +18,10 @@ from lumen.language.shared import SharedKey
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
-from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.sections import is_section, read_sections
 from lumen.loading.shared_keys import build_shared
-from lumen.loading.units import ANGLES, LENGTHS
+from lumen.loading.units import LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the robot does not start on the stage")
@@ -61,7 +59,6 @@ class Settings:
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
-    places: Mapping[str, HallPlace] = field(default_factory=dict)
     stand: str = ""
     aliases: bool | None = None
     sections: Sections = field(default_factory=dict)
@@ -104,7 +101,6 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
         modules={name: _module(name, row) for name, row in modules.items()},
-        places=_places(data, report),
         stand=own.stand,
         aliases=False if several else data.get("aliases"),
         sections=read_sections(data, report),
@@ -180,20 +176,3 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
             return None
         spans.append((low * unit, high * unit))
     return Stage(*spans)
-
-
-def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:
-    """The places whose numbers can be used; headings are in degrees where the file does not say."""
-    units = data.get("units", {})
-    length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
-    found = {}
-    for name, row in data.get("places", {}).items():
-        if not all(finite(value, report, ("places", name, key)) for key, value in row.items()):
-            continue
-        found[name] = HallPlace(
-            x=row["x"] * length,
-            y=row["y"] * length,
-            heading=row["heading"] * angle if "heading" in row else None,
-            within=row["within"] * length if "within" in row else DEFAULT_WITHIN,
-        )
-    return found

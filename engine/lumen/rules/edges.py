@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lumen.language.actions import If, Parallel, PlacedAction, nested
 from lumen.language.commands import GoTo, Move, Walk
 from lumen.language.diagnostics import WARNING, Code, NodePath
-from lumen.language.hall_places import HallPlace
+from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.roles import BaseKind
 from lumen.loading.draft import ProjectDraft
@@ -55,12 +55,13 @@ def check(draft: ProjectDraft) -> None:
     if not covered(parts, GroundPoint(0.0, 0.0)):
         return  # height fields and meshes are not read
     hint = f"stay on the ground, which extends {reach(parts)}, or write a `stage` in lumen.yaml"
-    for name, place in settings.places.items():
+    places = settings.section(HallPlaces).by_name
+    for name, place in places.items():
         if not covered(parts, GroundPoint(place.x, place.y)):
             message = f"there is no ground at `{name}` in {settings.hall}: the robot would fall"
             draft.main(WALK_BEYOND_GROUND, ("places", name), message, hint, key=True)
     machine = draft.behaviors.get(settings.behavior)
-    strays = dict(_Ways(machine, parts, settings.places).strays()) if machine else {}
+    strays = dict(_Ways(machine, parts, places).strays()) if machine else {}
     for where, point in strays.items():
         x, y = round(point.x, 2) + 0.0, round(point.y, 2) + 0.0  # -0.0 becomes 0.0
         message = f"this walk leads off the ground, to x {x:.2f} m, y {y:.2f} m from the start"

@@ -8,7 +8,7 @@ from math import hypot, pi
 from lumen.interpreters.expressions import split_template
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean, has_errors
-from lumen.language.hall_places import HallPlace
+from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
@@ -35,15 +35,15 @@ def check(draft: ProjectDraft) -> None:
     """Report places that are unknown, out of reach, alike or unused, and headings in another unit than the file's."""
     if draft.settings is None or draft.main is None:
         return
-    walked = set()
+    walked, places = set(), draft.settings.section(HallPlaces).by_name
     for report, path, name in _named(draft):
         walked.add(name)
         known_place(draft, report, path, name)
-    for name, place in draft.settings.places.items():
+    for name, place in places.items():
         _heading(draft.main, name)
         if draft.settings.stage:
             _on_stage(draft.main, name, place, draft.settings.stage)
-    _apart(draft.main, draft.settings.places.items())
+    _apart(draft.main, places.items())
     if not has_errors(draft.diagnostics):
         _used(draft, draft.main, walked)
 
@@ -52,11 +52,12 @@ def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
     """Whether lumen.yaml has that place; reported at `path` where it does not, and was readable."""
     assert draft.settings
     assert draft.main
-    if name in draft.settings.places:
+    places = draft.settings.section(HallPlaces).by_name
+    if name in places:
         return True
     if name not in draft.main.lost:
-        hint, cause = did_you_mean(name, draft.settings.places, "lumen.yaml has"), f"name {name}"
-        if not draft.settings.places:
+        hint, cause = did_you_mean(name, places, "lumen.yaml has"), f"name {name}"
+        if not places:
             hint, cause = f"write `places: {{{name}: {{x: 1, y: 0}}}}` in lumen.yaml, which has no places", "no places"
         report(UNKNOWN_PLACE, path, f"there is no place `{name}`", hint, cause=cause)
     return False
@@ -104,7 +105,7 @@ def _used(draft: ProjectDraft, main: DocumentReport, walked: set[str]) -> None:
     assert draft.settings
     if _computed(draft):
         return
-    for name in draft.settings.places:
+    for name in draft.settings.section(HallPlaces).by_name:
         if name not in walked:
             hint = f"write `walk: {{to: {name}}}` in a behaviour, or delete the place"
             main(UNUSED_PLACE, ("places", name), f"no walk leads to the place `{name}`", hint, key=True)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from lumen.language.actions import nested
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.language.hall_places import HallPlaces
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
@@ -34,12 +35,15 @@ class PlacedWalk(NamedTuple):
 
 def check(draft: ProjectDraft) -> None:
     """Report places and ways that are not free in the hall of the project."""
-    if draft.settings is None or draft.main is None or not draft.settings.places:
+    if draft.settings is None or draft.main is None:
+        return
+    named = draft.settings.section(HallPlaces).by_name
+    if not named:
         return
     file = f"models/{draft.settings.hall}"
     content = draft.files.get(file) or draft.lent.get(file)
     solid = obstacles(content) if content else ()
-    places = {name: GroundPoint(place.x, place.y) for name, place in draft.settings.places.items()}
+    places = {name: GroundPoint(place.x, place.y) for name, place in named.items()}
     shut = set()
     for name, point in places.items():
         room = nearest(solid, point, point)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from lumen.interpreters.wayfinding import distance_to, most_legs, next_leg, place_at
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import ARRIVED, DOUBTFUL, LEFT, Event
-from lumen.language.hall_places import HallPlace
+from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.projects import Project
 from lumen.ports import Joints, Robot, RobotCommand, Sense, Whereabouts
 
@@ -89,7 +89,7 @@ class Navigator:
             events += self._end(way, Event(f"cancelled.command.{way.id}", None, now))
         if self._ways:
             events += self._go_on(self._ways[0], project, now)
-        if project.places or standing:
+        if standing or project.section(HallPlaces).by_name:
             events += self._look_around(project, standing, now)
         return events
 
@@ -117,14 +117,15 @@ class Navigator:
             yield from self._end(way, event._replace(name=f"{kind}.command.{way.id}"))
 
     def _go_on(self, way: _Way, project: Project, now: float) -> Iterator[Event]:
+        places = project.section(HallPlaces).by_name
         if way.leg:
-            if way.target and way.target != project.places.get(way.name):
+            if way.target and way.target != places.get(way.name):
                 way.target = None
                 self._robot.cancel(way.leg)
             return
-        target = project.places.get(way.name)
+        target = places.get(way.name)
         if target is None:
-            known = did_you_mean(way.name, project.places, "there are") if project.places else "lumen.yaml has none"
+            known = did_you_mean(way.name, places, "there are") if places else "lumen.yaml has none"
             yield from self._fail(way, f"there is no place `{way.name}`: {known}", now)
             return
         if (here := self._fresh(way)) is None:
@@ -175,7 +176,7 @@ class Navigator:
         here = reading.position if isinstance(reading, Joints) else None
         if here is None:
             return
-        found = place_at(here, project.places, standing)
+        found = place_at(here, project.section(HallPlaces).by_name, standing)
         if self._ways and found != standing:
             found = ""
         if found == standing:
@@ -187,7 +188,8 @@ class Navigator:
 
     def _doubt(self, project: Project, place: str, here: Whereabouts, now: float) -> Iterator[Event]:
         """Say once that the robot, which is at a place by its odometry, may be farther from it than `within`."""
-        doubts = place in project.places and here.doubt > project.places[place].within
+        places = project.section(HallPlaces).by_name
+        doubts = place in places and here.doubt > places[place].within
         if doubts and self._doubted != place:
             yield self._event(DOUBTFUL, place, here, now)
         self._doubted = place if doubts else ""

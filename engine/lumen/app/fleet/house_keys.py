@@ -9,7 +9,7 @@ from lumen.loading.files import belongs
 from lumen.loading.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
-    "house", "robot", "robots", "hall", "stage", "places", "units", "bus", "aliases", "timezone", "modules",
+    "house", "robot", "robots", "hall", "stage", "units", "bus", "aliases", "timezone", "modules",
     "shared",
 )  # fmt: skip
 """What lumen.yaml says of a house and its robots, beside the sections of features: no bundle changes it."""
