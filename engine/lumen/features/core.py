@@ -223,6 +223,13 @@ FEATURE = Feature(
         "junit": "lumen.cli.verdicts.junit:render",
     },
     sections={
+        "shared": Section(
+            read="lumen.loading.shared_keys:read_shared",
+            title="shared key",
+            risk="behavior",
+            entries="by_name",
+            of_house=True,
+        ),
         "places": Section(
             read="lumen.loading.hall_places:read_hall_places",
             title="place",

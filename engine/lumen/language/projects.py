@@ -18,7 +18,6 @@ from lumen.language.routes import Route
 from lumen.language.routing_keys import default_key
 from lumen.language.sayings import SayingSet
 from lumen.language.sections import Sections, section_of
-from lumen.language.shared import SharedKey
 from lumen.language.stories import Story
 
 DEFAULT_PATIENCE = 60.0
@@ -44,10 +43,9 @@ class Project:
     `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
     wherever it runs. `patience` [s] is how long saved files wait for what is under way. `aliases` is whether routes
-    have their aliases: None for as long as no other robot is seen on the bus. `knowledge` the passages by name,
-    `questions` what they are tried with, `sayings` what `hears` is tried with, `shared` what the robots of the house
-    have in common. `sections` are what lumen.yaml says of features by the keys of their sections; `section` returns
-    those of one.
+    have their aliases: None for as long as no other robot is seen on the bus. `knowledge` are the passages by name,
+    `questions` what they are tried with, `sayings` what `hears` is tried with. `sections` are what lumen.yaml says of
+    features by the keys of their sections; `section` returns those of one.
     """
 
     root: str
@@ -79,7 +77,6 @@ class Project:
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False
     house: str = ""
-    shared: Mapping[str, SharedKey] = field(default_factory=dict)
     sections: Sections = field(default_factory=dict)
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -1,4 +1,4 @@
-"""The settings of features, which stand in sections of lumen.yaml."""
+"""The settings of features, from the sections of lumen.yaml."""
 
 from collections.abc import Mapping
 from typing import TypeVar

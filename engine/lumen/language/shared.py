@@ -1,7 +1,7 @@
 """What the robots of a house have in common: values that all of them read, each written by one of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 SHARED = "shared"
@@ -17,6 +17,13 @@ class SharedKey:
     owner: str
     type: str
     initial: Any
+
+
+@dataclass(frozen=True, slots=True)
+class SharedKeys:
+    """The keys of `shared:` by name."""
+
+    by_name: Mapping[str, SharedKey] = field(default_factory=dict)
 
 
 def shared_schema(keys: Mapping[str, SharedKey]) -> dict[str, Any]:

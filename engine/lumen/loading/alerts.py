@@ -1,4 +1,4 @@
-"""What stands under `alerts:` of lumen.yaml, from its plain data to `Alerts`."""
+"""`alerts:` of lumen.yaml, from its data to `Alerts`."""
 
 from collections.abc import Mapping
 from datetime import time

@@ -8,7 +8,7 @@ from lumen.loading.document_report import DocumentReport
 
 
 def read_console(data: Mapping[str, Any], report: DocumentReport) -> ConsoleSettings:
-    """Return where the pages are, and who may do what there; `lumen run` then has a console beside it."""
+    """Return the address of the pages and their PINs; `lumen run` then has a console beside it."""
     console = data["console"]
     return ConsoleSettings(
         wanted=True,

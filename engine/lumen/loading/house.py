@@ -39,6 +39,11 @@ def build_house(data: Mapping[str, Any]) -> str:
     return data.get("house", "") or re.sub(r"[^a-z0-9]+", "-", data.get("name", "").lower()).strip("-") or "house"
 
 
+def robot_names(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of the robots that `build_robots` builds, in the order written."""
+    return tuple(data.get("robots") or (data.get("robot", {}).get("name", DEFAULT_ROBOT),))
+
+
 def told_robots(data: Mapping[str, Any]) -> bool:
     """Whether the robots are those of `robots:`: then each is told apart by its name, also on the disk."""
     return bool(data.get("robots"))

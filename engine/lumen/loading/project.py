@@ -15,6 +15,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.language.sayings import SAYINGS_FOLDER
+from lumen.language.shared import SharedKeys
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
@@ -160,7 +161,6 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         robots=settings.robots,
         told_apart=settings.told_apart,
         house=settings.house,
-        shared=settings.shared,
         body=body,
         hall=settings.hall,
         behavior=settings.behavior,
@@ -210,7 +210,7 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
     known = found.names[WORDS_FOLDER]
     contents = {name: found.files[f"{WORDS_FOLDER}/{name}.yaml"] for name in known}
     settings = found.settings
-    shared = settings.shared if settings else {}
+    shared = settings.section(SharedKeys).by_name if settings else {}
     performed = {robot.behavior for robot in settings.robots.values()} if settings and shared else set()
     languages, shipped = settings.languages if settings else (), is_shipped(found.files, COMMON)
     build = partial(

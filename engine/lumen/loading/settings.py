@@ -14,13 +14,11 @@ from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.language.sections import Sections, section_of
-from lumen.language.shared import SharedKey
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.sections import is_section, read_sections
-from lumen.loading.shared_keys import build_shared
 from lumen.loading.units import LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
@@ -46,7 +44,6 @@ class Settings:
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False
     house: str = ""
-    shared: Mapping[str, SharedKey] = field(default_factory=dict)
     model: str = ""
     hall: str = ""
     behavior: str = ""
@@ -88,7 +85,6 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         robots=robots,
         told_apart=several,
         house=build_house(data),
-        shared=build_shared(data, robots, report),
         model=own.model,
         hall=data.get("hall", ""),
         behavior=own.behavior,

@@ -1,26 +1,27 @@
 """`shared:` of lumen.yaml, from its data to the keys that all robots of a house read."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
-from lumen.language.shared import SharedKey
+from lumen.language.shared import SharedKey, SharedKeys
 from lumen.loading.complaints import WRONG_VALUE
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.house import robot_names
 from lumen.loading.numbers import finite
 from lumen.loading.schema_messages import TYPE_NAMES
 
 UNKNOWN_OWNER = Code("unknown-owner", "robot", ERROR, "a key of `shared` names a robot that is not in the house")
 
 FIRST: Mapping[str, Any] = {"string": "", "number": 0, "integer": 0, "boolean": False}
-"""What a key holds first where lumen.yaml does not say, by its type."""
+"""The first value of a key without `initial` in lumen.yaml, by its type."""
 
 
-def build_shared(data: Mapping[str, Any], robots: Collection[str], report: DocumentReport) -> dict[str, SharedKey]:
-    """The keys by name; those that can't be used are reported and left out."""
-    found = {}
-    for name, row in data.get("shared", {}).items():
+def read_shared(data: Mapping[str, Any], report: DocumentReport) -> SharedKeys:
+    """Return the keys of `shared`; those that can't be used are reported and left out."""
+    robots, found = robot_names(data), {}
+    for name, row in data["shared"].items():
         owner, kind = row["owner"], row["type"]
         initial = row.get("initial", FIRST[kind])
         if owner not in robots:
@@ -34,4 +35,4 @@ def build_shared(data: Mapping[str, Any], robots: Collection[str], report: Docum
             report(WRONG_VALUE, ("shared", name, "initial"), message, hint)
         elif isinstance(initial, bool | str) or finite(initial, report, ("shared", name, "initial")):
             found[name] = SharedKey(owner, kind, initial)
-    return found
+    return SharedKeys(found)

@@ -1,4 +1,4 @@
-"""What stands under `modules: {show: …}` of lumen.yaml, from its plain data to `Show`."""
+"""`modules: {show: …}` of lumen.yaml, from its data to `Show`."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -6,7 +6,7 @@ from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_K
 from lumen.language.actions import Assign, Send
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
-from lumen.language.shared import SHARED, SHARED_EVENT
+from lumen.language.shared import SHARED, SHARED_EVENT, SharedKeys
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.walk import action_sites
 
@@ -27,7 +27,10 @@ def check(draft: ProjectDraft) -> None:
     settings = draft.settings
     _made(draft)
     machine = draft.behaviors.get(settings.behavior) if settings else None
-    if settings is None or machine is None or not settings.shared:
+    if settings is None or machine is None:
+        return
+    keys = settings.section(SharedKeys).by_name
+    if not keys:
         return
     report = draft.report("behaviors", settings.behavior)
     if SHARED in (report.document.data.get("context") or {}):
@@ -36,11 +39,11 @@ def check(draft: ProjectDraft) -> None:
         return
     for way, where in _assigned(machine):
         key = way.partition(".")[2]
-        if key not in settings.shared:
+        if key not in keys:
             message = f"`shared` has no `{key}`" if key else "`shared` can't be assigned as a whole"
-            hint = did_you_mean(f"{SHARED}.{key}", [f"{SHARED}.{name}" for name in settings.shared], "lumen.yaml has")
+            hint = did_you_mean(f"{SHARED}.{key}", [f"{SHARED}.{name}" for name in keys], "lumen.yaml has")
             report(UNKNOWN_CONTEXT_KEY, where, message, hint, key=True)
-        elif (owner := settings.shared[key].owner) != settings.robot:
+        elif (owner := keys[key].owner) != settings.robot:
             hint = f"assign it in the behaviour of `{owner}`, and request that with `send: {{to: {owner}, event: …}}`"
             report(NOT_OWNER, where, f"`{key}` belongs to `{owner}`, but `{settings.robot}` assigns it", hint, key=True)
 

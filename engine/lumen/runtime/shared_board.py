@@ -14,7 +14,7 @@ from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routing_keys import SHARED_KEY, key_of_house
-from lumen.language.shared import SHARED, SHARED_EVENT
+from lumen.language.shared import SHARED, SHARED_EVENT, SharedKey, SharedKeys
 from lumen.ports import Bus, Message
 
 RETELL_PERIOD = 10.0
@@ -42,7 +42,7 @@ class SharedBoard:
     def listen(self, project: Project) -> None:
         """Listen for this project, whose robot tells its values at the next tick, and asks for those of the others."""
         self._project, self._told = project, None
-        key = key_of_house(SHARED_KEY, project.house) if project.shared else ""
+        key = key_of_house(SHARED_KEY, project.house) if project.section(SharedKeys).by_name else ""
         if key != self._key:
             if self._undo:
                 self._undo()
@@ -74,7 +74,7 @@ class SharedBoard:
         if project is None or not self._key:
             return
         values = snapshot.context.get(SHARED, {})
-        own = {name: values[name] for name, key in project.shared.items() if key.owner == project.robot}
+        own = {name: values[name] for name in _owned_by(project.robot, project)}
         first = self._told is None
         if own == self._told and not self._asked and now < self._next:
             return
@@ -99,7 +99,7 @@ class SharedBoard:
         if robot == project.robot:
             return
         self._asked = self._asked or asks
-        owned = {name: key for name, key in project.shared.items() if key.owner == robot}
+        owned = _owned_by(robot, project)
         news = {name: value for name, value in values.items() if name in owned}
         if wrong := [name for name in values if name not in owned or not _fits(owned[name].type, values[name])]:
             _log.warning(
@@ -114,3 +114,8 @@ class SharedBoard:
 
 def _fits(kind: str, value: object) -> bool:
     return JsonSchema({"type": kind}).fits(value)
+
+
+def _owned_by(robot: str, project: Project) -> dict[str, SharedKey]:
+    """Return the shared keys of one robot by name."""
+    return {name: key for name, key in project.section(SharedKeys).by_name.items() if key.owner == robot}

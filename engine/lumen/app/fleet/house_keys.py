@@ -10,7 +10,6 @@ from lumen.loading.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "units", "bus", "aliases", "timezone", "modules",
-    "shared",
 )  # fmt: skip
 """What lumen.yaml says of a house and its robots, beside the sections of features: no bundle changes it."""
 

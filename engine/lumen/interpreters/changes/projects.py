@@ -17,8 +17,8 @@ MAX_SUMMARY_CHANGES = 4
 """Changes that a summary names; of what there is more of, it gives the number."""
 
 _PARTS = (
-    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages",
-    "life", "gestures", "knowledge", "questions", "sayings", "shared",
+    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "life", "gestures",
+    "knowledge", "questions", "sayings",
 )  # fmt: skip
 _SELF = ("root", "hash", "documents", "sections")
 
@@ -70,7 +70,6 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     for found in entry_changes("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes):
         uses = (new.routes.get(found.about) or old.routes[found.about]).uses
         yield replace(found, file=uses[0].file) if uses else found
-    yield from entry_changes("shared key", "shared key", Risk.BEHAVIOR, "lumen.yaml", old.shared, new.shared)
     yield from section_changes(old, new, lambda row: bool(row.entries))
     files = {name: passage.file for each in (old, new) for name, passage in each.knowledge.items()}
     for found in entry_changes("passage", "passage", Risk.COSMETIC, "{}", old.knowledge, new.knowledge):
