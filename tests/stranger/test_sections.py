@@ -2,21 +2,19 @@
 
 import json
 import shutil
-import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 import pytest
-from written_distribution import on_path, write_distribution
 
 from lumen.app.fleet.house_keys import at_home
 from lumen.app.reload.delta import DeltaDecoder, DeltaEncoder
 from lumen.app.reload.idle_process import end_idle
 from lumen.app.reload.validation_worker import ValidationWorker
 from lumen.cli.main import main
+from lumen.feature import resolve
 from lumen.interpreters.changes import changes, live
 from lumen.language.projects import Project
 from lumen.loading import memoization
@@ -26,8 +24,10 @@ from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.rules import check_files
 from tests import ROOT
+from tests.stranger.installing import SOURCES, Installed
 from tests.tables import for_each
 
+LAMP_MODULE = (SOURCES / "lumen_stranger/lamp.py").read_text()
 MANIFEST = """\
 from lumen.feature import Feature, Section
 
@@ -35,75 +35,19 @@ FEATURE = Feature(
     name="lamp",
     sections={
         "lamp": Section(
-            read="lumen_lamp.settings:read_lamp",
-            schema="lumen_lamp.settings:SCHEMA",
-            title="scene of the lamp",
-            risk="wiring",
-            entries="scenes",
-            of_house=True,
+            read="lamp_settings:read_lamp", schema="lamp_settings:SCHEMA", title="scene of the lamp", entries="scenes"
         )
     },
 )
 """
-SETTINGS = """\
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-
-from lumen.language.diagnostics import ERROR, Code
-
-NO_SCENE = Code("no-scene", "robot", ERROR, "the lamp begins with a scene that it does not have")
-
-SCHEMA = {
-    "description": "A lamp on the stage",
-    "type": "object",
-    "additionalProperties": False,
-    "required": ["scenes"],
-    "properties": {
-        "first": {"description": "The scene at the start", "type": "string", "examples": ["night"]},
-        "scenes": {
-            "description": "How bright each scene is, from 0 to 1",
-            "type": "object",
-            "additionalProperties": {"type": "number", "minimum": 0, "maximum": 1},
-            "examples": [{"night": 0.1}],
-        },
-    },
-}
-
-
-@dataclass(frozen=True)
-class Lamp:
-    first: str = ""
-    scenes: Mapping[str, float] = field(default_factory=dict)
-
-
-def read_lamp(data, report):
-    said = data["lamp"]
-    lamp = Lamp(said.get("first", ""), dict(said["scenes"]))
-    if lamp.first and lamp.first not in lamp.scenes:
-        report(NO_SCENE, ("lamp", "first"), f"the lamp has no scene `{lamp.first}`", "add it to `scenes`")
-    return lamp
-"""
 LAMP = "lamp: {first: night, scenes: {night: 0.1, day: 1}}\n"
 
 
-@pytest.fixture
-def packages(tmp_path: Path) -> Iterator[Path]:
-    """A folder with the installed package, which this process uses."""
-    with ExitStack() as contexts:
-        yield install(tmp_path / "packages", contexts)
-
-
-def install(folder: Path, contexts: ExitStack, **changed: str) -> Path:
-    """Install the package with changed texts of `manifest` or `settings`, and use it until the contexts end."""
-    files = {
-        "lumen_lamp/__init__.py": "",
-        "lumen_lamp/manifest.py": changed.get("manifest", MANIFEST),
-        "lumen_lamp/settings.py": changed.get("settings", SETTINGS),
-    }
-    write_distribution(folder, "lumen-lamp", "lumen_lamp.manifest:FEATURE", files)
-    contexts.enter_context(patch.dict(memoization._last, clear=True))
-    contexts.enter_context(on_path(folder))
-    return folder
+@pytest.fixture(autouse=True)
+def fresh() -> Iterator[None]:
+    """Forget files that were read with other features."""
+    with patch.dict(memoization._last, clear=True):
+        yield
 
 
 def files(lamp: str) -> dict[str, bytes]:
@@ -129,16 +73,18 @@ def marked(lamp: str) -> list[tuple[str, str, str, str]]:
 
 
 def settings_of(some: Project) -> Any:
-    """Return the settings of the package's section, by the type that the package has now."""
-    return some.section(sys.modules["lumen_lamp.settings"].Lamp)
+    """Return the settings of the stranger's section."""
+    return some.section(resolve("lumen_stranger.lamp:Lamp"))
 
 
-def test_the_settings_are_read(packages: Path) -> None:
+@pytest.mark.process
+def test_the_settings_are_read(stranger: Path) -> None:
     lamp = settings_of(project(LAMP))
     assert (lamp.first, lamp.scenes) == ("night", {"night": 0.1, "day": 1})
     assert settings_of(project("")) == type(lamp)()
 
 
+@pytest.mark.process
 @for_each(
     ("lamp", "code", "word", "told"),
     [
@@ -148,21 +94,18 @@ def test_the_settings_are_read(packages: Path) -> None:
         ("lamp: {first: day, scenes: {night: 1}}\n", "no-scene", "day", "the lamp has no scene `day`"),
     ],
 )
-def test_lint_finds_mistakes_at_their_words(lamp: str, code: str, word: str, told: str, packages: Path) -> None:
+def test_lint_finds_mistakes_at_their_words(lamp: str, code: str, word: str, told: str, stranger: Path) -> None:
     [(found, text, message, hint)] = marked(lamp)
     assert (found, text) == (code, word)
     assert told in f"{message} {hint}"
 
 
-def test_without_the_package_the_section_is_an_unknown_key(tmp_path: Path) -> None:
-    with ExitStack() as contexts:
-        install(tmp_path, contexts)
-        assert marked(LAMP) == []
-    with patch.dict(memoization._last, clear=True):
-        assert [(code, word) for code, word, *_ in marked(LAMP)] == [("unknown-key", "lamp")]
+def test_without_the_package_the_section_is_an_unknown_key() -> None:
+    assert [(code, word) for code, word, *_ in marked(LAMP)] == [("unknown-key", "lamp")]
 
 
-def test_each_entry_that_differs_is_a_change(packages: Path) -> None:
+@pytest.mark.process
+def test_each_entry_that_differs_is_a_change(stranger: Path) -> None:
     old, new = project(LAMP), project("lamp: {first: day, scenes: {day: 0.9, evening: 0.5}}\n")
     assert [(str(each), str(each.risk)) for each in changes(old, new)] == [
         ("scene of the lamp `night` removed", "wiring"),
@@ -178,17 +121,17 @@ def test_each_entry_that_differs_is_a_change(packages: Path) -> None:
     assert live(old, new).sections == new.sections
 
 
-def test_a_section_that_takes_effect_at_the_next_start_stays_as_it_was(tmp_path: Path) -> None:
-    fixed = MANIFEST.replace('"scene of the lamp"', '"the lamp"').replace('"wiring"', '"restart"')
-    with ExitStack() as contexts:
-        install(tmp_path, contexts, manifest=fixed.replace('            entries="scenes",\n', ""))
-        old, new = project(LAMP), project("lamp: {scenes: {day: 1}}\n")
-        assert [str(each) for each in changes(old, new)] == ["the lamp changed: it takes effect at the next start"]
-        assert live(old, new).sections == old.sections
-        assert live(old, project("")).sections == old.sections
+def test_a_section_that_takes_effect_at_the_next_start_stays_as_it_was(installed: Installed) -> None:
+    fixed = MANIFEST.replace('title="scene of the lamp", entries="scenes"', 'title="the lamp", risk="restart"')
+    installed.write("lumen-lamp", fixed, lamp_settings=LAMP_MODULE)
+    old, new = project(LAMP), project("lamp: {scenes: {day: 1}}\n")
+    assert [str(each) for each in changes(old, new)] == ["the lamp changed: it takes effect at the next start"]
+    assert live(old, new).sections == old.sections
+    assert live(old, project("")).sections == old.sections
 
 
-def test_a_section_that_is_the_same_stays_the_same_object_in_another_process(packages: Path) -> None:
+@pytest.mark.process
+def test_a_section_that_is_the_same_stays_the_same_object_in_another_process(stranger: Path) -> None:
     sender, receiver = DeltaEncoder(), DeltaDecoder()
     before = receiver.unpack(sender.pack(project(LAMP)))
     after = receiver.unpack(sender.pack(project(f"alerts: {{to: [{{command: [./page.sh]}}]}}\n{LAMP}")))
@@ -198,10 +141,7 @@ def test_a_section_that_is_the_same_stays_the_same_object_in_another_process(pac
 
 @pytest.mark.process
 @pytest.mark.slow
-def test_saved_files_are_judged_with_the_section(
-    packages: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(packages))
+def test_saved_files_are_judged_with_the_section(stranger: Path, tmp_path: Path) -> None:
     end_idle()  # a process that another test began would not find the package
     root = shutil.copytree(ROOT / "tests/lint/base", tmp_path / "small")
     judge = ValidationWorker(root)
@@ -215,7 +155,8 @@ def test_saved_files_are_judged_with_the_section(
     end_idle()
 
 
-def test_lumen_diff_prints_the_entries(packages: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.process
+def test_lumen_diff_prints_the_entries(stranger: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, lamp in (("old", LAMP), ("new", "lamp: {first: night, scenes: {night: 0.2, day: 1}}\n")):
         root = shutil.copytree(ROOT / "tests/lint/base", tmp_path / name)
         (root / "lumen.yaml").write_bytes(files(lamp)["lumen.yaml"])
@@ -223,7 +164,8 @@ def test_lumen_diff_prints_the_entries(packages: Path, tmp_path: Path, capsys: p
     assert "lumen.yaml\n  scene of the lamp `night` changed (wiring)\n" in capsys.readouterr().out
 
 
-def test_the_editor_completes_and_explains_the_section(packages: Path) -> None:
+@pytest.mark.process
+def test_the_editor_completes_and_explains_the_section(stranger: Path) -> None:
     analysis = Analysis(ROOT, files("la\n"))
     last = analysis.text("lumen.yaml").count("\n")
     assert "lamp" in [item.text.rstrip(": ") for item in complete(analysis, "lumen.yaml", last, 3)]
@@ -233,7 +175,8 @@ def test_the_editor_completes_and_explains_the_section(packages: Path) -> None:
     assert hover(analysis, "lumen.yaml", last + 1, 4) == "`scenes`: How bright each scene is, from 0 to 1"
 
 
-def test_lumen_schema_prints_the_section(packages: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.process
+def test_lumen_schema_prints_the_section(stranger: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "lumen"]) == 0
     properties = json.loads(capsys.readouterr().out)["properties"]
     assert properties["lamp"]["description"] == "A lamp on the stage"
@@ -241,31 +184,30 @@ def test_lumen_schema_prints_the_section(packages: Path, capsys: pytest.CaptureF
     assert [*properties] == [*shipped, "lamp"]
 
 
-def test_a_bundle_of_a_fleet_leaves_the_section_of_a_house(packages: Path) -> None:
+@pytest.mark.process
+def test_a_bundle_of_a_fleet_leaves_the_section_of_a_house(stranger: Path) -> None:
     assert at_home(b"name: Tour\nlamp: {scenes: {day: 1}}\n", LAMP.encode()) == f"name: Tour\n{LAMP}".encode()
 
 
 BROKEN = {
-    "its reader raises": ("settings", SETTINGS.replace('data["lamp"]', "1 / 0"), "ZeroDivisionError: division by zero"),
-    "its reader is missing": ("settings", SETTINGS.replace("def read_lamp", "def read"), "AttributeError"),
-    "its schema is missing": ("settings", SETTINGS.replace("SCHEMA", "SCHEME"), "AttributeError"),
-    "its schema is unsound": ("settings", SETTINGS.replace('"object"', '"map"'), "is no JSON Schema, or has `$ref`"),
-    "its schema has a reference": (
-        "settings",
-        SETTINGS.replace('"type": "string"', '"$ref": "#/$defs/host"'),
-        "is no JSON Schema, or has `$ref`",
-    ),
-    "its entries are no mapping": ("manifest", MANIFEST.replace('"scenes"', '"first"'), "`first` of its settings"),
-    "it has no such entries": ("manifest", MANIFEST.replace('"scenes"', '"sceens"'), "AttributeError"),
-    "its settings lack a default": ("settings", SETTINGS.replace('first: str = ""', "first: str"), "TypeError"),
+    "its reader raises": ('data["lamp"]', "1 / 0", "ZeroDivisionError: division by zero"),
+    "its reader is missing": ("def read_lamp", "def read", "AttributeError"),
+    "its schema is missing": ("SCHEMA = {", "SCHEME = {", "AttributeError"),
+    "its schema is unsound": ('"object"', '"map"', "is no JSON Schema, or has `$ref`"),
+    "its schema has a reference": ('"type": "string"', '"$ref": "#/$defs/host"', "is no JSON Schema, or has `$ref`"),
+    "its settings lack a default": ('first: str = ""', "first: str", "TypeError"),
+    "its entries are no mapping": ('entries="scenes"', 'entries="first"', "`first` of its settings is no mapping"),
+    "it has no such entries": ('entries="scenes"', 'entries="sceens"', "AttributeError"),
 }
 
 
 @for_each("case", BROKEN)
-def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(case: str, tmp_path: Path) -> None:
-    part, text, told = BROKEN[case]
-    with ExitStack() as contexts:
-        install(tmp_path, contexts, **{part: text})
+def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(case: str, installed: Installed) -> None:
+    right, wrong, told = BROKEN[case]
+    assert right in MANIFEST + LAMP_MODULE
+    manifest, module = MANIFEST.replace(right, wrong), LAMP_MODULE.replace(right, wrong)
+    installed.write("lumen-lamp", manifest, lamp_settings=module)
+    with patch.dict(memoization._last, clear=True):
         [(code, word, message, _)] = marked(LAMP)
         assert (code, word) == ("broken-feature", "lamp")
         assert "`lumen-lamp` 1.0 is faulty: reading `lamp` raised" in message
@@ -274,9 +216,8 @@ def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(ca
         assert marked("") == []
 
 
-def test_an_unknown_risk_is_a_fault_of_the_manifest(tmp_path: Path) -> None:
-    with ExitStack() as contexts:
-        install(tmp_path, contexts, manifest=MANIFEST.replace('"wiring"', '"great"'))
-        faults = [message for code, _, message, _ in marked("") if code == "broken-feature"]
-        assert len(faults) == 1
-        assert "no risk `great`: choose one of cosmetic, behavior, motion, wiring, restart" in faults[0]
+def test_an_unknown_risk_is_a_fault_of_the_manifest(installed: Installed) -> None:
+    risky = MANIFEST.replace('entries="scenes"', 'risk="great"')
+    installed.write("lumen-lamp", risky, lamp_settings=LAMP_MODULE)
+    [fault] = [message for code, _, message, _ in marked("") if code == "broken-feature"]
+    assert "no risk `great`: choose one of cosmetic, behavior, motion, wiring, restart" in fault

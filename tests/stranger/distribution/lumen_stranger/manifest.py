@@ -1,6 +1,6 @@
 """The manifest of the stranger's feature."""
 
-from lumen.feature import Exporter, Feature, Importer, Subcommand
+from lumen.feature import Exporter, Feature, Importer, Section, Subcommand
 
 FEATURE = Feature(
     name="stranger",
@@ -15,4 +15,15 @@ FEATURE = Feature(
     importers={".states": Importer("behavior", "lumen_stranger.lists:read_states")},
     exporters={"states": Exporter("behavior", "lumen_stranger.lists:write_states")},
     format_tables={"lists of states": "lumen_stranger.lists:KNOWN"},
+    codes=("lumen_stranger.lamp",),
+    sections={
+        "lamp": Section(
+            read="lumen_stranger.lamp:read_lamp",
+            schema="lumen_stranger.lamp:SCHEMA",
+            title="scene of the lamp",
+            risk="wiring",
+            entries="scenes",
+            of_house=True,
+        )
+    },
 )
