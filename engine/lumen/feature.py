@@ -197,6 +197,10 @@ class Feature:
     sections: Mapping[str, Section] = field(default_factory=dict)
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
 
+    def __post_init__(self) -> None:
+        if wrong := [key for key, row in self.sections.items() if not isinstance(row, Section)]:
+            raise TypeError(f"`{wrong[0]}` of its `sections` is no `Section`")
+
 
 class FeatureFault(NamedTuple):
     """Why a feature of an installed distribution, or a row of it, is ignored."""

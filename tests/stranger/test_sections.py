@@ -196,6 +196,7 @@ BROKEN = {
     "its schema is unsound": ('"object"', '"map"', "is no JSON Schema, or has `$ref`"),
     "its schema has a reference": ('"type": "string"', '"$ref": "#/$defs/host"', "is no JSON Schema, or has `$ref`"),
     "its settings lack a default": ('first: str = ""', "first: str", "TypeError"),
+    "its reader returns nothing": ("return lamp", "return None", "returns no dataclass"),
     "its entries are no mapping": ('entries="scenes"', 'entries="first"', "`first` of its settings is no mapping"),
     "it has no such entries": ('entries="scenes"', 'entries="sceens"', "AttributeError"),
 }
@@ -216,8 +217,32 @@ def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(ca
         assert marked("") == []
 
 
-def test_an_unknown_risk_is_a_fault_of_the_manifest(installed: Installed) -> None:
-    risky = MANIFEST.replace('entries="scenes"', 'risk="great"')
-    installed.write("lumen-lamp", risky, lamp_settings=LAMP_MODULE)
-    [fault] = [message for code, _, message, _ in marked("") if code == "broken-feature"]
-    assert "no risk `great`: choose one of cosmetic, behavior, motion, wiring, restart" in fault
+@for_each(
+    ("right", "wrong", "told"),
+    [
+        (
+            'entries="scenes"',
+            'risk="great"',
+            "no risk `great`: choose one of cosmetic, behavior, motion, wiring, restart",
+        ),
+        ("Section(\n", "dict(\n", "`lamp` of its `sections` is no `Section`"),
+    ],
+)
+def test_a_wrong_row_is_a_fault_of_the_manifest(right: str, wrong: str, told: str, installed: Installed) -> None:
+    assert right in MANIFEST
+    installed.write("lumen-lamp", MANIFEST.replace(right, wrong), lamp_settings=LAMP_MODULE)
+    with patch.dict(memoization._last, clear=True):
+        [(code, _, message, _)] = marked("")
+    assert code == "broken-feature"
+    assert told in message
+
+
+@for_each("key", ["modules.lamp", "light.lamp", "name.lamp"])
+def test_a_key_with_dots_is_below_another(key: str, installed: Installed) -> None:
+    below, _, name = key.partition(".")
+    read = LAMP_MODULE.replace('data["lamp"]', f'data["{below}"]["{name}"]')
+    installed.write("lumen-lamp", MANIFEST.replace('"lamp":', f'"{key}":'), lamp_settings=read)
+    with patch.dict(memoization._last, clear=True):
+        assert marked("") == []
+        if below != "name":  # which is a text
+            assert project(f"{below}: {{lamp: {{scenes: {{night: 1}}}}}}\n").sections.keys() == {key}

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import replace
-from functools import cache, reduce
+from dataclasses import is_dataclass, replace
+from functools import cache
 from typing import Any
 
 from lumen.feature import Section, distribution_of, resolve, rows, table
@@ -49,11 +49,13 @@ def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
     for _, (key, row) in rows("sections"):
         if row.schema:
             *above, name = key.split(".")
-            parent = reduce(lambda node, step: node["properties"][step], above, schema)
+            siblings = schema["properties"]
+            for step in above:
+                siblings = siblings.setdefault(step, {"type": "object"}).setdefault("properties", {})
             own: Mapping[str, Any] = {}
             with suppress(Exception):
                 own = _schema(row.schema)
-            parent["properties"].setdefault(name, own)
+            siblings.setdefault(name, own)
     return schema
 
 
@@ -62,6 +64,8 @@ def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> obje
     if row.schema:
         _schema(row.schema)
     settings: object = resolve(row.read)(data, report)
+    if not is_dataclass(settings):
+        raise TypeError(f"`{row.read}` returns no dataclass")
     if row.entries and not isinstance(getattr(settings, row.entries), Mapping):
         raise TypeError(f"`{row.entries}` of its settings is no mapping")
     return settings
