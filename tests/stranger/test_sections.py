@@ -189,6 +189,13 @@ def test_a_bundle_of_a_fleet_leaves_the_section_of_a_house(stranger: Path) -> No
     assert at_home(b"name: Tour\nlamp: {scenes: {day: 1}}\n", LAMP.encode()) == f"name: Tour\n{LAMP}".encode()
 
 
+def test_a_bundle_leaves_a_section_below_a_key_of_its_own(installed: Installed) -> None:
+    row = MANIFEST.replace('"lamp": Section(', '"light.lamp": Section(of_house=True, ')
+    installed.write("lumen-lamp", row, lamp_settings=LAMP_MODULE)
+    own = b"light: {lamp: {scenes: {night: 1}}}\n"
+    assert at_home(b"name: Tour\nlight: {lamp: {scenes: {day: 1}}}\n", own) == b"name: Tour\n" + own
+
+
 BROKEN = {
     "its reader raises": ('data["lamp"]', "1 / 0", "ZeroDivisionError: division by zero"),
     "its reader is missing": ("def read_lamp", "def read", "AttributeError"),

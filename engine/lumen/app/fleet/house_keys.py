@@ -32,7 +32,7 @@ def at_home(shared: bytes, own: bytes) -> bytes:
 
     Raises UsageError where one of them is not written with a key at the left edge of each block.
     """
-    of_house = {*HOUSE_KEYS, *(key for key, row in table("sections").items() if row.of_house)}
+    of_house = {*HOUSE_KEYS, *(key.partition(".")[0] for key, row in table("sections").items() if row.of_house)}
     ours = {key: text for key, text in _blocks(own) if key in of_house}
     kept = [text for key, text in _blocks(shared) if key not in of_house]
     ended = [text if text.endswith("\n") else f"{text}\n" for text in (*kept, *ours.values())]
