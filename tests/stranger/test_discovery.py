@@ -3,6 +3,7 @@
 import re
 import shutil
 from collections.abc import Iterable, Iterator
+from dataclasses import fields
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -189,6 +190,13 @@ def test_every_import_string_of_the_features_that_come_with_lumen_names_somethin
     assert len(found) > 100
     for text in found:
         assert resolve(text) is not None
+
+
+def test_no_two_features_that_come_with_lumen_have_rows_of_the_same_name() -> None:
+    built_in = [resolve(where) for where in BUILT_IN]
+    for kind in fields(Feature):
+        named = [value for each in built_in if isinstance(value := getattr(each, kind.name), dict)]
+        assert len({name for rows in named for name in rows}) == sum(map(len, named)), kind.name
 
 
 def import_strings(value: object) -> Iterator[str]:
