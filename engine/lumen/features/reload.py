@@ -4,6 +4,7 @@ from lumen.feature import Feature, Section
 
 FEATURE = Feature(
     name="reload",
+    codes=("lumen.loading.replay_check",),
     sections={
         "reload": Section(
             read="lumen.loading.replay_check:read_replay_check",
