@@ -11,7 +11,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
 from lumen.app.setup import set_up
 from lumen.bus import connect
-from lumen.interpreters.replay.command_data import command_data
+from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Say, Start
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor

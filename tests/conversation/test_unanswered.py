@@ -11,8 +11,8 @@ import lumen
 from lumen.app.new_passage import write_passage
 from lumen.console.day import day_of
 from lumen.errors import UsageError
-from lumen.interpreters.replay.command_data import command_data
 from lumen.interpreters.replay.entries import JournalInput
+from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Start
 from lumen.language.events import Event
 from lumen.loading.files import read_files

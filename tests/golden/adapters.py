@@ -16,12 +16,12 @@ from lumen.buses.local import LocalBusServer
 from lumen.buses.local.address import LocalAddress
 from lumen.buses.local.client import LocalBusClient
 from lumen.cli.main import main
-from lumen.interpreters.replay.command_data import command_data
 from lumen.interpreters.replay.entries import entry_data
 from lumen.interpreters.replay.forking import fork
 from lumen.interpreters.replay.replaying import replay
 from lumen.interpreters.routing import matches
 from lumen.interpreters.statechart import deserialize, serialize
+from lumen.language.command_data import command_data
 from lumen.language.commands import Say
 from lumen.language.gestures import merged
 from lumen.ports import Live, Perform, Sense

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import HOWS
+from lumen.language.command_data import started
 from lumen.language.events import CLOCK_SET, HELD
 
 MAX_TEXT = 300

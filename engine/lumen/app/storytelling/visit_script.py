@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from lumen.interpreters.replay.command_data import started
 from lumen.interpreters.replay.entries import JournalInput
 from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.language.command_data import started
 from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event
 from lumen.language.projects import Project

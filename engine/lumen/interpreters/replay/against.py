@@ -13,11 +13,11 @@ from lumen.errors import JournalError, LumenError
 from lumen.interpreters.explaining.history import RecordedStep
 from lumen.interpreters.explaining.tracing import retaken
 from lumen.interpreters.migration import MigrationPlan, plan
-from lumen.interpreters.replay.command_data import command_data, started
 from lumen.interpreters.replay.entries import JournalInput, JournalJump
 from lumen.interpreters.replay.visits import RecordedVisit, home_of
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, elapse, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.command_data import command_data, started
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import Place
 from lumen.language.events import Event

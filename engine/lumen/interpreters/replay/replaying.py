@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError, SnapshotError
-from lumen.interpreters.replay.command_data import command_data
 from lumen.interpreters.replay.digest import StepDigest
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause
+from lumen.language.command_data import command_data
 from lumen.language.machines import MachineDefinition
 
 MachineSource = Callable[[str, str], MachineDefinition | None]
