@@ -1,13 +1,25 @@
-"""Commands as JSON data, as the journal keeps them: a later Lumen with more fields writes the same for the same."""
+"""Commands as JSON data: in the journal, and in the trace that the brain publishes on the bus.
+
+Both forms come from the classes of `Command` and their fields, so a new command needs no row here. The bodies of
+commands for a robot, spelt as in 2015, are in `robots/command_table.py`.
+"""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, Field, fields, is_dataclass
+from dataclasses import MISSING, Field, asdict, fields, is_dataclass
 from functools import cache
-from typing import Any
+from typing import Any, get_args
+
+from lumen.language.commands import BodyCommand, Command, Publish, Start
+
+_TRACED: Mapping[str, type] = {kind.__name__.lower(): kind for kind in get_args(BodyCommand)}
+"""The commands of a body by their names in a trace."""
 
 
 def command_data(value: Any) -> Any:
-    """`{Start: {id: d1, command: {Say: {text: Hello}}}}`: names and fields, without those that are as usual."""
+    """Return a command in the journal's form, `{Start: {id: d1, command: {Say: {text: Hello}}}}`.
+
+    Fields with their default value are left out: a later Lumen with more fields writes the same for the same.
+    """
     if is_dataclass(value) and not isinstance(value, type):
         said = ((field.name, getattr(value, field.name), _usual(field)) for field in _compared(type(value)))
         return {type(value).__name__: {name: command_data(given) for name, given, usual in said if given != usual}}
@@ -36,3 +48,31 @@ def started(command: Any) -> tuple[str, str, Mapping[str, Any]] | None:
             kind, said = next(iter(body.items()))
             return id, kind, said
     return None
+
+
+def traced(command: Command) -> dict[str, Any] | None:
+    """Return a command in the trace's form, `{verb: say, id: d1, text: Hello, …}`; None if no trace contains it."""
+    match command:
+        case Start(id, wanted):
+            return {"verb": trace_verb(wanted), "id": id, **asdict(wanted)}
+        case Publish(route, body):
+            return {"verb": "publish", "route": route, "body": body}
+    return None
+
+
+def trace_verb(command: BodyCommand) -> str:
+    """Return the name of a command in a trace."""
+    return type(command).__name__.lower()
+
+
+def from_trace(said: Mapping[str, Any]) -> Command | None:
+    """Return the command of a trace; None if its verb or its fields are unknown."""
+    given = dict(said)
+    verb, id = str(given.pop("verb", "")), str(given.pop("id", ""))
+    if verb == "publish":
+        return Publish(str(given.get("route", "")), given.get("body"))
+    kind = _TRACED.get(verb)
+    try:
+        return Start(id, kind(**given)) if kind else None
+    except TypeError:
+        return None

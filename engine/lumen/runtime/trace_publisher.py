@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict
 from typing import Any
 
 from lumen.errors import BusError
@@ -10,7 +9,8 @@ from lumen.interpreters.migration import MigrationPlan
 from lumen.interpreters.statechart import Snapshot, Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names, flattened_steps
 from lumen.language.causes import Cause
-from lumen.language.commands import Command, Log, Publish, Start
+from lumen.language.command_data import trace_verb, traced
+from lumen.language.commands import Command, Start
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
@@ -93,17 +93,11 @@ class TracePublisher(Observer):
         self._tell({"realtime": realtime})
 
     def performing(self, command: Command, now: float) -> None:
-        match command:
-            case Start(id, wanted):
-                said = {"verb": type(wanted).__name__.lower(), "id": id, **asdict(wanted)}
-                self._tell({"command": said, "step": self._emitting()})
-            case Publish(route, body):
-                self._tell({"command": {"verb": "publish", "route": route, "body": body}, "step": self._emitting()})
-            case Log():
-                pass
+        if said := traced(command):
+            self._tell({"command": said, "step": self._emitting()})
 
     def refused(self, command: Start, reason: str) -> None:
-        said = {"verb": type(command.command).__name__.lower(), "id": command.id, "reason": reason}
+        said = {"verb": trace_verb(command.command), "id": command.id, "reason": reason}
         self._tell({"refused": said, "step": self._emitting()})
 
     def answered(self, event: Event) -> None:

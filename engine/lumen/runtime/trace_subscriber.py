@@ -3,11 +3,12 @@
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol, get_args
+from typing import Any, Protocol
 
 from lumen.errors import BusError
 from lumen.language.approvals import Autonomy
-from lumen.language.commands import BodyCommand, Command, Publish, Start
+from lumen.language.command_data import from_trace
+from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.operator_requests import APPROVE, AUTONOMY, PRESS
 from lumen.language.projects import Project
@@ -22,9 +23,6 @@ REQUEST_TTL = 5.0
 MAX_PENDING_TRACES = 10_000
 
 _log = logging.getLogger(__name__)
-
-_COMMANDS: Mapping[str, type] = {kind.__name__.lower(): kind for kind in get_args(BodyCommand)}
-"""The commands by the names that `TracePublisher` gives them."""
 
 
 class TraceListener(Protocol):
@@ -92,7 +90,7 @@ def _tell(watcher: TraceListener, body: dict[str, Any], now: float) -> None:
         case {"states": list(states), "context": dict(context)}:
             entered, place = tuple(map(str, body.get("entered", ()))), str(body.get("place", ""))
             watcher.see(frozenset(map(str, states)), entered, context, place)
-        case {"command": dict(said)} if (command := _command(said)) is not None:
+        case {"command": dict(said)} if (command := from_trace(said)) is not None:
             watcher.performing(command, now)
         case {"answer": {"id": str(id), "kind": str(kind)} as answer}:
             reason = {"reason": str(answer["reason"])} if "reason" in answer else None
@@ -101,16 +99,3 @@ def _tell(watcher: TraceListener, body: dict[str, Any], now: float) -> None:
             watcher.troubled(RunTrouble(kind, what))
         case {"noticed": str(name)}:
             watcher.answered(Event(name, None, now))
-
-
-def _command(said: dict[str, Any]) -> Command | None:
-    """The command in a trace's body, None where its verb is unknown."""
-    fields = dict(said)
-    verb, id = str(fields.pop("verb", "")), str(fields.pop("id", ""))
-    if verb == "publish":
-        return Publish(str(fields.get("route", "")), fields.get("body"))
-    kind = _COMMANDS.get(verb)
-    try:
-        return Start(id, kind(**fields)) if kind else None
-    except TypeError:
-        return None
