@@ -36,6 +36,29 @@ BUILT_IN = (
 """The manifests that come with Lumen, in the order in which their rows take part."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerbRow:
+    """A verb of the YAML that the robot performs by code of a feature.
+
+    `performer` is the import string of a `SkillPerformer` (`lumen.ports`). `arguments` is the JSON Schema of an object
+    without `$ref`s; if it has one required property, that can be written short: `blink: 3`. Properties that the YAML
+    leaves out get their `default`. `result` is the JSON Schema of what the performer returns. `takes` is how long it
+    takes, a duration that can contain expressions of the arguments: `{{ times * 0.4 }}s`. `parts` are those of the body
+    that it needs to itself (`lumen.robots.body_parts`). One that `moves` the robot is refused while the robot rests. If
+    not `cancel`, the performer continues after a stop or after its state was left; in either case the robot does not
+    wait for it.
+    """
+
+    performer: str
+    description: str = ""
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    result: Mapping[str, Any] = field(default_factory=dict)
+    takes: str = "0s"
+    parts: tuple[str, ...] = ()
+    moves: bool = False
+    cancel: bool = True
+
+
 RiskName = Literal["cosmetic", "behavior", "motion", "wiring", "restart"]
 """The part of a running exhibition that a change can touch, as `lumen diff` prints it."""
 
@@ -196,10 +219,8 @@ class Feature:
     """For a format that is imported, its `FormatTable` of names that are read, lost or without meaning."""
     sections: Mapping[str, Section] = field(default_factory=dict)
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
-
-    def __post_init__(self) -> None:
-        if wrong := [key for key, row in self.sections.items() if not isinstance(row, Section)]:
-            raise TypeError(f"`{wrong[0]}` of its `sections` is no `Section`")
+    verbs: Mapping[str, VerbRow] = field(default_factory=dict)
+    """Verbs of the YAML that the robot performs, by their names."""
 
 
 class FeatureFault(NamedTuple):

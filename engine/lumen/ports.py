@@ -1,6 +1,6 @@
 """The interfaces of the runtime to the world: robot, bus and clock, and the readings that they exchange."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from threading import Event as Signal
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
-from lumen.language.commands import MotorCommand, Say
+from lumen.language.commands import Do, MotorCommand, Say
 from lumen.language.events import Event
 from lumen.language.gestures import NO_GESTURES, GestureLibrary
 from lumen.language.life import LifeStyle
@@ -146,8 +146,46 @@ class Record:
     duration: float
 
 
-RobotCommand = MotorCommand | Say | Perform | Aim | Record | Live
-"""What a robot understands."""
+NativeCommand = MotorCommand | Say | Perform | Aim | Record | Live
+"""The commands that each robot performs in its own way."""
+
+RobotCommand = NativeCommand | Do
+"""The commands of a robot. The verbs that features add (`Do`) are performed in the same way for every robot."""
+
+
+class SkillCall(Protocol):
+    """One call of a performer, which runs in a thread of its own."""
+
+    @property
+    def skill(self) -> str:
+        """The verb."""
+        ...
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """JSON data that fit the schema of the verb's arguments."""
+        ...
+
+    @property
+    def cancelled(self) -> bool:
+        """Whether the call should end: the robot does not wait for it any more."""
+        ...
+
+    def wait(self, seconds: float) -> bool:
+        """Wait that long by the robot's clock; return False, at once, if the call is or gets cancelled."""
+        ...
+
+
+class SkillPerformer(Protocol):
+    """The code of a feature's verb: an object, or a module, with this function."""
+
+    def perform(self, call: SkillCall, /) -> Mapping[str, Any] | None:
+        """Perform the verb; return its result, JSON data that fit the schema of the row.
+
+        It should return soon after `call.cancelled` turned true. Raises RobotError if it failed. Any other exception
+        counts as a failure too, and is logged with its traceback.
+        """
+        ...
 
 
 class Robot(Protocol):
@@ -225,6 +263,16 @@ class Idles(Protocol):
     @property
     def idle(self) -> bool:
         """Whether no command is under way, no event waits for `poll`, and no visitor is in front of it."""
+        ...
+
+
+@runtime_checkable
+class PerformsVerbs(Protocol):
+    """A robot that performs the verbs of features itself, together with its other commands."""
+
+    @property
+    def verbs(self) -> Collection[str]:
+        """The verbs that it can perform: those of the features that are installed beside it."""
         ...
 
 

@@ -6,6 +6,7 @@ from lumen.errors import RobotError
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Walk
 from lumen.ports import RobotCommand
 from lumen.robots.executor import Executor
+from lumen.robots.skill_runner import SkillRunner
 
 PARTS = {Say: {"voice"}, Posture: {"head", "arms", "legs"}, Look: {"head"}, Rest: {"head", "arms", "legs"}, Stop: set()}
 
@@ -25,7 +26,7 @@ class Fake:
 
 
 def executor(balance: float = 0.0) -> Executor:
-    return Executor(lambda c, now: Fake(c, now, balance), lambda c: frozenset(PARTS[type(c)]))
+    return Executor(lambda c, now: Fake(c, now, balance), lambda c: frozenset(PARTS[type(c)]), SkillRunner().begin)
 
 
 def names(events: list) -> list[str]:
@@ -107,7 +108,7 @@ def test_what_the_body_refuses_is_an_error_and_the_next_goes_on() -> None:
             raise RobotError("can't sit")
         return Fake(command, now, 0)
 
-    ex = Executor(begin, lambda c: frozenset(PARTS[type(c)]))
+    ex = Executor(begin, lambda c: frozenset(PARTS[type(c)]), SkillRunner().begin)
     ex.start("sit", Posture("Sit"))
     ex.start("look", Look(0, 0))
     [answer] = ex.advance(0.0)
@@ -141,7 +142,7 @@ def walking() -> Executor:
             raise RobotError("too fast")
         return Endless(command, now)
 
-    return Executor(begin, lambda c: frozenset(() if isinstance(c, Stop) else {"legs"}))
+    return Executor(begin, lambda c: frozenset(() if isinstance(c, Stop) else {"legs"}), SkillRunner().begin)
 
 
 def test_a_move_goes_on_from_another_one_without_a_stop() -> None:

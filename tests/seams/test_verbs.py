@@ -14,6 +14,7 @@ from lumen.language.actions import Action, ComputedAction
 from lumen.language.commands import (
     BodyCommand,
     Command,
+    Do,
     GoTo,
     Leds,
     Look,
@@ -119,10 +120,12 @@ def loaded(name: str, data: Any) -> Action:
 
 
 def test_every_action_has_one_row() -> None:
-    assert {verb.command for verb in VERBS} == set(get_args(VerbCommand))
+    assert {verb.command for verb in VERBS} == set(get_args(VerbCommand)) - {Do}  # tests/stranger_verbs is about it
     assert set(COMPUTED) == set(get_args(ComputedAction))
-    assert len(VERBS) + len(COMPUTED) == len(get_args(Action))
-    assert {type(sample) for sample in SAMPLES} == {row.command for row in COMMANDS} == set(get_args(RobotCommand))
+    assert len(VERBS) + len(COMPUTED) + len([Do]) == len(get_args(Action))
+    assert (
+        {type(sample) for sample in SAMPLES} | {Do} == {row.command for row in COMMANDS} == set(get_args(RobotCommand))
+    )
 
 
 @for_each("verb", VERBS, ids=lambda verb: verb.command.__name__)

@@ -14,7 +14,7 @@ from lumen.interpreters.limits import LIMIT_SLACK, Excess, beyond_limits, couple
 from lumen.language.commands import Look
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body
-from lumen.ports import Aim, Perform, RobotCommand
+from lumen.ports import Aim, NativeCommand, Perform
 
 MAX_FITS = 50
 """The most rounds of changes: one change may make another necessary, each closer to the body's abilities."""
@@ -31,11 +31,11 @@ class BoundedCommand(NamedTuple):
     """A command that a body can perform, and the changes, for the log: those of an aim, which streams in, are not
     listed. A command that needs no change is the same object."""
 
-    command: RobotCommand
+    command: NativeCommand
     changes: tuple[str, ...] = ()
 
 
-def within_limits(command: RobotCommand, body: Body) -> BoundedCommand:
+def within_limits(command: NativeCommand, body: Body) -> BoundedCommand:
     """The nearest command that keeps the limits of the joints, coupled ones included, and their speeds.
 
     Joints that the body lacks, and values that are not numbers, are left as they are. Raises BadCommandError for a

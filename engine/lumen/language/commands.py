@@ -179,11 +179,25 @@ class Log:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Do:
+    """Perform the verb `skill` of a feature; `arguments` are JSON data that fit the schema of its row.
+
+    In the YAML a text in them can contain `{{ expression }}`, which a step fills in.
+    """
+
+    skill: str
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+
+
 MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop | Rest | Wake
 """What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
 
-VerbCommand = MotorCommand | Play | Track | Language | GoTo
-"""Verbs of the YAML that are their own commands, for they hold no expressions but a place's name."""
+VerbCommand = MotorCommand | Play | Track | Language | GoTo | Do
+"""Verbs of the YAML that are their own commands: `GoTo` and `Do` alone can contain expressions, in texts.
+
+`Do` is the open member: it carries the verbs that features add (`lumen.language.added_verbs`).
+"""
 
 BodyCommand = VerbCommand | Say | Ask
 """What a robot performs, or the parts of the runtime that move it, or answer it."""

@@ -49,6 +49,9 @@ HELD = "hold its head, or run `lumen resume`"
 MISSED = "missed"
 """The field of `done.command.ID` that names the joints that missed the angles of a motion."""
 
+RESULT = "result"
+"""The field of `done.command.ID` that has what a verb of a feature returned."""
+
 ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
 """What is raised when the robot has come to one of the places, when it is no longer there, and where it can't tell.
 

@@ -9,6 +9,7 @@ tables and the schemas.
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 from lumen.language.actions import (
@@ -27,6 +28,7 @@ from lumen.language.actions import (
     Wait,
 )
 from lumen.language.commands import (
+    Do,
     GoTo,
     Language,
     Leds,
@@ -112,7 +114,8 @@ class Verb(Generic[C]):
         """What stands behind the verb in the YAML for this command; `written` makes data of a field's value."""
         values = {field.name: written(field.quantity, getattr(command, field.name)) for field in self.fields}
         if len(values) < 2 and not self.mapped:
-            return next(iter(values.values()), True)
+            given = next(iter(values.values()), True)
+            return True if given == {} else given
         if self.pair:
             name, value = values.values()
             return {name: value}
@@ -221,8 +224,25 @@ _BY_COMMAND: Mapping[type, Verb[Any]] = {verb.command: verb for verb in VERBS}
 
 
 def verb_of(command: VerbCommand) -> Verb[Any]:
-    """The row of a command."""
-    return _BY_COMMAND[type(command)]
+    """The row of a command; one for each verb that a feature adds."""
+    return _added(command.skill) if isinstance(command, Do) else _BY_COMMAND[type(command)]
+
+
+@lru_cache
+def _added(name: str) -> Verb[Do]:
+    return Verb(
+        name,
+        Do,
+        (VerbField("arguments", others=True),),
+        lambda c: f"does {name}{_listed(c.arguments)}",
+        lambda c: f"does `{name}`{_listed(c.arguments)}",
+    )
+
+
+def _listed(arguments: Mapping[str, Any]) -> str:
+    """` with times 3, eye left`."""
+    listed = ", ".join(f"{name} {value}" for name, value in arguments.items())
+    return f" with {listed}" if listed else ""
 
 
 def names_in(action: Action, kind: str) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, assert_never
 
+from lumen.feature import VerbRow
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -20,7 +21,8 @@ from lumen.language.actions import (
     Wait,
     context_key,
 )
-from lumen.language.commands import SaysGestures, VerbCommand
+from lumen.language.added_verbs import added_verbs, arguments_of, with_texts
+from lumen.language.commands import Do, SaysGestures, VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.durations import duration_hint
 from lumen.language.verbs import Quantity, Verb, verb_named
@@ -79,8 +81,30 @@ class Actions:
     def _verb(self, verb: str, data: Any, where: NodePath) -> Action | None:
         if read := COMPUTED_READERS.get(verb):
             return read(self, data, where)
-        row = verb_named(verb, data)
-        return self._command(row, data, where) if row else None
+        if row := verb_named(verb, data):
+            return self._command(row, data, where)
+        added = added_verbs().get(verb)
+        return self._do(verb, added, data, where) if added else None
+
+    def _do(self, verb: str, row: VerbRow, data: Any, where: NodePath) -> Do | None:
+        """The command of a feature's verb, None (and reported) if a duration or a template can't be read."""
+        sound = True
+
+        def read(text: str, below: NodePath) -> str:
+            nonlocal sound
+            place = (*where, *below) if isinstance(data, Mapping) else where
+            if "{{" in text:
+                template = self.expressions.template(text, place)
+                sound = sound and template is not None
+                return template.text if template else text
+            if below[:1] in durations and len(below) == 1:
+                sound = self.duration(text, place) is not None and sound
+            return text
+
+        properties = row.arguments.get("properties", {})
+        durations = {(name,) for name, schema in properties.items() if schema.get("format") == "duration"}
+        arguments = with_texts(arguments_of(row, data), read)
+        return Do(verb, arguments) if sound else None
 
     def _command(self, row: Verb[Any], data: Any, where: NodePath) -> VerbCommand | None:
         """The command of this row, None (and reported) where a number or a duration can't be read."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from lumen.errors import LumenError
 from lumen.interpreters.json_schema import JsonSchema
+from lumen.language.added_verbs import added_verbs, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
@@ -70,13 +71,22 @@ def misfits(kind: str, text: str) -> int | None:
 
 
 def load_schema(kind: str) -> Any:
-    """Return the JSON Schema of a kind of file, as data; that of lumen.yaml has the sections of all features."""
+    """Return the JSON Schema of a kind of file, as data, with the sections and the verbs that features add."""
     file = schema_folder() / f"{kind}.schema.json"
     try:
         schema = json.loads(file.read_bytes())
     except (OSError, ValueError) as error:
         raise LumenError(f"Lumen's own {file} can't be read ({error}): reinstall Lumen, or restore the file") from None
-    return with_sections(schema) if kind == MAIN_KIND else schema
+    if kind == MAIN_KIND:
+        return with_sections(schema)
+    if kind == "behavior":
+        known = schema["$defs"]["action"]["properties"]
+        for name, row in added_verbs().items():
+            known.setdefault(name, written_schema(row))
+    elif kind == "story":
+        performed = schema["properties"]["robot"]["propertyNames"]["enum"]
+        performed += [name for name in added_verbs() if name not in performed]
+    return schema
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:

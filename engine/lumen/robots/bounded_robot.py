@@ -1,14 +1,23 @@
 """A robot that a user wrote, given only commands that its body can perform."""
 
 from collections.abc import Sequence
+from functools import partial
+from time import monotonic
 from typing import TypeVar
 
 from lumen.errors import BadCommandError
+from lumen.language.commands import Do, Posture, Rest, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.robots import Body
-from lumen.ports import Aim, Joints, Perform, Reading, Robot, RobotCommand, Sense
+from lumen.ports import Aim, Idles, Joints, Perform, PerformsVerbs, Reading, Robot, RobotCommand, Sense
 from lumen.robots.command_bounds import CommandBounds
+from lumen.robots.command_table import parts_of
+from lumen.robots.executor import Executor
 from lumen.robots.joint_ways import begun_from
+from lumen.robots.skill_runner import SkillRunner
+
+SHADOW = ""
+"""The id under which the verbs of features meet a command of the wrapped robot that ends them, or lets them move."""
 
 Ability = TypeVar("Ability")
 
@@ -16,13 +25,17 @@ Ability = TypeVar("Ability")
 class BoundedRobot:
     """Passes commands to `robot` within the limits and speeds of `body`, and refuses those that it can't perform.
 
-    If the robot senses its joints, a motion is delayed until they can reach its first key in time.
+    If the robot senses its joints, a motion is delayed until they can reach its first key in time. Verbs of features
+    are performed here unless the robot does that itself (`PerformsVerbs`): they wait for each other's parts of the
+    body, but not for what the robot moves. Rests and stops end them.
     """
 
     def __init__(self, robot: Robot, body: Body) -> None:
         self.robot, self._body = robot, body
         self._bounds = CommandBounds(body)
         self._refusals: list[Event] = []
+        self._runner = SkillRunner()
+        self._skills = Executor(lambda _command, _now: _Nothing(), partial(parts_of, body=body), self._runner.begin)
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
@@ -36,23 +49,40 @@ class BoundedRobot:
         except BadCommandError as error:
             self._refusals.append(Event(f"error.command.{id}", {"reason": str(error)}))
         else:
-            self.robot.start(id, fit)
+            self._pass_on(id, fit)
 
     def cancel(self, id: str) -> None:
+        self._skills.cancel(id)
         self.robot.cancel(id)
 
     def poll(self) -> Sequence[Event]:
         refusals, self._refusals = self._refusals, []
-        return [*refusals, *self.robot.poll()]
+        ends = self._skills.advance(monotonic())
+        own = [end._replace(at=0.0) for end in ends if end.name.partition(".command.")[2] != SHADOW]
+        return [*refusals, *own, *self.robot.poll()]
 
     def begun(self) -> Sequence[str]:
-        return self.robot.begun()
+        return [*(id for id in self._skills.begun() if id != SHADOW), *self.robot.begun()]
+
+    @property
+    def busy(self) -> bool:
+        """Whether a verb of a feature is under way here."""
+        return self._skills.busy
 
     def read(self, sense: Sense) -> Reading | None:
         return self.robot.read(sense)
 
     def close(self) -> None:
+        self._runner.close()
         self.robot.close()
+
+    def _pass_on(self, id: str, command: RobotCommand) -> None:
+        if isinstance(command, Do) and not isinstance(self.robot, PerformsVerbs):
+            self._skills.start(id, command)
+            return
+        if isinstance(command, Rest | Stop | Wake | Posture):
+            self._skills.start(SHADOW, command)
+        self.robot.start(id, command)
 
     def _angles(self) -> dict[str, float]:
         """The present angles [rad] of the body's joints; empty if the robot does not sense them."""
@@ -66,3 +96,19 @@ def ability(robot: Robot, kind: type[Ability]) -> Ability | None:
     """Return the robot, or the one that it wraps, as one with that ability; None if it lacks it."""
     own = robot.robot if isinstance(robot, BoundedRobot) else robot
     return own if isinstance(own, kind) else None
+
+
+def is_idle(robot: Robot) -> bool:
+    """Return True if the robot is idle by its own account (`Idles`) and performs no verb of a feature."""
+    own = ability(robot, Idles)
+    return own is not None and own.idle and not (isinstance(robot, BoundedRobot) and robot.busy)
+
+
+class _Nothing:
+    """The activity of a shadow: the wrapped robot performs the command."""
+
+    def advance(self, now: float) -> bool:
+        return True
+
+    def cancel(self) -> None:
+        """It ends at once."""

@@ -2,11 +2,13 @@
 
 import logging
 from collections.abc import Mapping
+from typing import overload
 
 from lumen.errors import BadCommandError
 from lumen.interpreters.bounds import NOWHERE, aim_within, within_limits
+from lumen.language.commands import Do
 from lumen.language.robots import Body
-from lumen.ports import Aim, RobotCommand
+from lumen.ports import Aim, NativeCommand, RobotCommand
 from lumen.robots.command_table import check_command
 from lumen.upkeep.once_log import OnceLog
 
@@ -23,9 +25,17 @@ class CommandBounds:
         self._body = body
         self._log_of_changes = OnceLog(_log)
 
+    @overload
+    def fit(self, command: NativeCommand) -> NativeCommand: ...
+
+    @overload
+    def fit(self, command: RobotCommand) -> RobotCommand: ...
+
     def fit(self, command: RobotCommand) -> RobotCommand:
         """Return the nearest command that the body can perform. Raises BadCommandError if no robot of it can."""
         check_command(command, self._body)
+        if isinstance(command, Do):
+            return command
         bounded = within_limits(command, self._body)
         self._log_of_changes(bounded.changes)
         return bounded.command

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from lumen.errors import BusError, RobotError, RobotRefusedError
 from lumen.language.commands import Language, Rest, Say, Stop, Wake
-from lumen.language.events import MISSED, Event
+from lumen.language.events import MISSED, RESULT, Event
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Live, Message, Perform, Robot, RobotCommand, Sense
@@ -170,7 +170,7 @@ class CommandReceiver:
         kind, _, id = event.name.partition(".command.")
         data = event.data if isinstance(event.data, dict) else {}
         reason = data.get("reason") or data.get(MISSED, "")
-        return self._reports.answered(kind, id, str(reason))
+        return self._reports.answered(kind, id, str(reason), data.get(RESULT))
 
     def use(self, project: Project) -> None:
         """Understand commands by another bundle from now on, and take them under its keys.

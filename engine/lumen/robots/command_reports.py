@@ -1,7 +1,7 @@
 """How commands from the bus stand: reported to the sender and to everybody who watches, and again on request."""
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,7 +22,7 @@ class CommandRecord:
 
     `id` comes from its sender, and is empty if the sender gave none, as the modules of 2015; `at` is the robot's id.
     The command moves these `parts` of the body for about `takes` [s]. `body` is that of the command, None if only the
-    id is known.
+    id is known; `result` is what a verb of a feature returned.
     """
 
     asker: Message
@@ -31,6 +31,7 @@ class CommandRecord:
     at: str = ""
     state: str = ""
     reason: str = ""
+    result: Mapping[str, Any] | None = None
     parts: frozenset[str] = frozenset()
     takes: float = 0.0
     body: Any = None
@@ -47,7 +48,8 @@ class CommandRecord:
     def report(self) -> dict[str, Any]:
         """The body on `avatar.ROBOT.event.command`."""
         body = {"id": self.known_as, "state": self.state, "method": self.method}
-        return {**body, "reason": self.reason} if self.reason else body
+        news = {"reason": self.reason or None, "result": self.result}
+        return {**body, **{name: value for name, value in news.items() if value is not None}}
 
     def text(self) -> str:
         """What the modules of 2015 receive at the end."""
@@ -100,16 +102,17 @@ class CommandReports:
         if (record := self._running.get(at)) and record.state == ACCEPTED:
             self.change(record, STARTED)
 
-    def answered(self, kind: str, at: str, reason: str) -> bool:
+    def answered(self, kind: str, at: str, reason: str, result: Mapping[str, Any] | None = None) -> bool:
         """Report the robot's `done`, `error` or `cancelled`; return whether it is for a command from the bus.
 
-        The reason of `done` names the joint that missed its goal.
+        The reason of `done` names the joint that missed its goal; `result` is that of a verb of a feature.
         """
         record = self._running.pop(at, None)
         if record is None or kind not in _ANSWERS:
             return False
         if record.state == ACCEPTED and kind == "done":
             self.change(record, STARTED)
+        record.result = result
         self.change(record, _ANSWERS[kind], "" if kind == "cancelled" else reason)
         return True
 

@@ -5,20 +5,38 @@ takes, and how it crosses the bus. Robots that move perform it in their `skills.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import hypot, inf, isfinite
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
+from lumen.feature import VerbRow
+from lumen.interpreters.added_verbs import time_taken
 from lumen.interpreters.bounds import nearest_angles
-from lumen.language.commands import Channel, Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
+from lumen.language.added_verbs import added_verbs, argument_schema, arguments_of
+from lumen.language.commands import (
+    Channel,
+    Do,
+    Leds,
+    Look,
+    Move,
+    PlaySound,
+    Posture,
+    Rest,
+    Say,
+    Stop,
+    Volume,
+    Wake,
+    Walk,
+)
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.gestures import NO_GESTURES, merged
 from lumen.language.life import STILL, STILL_STYLE, LifeStyle
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
 from lumen.language.skills import lack_of
+from lumen.loading.schema import faults
 from lumen.loading.sounds import MAX_SOUND_DURATION
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
@@ -212,6 +230,31 @@ def _record(p: CommandParameters) -> Record:
     return Record(shown(p.text("recordingname", "recording")), duration)
 
 
+def added_verb(command: Do) -> VerbRow:
+    """Return the row of a feature's verb. Raises BadCommandError if no feature here has it."""
+    verbs = added_verbs()
+    if command.skill not in verbs:
+        hint = did_you_mean(command.skill, verbs, "the installed features have") if verbs else "install its package"
+        raise BadCommandError(f"no feature here has a verb `{shown(command.skill)}`: {hint}")
+    return verbs[command.skill]
+
+
+def check_arguments(command: Do) -> None:
+    """Raises BadCommandError if no feature has that verb, or if its arguments don't fit its row."""
+    verb = added_verb(command)
+    for fault in faults(dict(command.arguments), argument_schema(verb)):
+        raise BadCommandError(f"`{command.skill}`: {fault.message}" + (f" ({fault.hint})" if fault.hint else ""))
+
+
+def _do(p: CommandParameters) -> Do:
+    arguments = p.values.get("arguments")
+    if not isinstance(arguments, Mapping | None):
+        raise BadCommandError("the `arguments` of `do` must be an object with names and values")
+    command = Do(p.text("skill"), arguments_of(added_verb(Do(p.text("skill"))), arguments or {}))
+    check_arguments(command)
+    return command
+
+
 _STOP = CommandRow(Stop, "stop", 0, "motion", "stop", lambda c: {"what": c.what}, _stop, owns(), moves=False)
 _REST = CommandRow(
     Rest, "rest", 0, "motion", "rest", lambda c: {"by": c.by} if c.by else {}, _rest, owns(*WHOLE_BODY), moves=False
@@ -369,9 +412,22 @@ _LIVE = CommandRow(
 )
 """A manner, and no movement: a robot whose motors are off has none."""
 
+_DO = CommandRow(
+    Do,
+    "do",
+    2,
+    "skill",
+    "do",
+    lambda c: {"skill": c.skill, "arguments": dict(c.arguments)},
+    _do,
+    owns(),
+    check=lambda c, _body: check_arguments(c),
+)
+"""The verbs of features cross the bus in one form; the rest of the row is that of each verb (`row_of`)."""
+
 COMMANDS: tuple[CommandRow[Any], ...] = (
     _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _VOLUME, _SOUND, _AIM,
-    _LIVE,
+    _LIVE, _DO,
 )  # fmt: skip
 
 _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMANDS}
@@ -379,7 +435,14 @@ _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMA
 
 def row_of(command: RobotCommand) -> CommandRow[Any]:
     """The row of a command."""
-    return _BY_COMMAND[type(command)]
+    return _row_of_added(command.skill) if isinstance(command, Do) else _BY_COMMAND[type(command)]
+
+
+def _row_of_added(name: str) -> CommandRow[Do]:
+    verb = added_verbs().get(name)
+    if verb is None:
+        return replace(_DO, verb=name)
+    return replace(_DO, verb=name, parts=owns(*verb.parts), duration=time_taken, moves=verb.moves)
 
 
 def check_command(command: RobotCommand, body: Body) -> None:

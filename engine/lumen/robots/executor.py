@@ -7,15 +7,15 @@ answers, and is the same for every robot that executes commands itself.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
-from lumen.errors import RobotError
-from lumen.language.commands import Move, Rest, Stop
-from lumen.language.events import MISSED, Event
-from lumen.ports import RobotCommand
-from lumen.robots.command_table import row_of
+from lumen.errors import RobotError, RobotRefusedError
+from lumen.language.commands import Do, Move, Posture, Rest, Stop, Wake
+from lumen.language.events import MISSED, RESULT, Event
+from lumen.ports import NativeCommand, RobotCommand
+from lumen.robots.command_table import check_arguments, row_of
 
 FOREIGN = "m"
 """The prefix of the ids of commands that are not from the behaviour."""
@@ -42,6 +42,16 @@ class Misses(Protocol):
     @property
     def missed(self) -> str:
         """The joints that missed their goals, in words; empty if none did."""
+        ...
+
+
+@runtime_checkable
+class Yields(Protocol):
+    """An activity that ends with a result."""
+
+    @property
+    def result(self) -> Mapping[str, Any]:
+        """JSON data; empty if it has nothing to report."""
         ...
 
 
@@ -82,15 +92,20 @@ class _Ended:
 class Executor:
     """Starts, queues, cancels and answers commands.
 
-    `begin` makes the activity of a command at a time [s], or raises RobotError; `parts` names what it moves.
+    `begin` makes the activity of a command at a time [s], or raises RobotError; so does `skill` for the verbs of
+    features, which are performed alike for every robot. `parts` names what a command moves.
     """
 
     def __init__(
-        self, begin: Callable[[RobotCommand, float], Activity], parts: Callable[[RobotCommand], frozenset[str]]
+        self,
+        begin: Callable[[NativeCommand, float], Activity],
+        parts: Callable[[RobotCommand], frozenset[str]],
+        skill: Callable[[Do, float], Activity],
     ) -> None:
-        self._begin, self._parts = begin, parts
+        self._begin, self._parts, self._skill = begin, parts, skill
+        self._rests = False
         self._tasks: list[_Task] = []
-        self._answers: list[tuple[str, _Task, dict[str, str] | None]] = []
+        self._answers: list[tuple[str, _Task, Mapping[str, Any] | None]] = []
         self._begun: deque[str] = deque(maxlen=MAX_UNREAD_STARTS)
 
     def start(self, id: str, command: RobotCommand) -> None:
@@ -113,9 +128,15 @@ class Executor:
         """End a command early; one that is unknown or over is left alone."""
         self._cancel([t for t in self._tasks if t.id == id])
 
-    def fail(self, reason: str) -> None:
-        """Everything that runs or waits fails at once: the body can't go on."""
+    def fail(self, reason: str, *, fallen: bool = False) -> None:
+        """Let everything that runs or waits fail at once.
+
+        After it has `fallen`, verbs of features that move it are refused until it wakes.
+        """
+        self._rests = self._rests or fallen
         for task in self._tasks[:]:
+            if isinstance(task.command, Do) and task.activity:
+                task.activity.cancel()
             self._end("error", task, {"reason": reason})
 
     def owner(self, part: str) -> str:
@@ -156,8 +177,8 @@ class Executor:
             else:
                 if finished:
                     ended_early = task.cancelled and not task.displaced
-                    missed = task.activity.missed if isinstance(task.activity, Misses) and not ended_early else ""
-                    self._end("cancelled" if ended_early else "done", task, {MISSED: missed} if missed else None)
+                    kind, data = ("cancelled", None) if ended_early else ("done", _news(task.activity))
+                    self._end(kind, task, data)
 
     def _admit(self, now: float) -> None:
         """Begin what can; a command that waits keeps its parts from those behind it."""
@@ -167,7 +188,7 @@ class Executor:
                 before = self._before(task)
                 if before or taken.isdisjoint(task.parts):
                     try:
-                        task.activity = self._begin(task.command, now)
+                        task.activity = self._begun_activity(task.command, now)
                     except RobotError as error:
                         self._end("error", task, {"reason": str(error)})
                         continue
@@ -175,6 +196,16 @@ class Executor:
                     if before:
                         self._end("done", before)
                 taken |= task.parts
+
+    def _begun_activity(self, command: RobotCommand, now: float) -> Activity:
+        if not isinstance(command, Do):
+            activity = self._begin(command, now)
+            self._rests = isinstance(command, Rest) or (self._rests and not isinstance(command, Wake | Posture))
+            return activity
+        check_arguments(command)
+        if self._rests and row_of(command).moves:
+            raise RobotRefusedError("the robot rests or has fallen: `wake` it first")
+        return self._skill(command, now)
 
     def _before(self, task: _Task) -> _Task | None:
         """The move that this one goes on from, without a stop in between."""
@@ -200,6 +231,15 @@ class Executor:
                 task.cancelled = True
                 task.activity.cancel()
 
-    def _end(self, kind: str, task: _Task, data: dict[str, str] | None = None) -> None:
+    def _end(self, kind: str, task: _Task, data: Mapping[str, Any] | None = None) -> None:
         self._tasks.remove(task)
         self._answers.append((kind, task, data))
+
+
+def _news(activity: Activity) -> Mapping[str, Any] | None:
+    """The data of `done.command.ID` for an activity that came to its end."""
+    if isinstance(activity, Misses) and activity.missed:
+        return {MISSED: activity.missed}
+    if isinstance(activity, Yields) and activity.result:
+        return {RESULT: dict(activity.result)}
+    return None

@@ -1,14 +1,16 @@
 """A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf
+from typing import Any
 
 from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
+from lumen.language.added_verbs import added_verbs, default_result
 from lumen.language.causes import VISITOR, Cause
-from lumen.language.commands import Look, Move, Posture, Say, Walk
+from lumen.language.commands import Do, Look, Move, Posture, Say, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
@@ -16,7 +18,7 @@ from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.command_table import parts_of, row_of
+from lumen.robots.command_table import added_verb, parts_of, row_of
 from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
@@ -43,6 +45,13 @@ class _Lasting:
 
     def cancel(self) -> None:
         self.until = 0.0
+
+
+@dataclass
+class _Skill(_Lasting):
+    """A verb of a feature, which ends with a result."""
+
+    result: Mapping[str, Any]
 
 
 class _Playing(_Lasting):
@@ -97,7 +106,7 @@ class RecordingRobot:
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
         self._reckoning = DeadReckoning()
-        self._executor = Executor(self._begin, lambda command: parts_of(command, body))
+        self._executor = Executor(self._begin, lambda command: parts_of(command, body), self._begin)
         self._part = part_of(body)
         self._life = LifeLayer(body)
         self._bounds = CommandBounds(body)
@@ -121,6 +130,10 @@ class RecordingRobot:
 
     def begun(self) -> Sequence[str]:
         return self._executor.begun()
+
+    @property
+    def verbs(self) -> Collection[str]:
+        return added_verbs()
 
     @property
     def idle(self) -> bool:
@@ -212,6 +225,8 @@ class RecordingRobot:
             return _Walking(until, now, command, self._reckoning)
         if isinstance(command, Record):
             return SilentRecording(command, until, self._notice)
+        if isinstance(command, Do):
+            return _Skill(until, default_result(added_verb(command)))
         return _Lasting(until)
 
     def _offsets(self) -> Mapping[str, float]:

@@ -1,11 +1,14 @@
 """How long a `do` takes, and whether its state is left before."""
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from math import hypot
 
+from lumen.errors import BadCommandError
+from lumen.interpreters.added_verbs import time_taken
 from lumen.interpreters.expressions import split_template
 from lumen.language.actions import If, Parallel, PlacedAction, SayText, Wait
-from lumen.language.commands import Play, Posture, Walk
+from lumen.language.commands import Do, Play, Posture, Walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.motions import MotionDefinition
@@ -66,10 +69,18 @@ def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
             return hypot(x, y) / WALKING_SPEED
         case Wait(seconds):
             return seconds
+        case Do() as done:
+            return _taken(done)
         case If(then=then, otherwise=otherwise):
             return min(duration(then, motions), duration(otherwise, motions))
         case Parallel(branches):
             return max((_one(branch, motions) for branch in branches), default=0.0)
+    return 0.0
+
+
+def _taken(command: Do) -> float:
+    with suppress(BadCommandError):  # an argument that only a step fills in
+        return time_taken(command)
     return 0.0
 
 

@@ -19,7 +19,8 @@ from lumen.language.actions import (
     Template,
     nested,
 )
-from lumen.language.commands import GoTo
+from lumen.language.added_verbs import is_template, texts_in
+from lumen.language.commands import Do, GoTo
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 from lumen.language.properties import conditions_of
@@ -115,6 +116,10 @@ def _spots(site: ActionSite) -> Iterator[ExpressionSite]:
             yield ExpressionSite(text, transition)
         case GoTo(to):
             yield ExpressionSite(Template(to, (*site.step.where, "walk", "to")), transition)
+        case Do(skill, arguments) if is_template(site.step.action):
+            for place, filled in texts_in(arguments, (*site.step.where, skill)):
+                if "{{" in filled:
+                    yield ExpressionSite(Template(filled, place), transition)
         case Send(data=value, delay=Template() as delay):
             yield ExpressionSite(delay, transition)
             yield from (ExpressionSite(text, transition) for text in _values(value))

@@ -12,8 +12,8 @@ from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.ports import Bus, HasSpeed, Idles, Sense
-from lumen.robots.bounded_robot import ability
+from lumen.ports import Bus, HasSpeed, Sense
+from lumen.robots.bounded_robot import is_idle
 from lumen.robots.command_receiver import CommandListener
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.sense_publisher import PublishCounts
@@ -53,7 +53,6 @@ class RobotPart(Part, Observer):
     ) -> None:
         self._silent, self._presence, self._kept, self._begun = silent, presence, kept, begun
         self.robot = setup.robot
-        self._idles = ability(setup.robot, Idles)
         self.server = server or RobotServer(
             self._sensed(project),
             setup.robot,
@@ -77,7 +76,7 @@ class RobotPart(Part, Observer):
 
     def quiet_until(self, now: float) -> float:
         server = self.server  # where nobody is told what it senses, only controllers ask, and the brain knows of these
-        if server.waiting or (self.faces and self.faces.busy) or not (self._idles and self._idles.idle):
+        if server.waiting or (self.faces and self.faces.busy) or not is_idle(self.robot):
             return now
         return inf if self._silent else max(now, server.due)
 

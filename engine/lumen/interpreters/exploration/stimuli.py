@@ -17,6 +17,7 @@ from lumen.interpreters.statechart.compiled_machine import CompiledMachine, comp
 from lumen.interpreters.statechart.values import awaited
 from lumen.interpreters.talk.hearing import hearing_of, said_in
 from lumen.interpreters.talk.sample_sentences import of_row
+from lumen.language.added_verbs import usual_result
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
@@ -93,7 +94,7 @@ class StimulusFinder:
         pending = tuple(commands[id] for id in commanded if id in commands)
         for id in commanded:
             command = commands.get(id)
-            event = _arrival(command, snapshot) or Event(f"done.command.{id}", None, snapshot.at)
+            event = _arrival(command, snapshot) or Event(f"done.command.{id}", usual_result(command), snapshot.at)
             yield Stimulus(StimulusKind.DONE, event, 0.0, command)
         for timer in _next(snapshot):
             at = max(timer.due, snapshot.at)

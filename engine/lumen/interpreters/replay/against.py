@@ -17,6 +17,7 @@ from lumen.interpreters.replay.entries import JournalInput, JournalJump
 from lumen.interpreters.replay.visits import RecordedVisit, home_of
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, elapse, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.added_verbs import usual_result
 from lumen.language.command_data import command_data, started
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import Place
@@ -130,7 +131,7 @@ class OtherPlay:
         self._begun: set[str] = set()
         self._then: list[tuple[str, str, Any]] = []
         self._now: list[tuple[str, str, Any]] = []
-        self._answers: list[tuple[float, str]] = []
+        self._answers: list[tuple[float, str, Mapping[str, Any] | None]] = []
         self._began = 0.0
         self._stands: Snapshot | None = None
         self._most = MORE_STEPS
@@ -207,11 +208,11 @@ class OtherPlay:
     def _pass(self, until: float, *, one: bool = False) -> None:
         """Timers and answers that come until then, in their order; of the timers of that very moment only `one`."""
         while self._answers and self._answers[0][0] <= until:
-            at, id = heapq.heappop(self._answers)
+            at, id, data = heapq.heappop(self._answers)
             self._elapse(at)
             if any(id == waiting for waiting, *_ in self._now):
                 self._now = [row for row in self._now if row[0] != id]
-                self._take(step(self._project.machine, self.snapshot, Event(f"done.command.{id}", None, at)))
+                self._take(step(self._project.machine, self.snapshot, Event(f"done.command.{id}", data, at)))
         self._elapse(until - 2 * HALF if one else until)
         if one and (timer := due(self.snapshot)) and timer.at < until + HALF:
             self._take(step(self._project.machine, self.snapshot, timer))
@@ -234,7 +235,8 @@ class OtherPlay:
         self.done.append((at, data))
         if isinstance(command, Start) and (begun := started(data)):
             self._now.append(begun)
-            heapq.heappush(self._answers, (at + self._takes(self._project, command.command), begun[0]))
+            ends = at + self._takes(self._project, command.command)
+            heapq.heappush(self._answers, (ends, begun[0], usual_result(command.command)))
 
     def _pair(self) -> None:
         """Find for each command of then its counterpart of now."""

@@ -26,10 +26,13 @@ class Activities:
         else:
             self._advance(context, node, lambda advance: advance.again(node, halted.position, halted.at))
 
-    def resume(self, context: ActivityContext, node: StateNode, id: str) -> None:
-        """Go on with the `do` of that state, since what it awaited under that id is over."""
+    def resume(self, context: ActivityContext, node: StateNode, id: str, result: Any = None) -> None:
+        """Go on with the `do` of that state, since what it awaited under that id is over; `result` is what came of it.
+
+        If the `do` ends with that, its state hears the result.
+        """
         position = self.positions[node.path]
-        self._advance(context, node, lambda advance: advance.resume_block(node.do, position, id), id)
+        self._advance(context, node, lambda advance: advance.resume_block(node.do, position, id), id, result)
 
     def answer(self, context: ActivityContext, node: StateNode, id: str, data: Any) -> None:
         """Say what somebody answers to the question that the `do` of that state asked under that id; else ignore it."""
@@ -86,6 +89,7 @@ class Activities:
         node: StateNode,
         move: Callable[[Advance], Within | None],
         id: str | None = None,
+        result: Any = None,
     ) -> None:
         context.evaluate_in(node)
         advance = Advance(context)
@@ -97,7 +101,7 @@ class Activities:
             return
         self._place(node.path, position)
         if position is None:
-            context.raise_event(Event(f"done.do.{node.name}", None, context.at))
+            context.raise_event(Event(f"done.do.{node.name}", result, context.at))
 
     def _place(self, path: str, position: Within | None) -> None:
         self.positions = placed(self.positions, path, position)

@@ -24,7 +24,8 @@ from lumen.language.actions import (
     Template,
     Wait,
 )
-from lumen.language.commands import BodyCommand, GoTo, Language, Log, Publish, Say, SaysGestures, VerbCommand
+from lumen.language.added_verbs import is_template, with_texts
+from lumen.language.commands import BodyCommand, Do, GoTo, Language, Log, Publish, Say, SaysGestures, VerbCommand
 from lumen.language.diagnostics import NodePath
 from lumen.language.durations import seconds
 from lumen.language.events import Event
@@ -88,6 +89,8 @@ def compile_command(action: SayText | VerbCommand) -> CommandFactory:
         case GoTo(to) if "{{" in to:
             place = compile_template(to)
             return lambda context: GoTo(place(context.scope()))
+        case Do(skill, arguments) if is_template(action):
+            return _do(skill, arguments)
         case _:
             return lambda context: action
 
@@ -169,6 +172,14 @@ def _say(texts: Mapping[str, tuple[Template, ...]], gestures: SaysGestures) -> C
         return Say(text, said, gestures)
 
     return say
+
+
+def _do(skill: str, arguments: Mapping[str, Any]) -> CommandFactory:
+    def do(context: ActionContext) -> BodyCommand:
+        scope = context.scope()
+        return Do(skill, with_texts(arguments, lambda text, _: compile_template(text)(scope)))
+
+    return do
 
 
 def alternatives(texts: Mapping[str, tuple[Template, ...]]) -> Callable[[str], Alternatives]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from lumen.language.commands import Cancel, Command, Start
-from lumen.language.events import Event
+from lumen.language.events import RESULT, Event
 
 ANSWER_KINDS = ("done", "error", "cancelled", "lost", "answer")
 
@@ -32,6 +32,11 @@ def answer_of(event: Event) -> CommandAnswer | None:
         return None
     data = event.data if isinstance(event.data, Mapping) else {}
     return CommandAnswer(kind, id, str(data.get("reason", "")) or kind, event.data)
+
+
+def result_of(data: Any) -> Any:
+    """Return what a verb of a feature returned, by the data of its `done.command.ID`; None for other commands."""
+    return data.get(RESULT) if isinstance(data, Mapping) else None
 
 
 def outer_id(id: str, owner: str) -> str:

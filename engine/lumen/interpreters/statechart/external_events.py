@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lumen.interpreters.message_numbers import number
 from lumen.interpreters.statechart.action_context import ActionError
-from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id
+from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id, result_of
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.macrostep import complete
 from lumen.interpreters.statechart.microstep import take_enabled
@@ -102,7 +102,7 @@ def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> N
         if kind == "answer":
             context.activities.answer(context, node, id, data)
         elif kind == "done" or context.activities.is_question(node, id):
-            context.activities.resume(context, node, id)
+            context.activities.resume(context, node, id, result_of(data))
         elif kind == "lost":
             context.activities.lose(context, node, id, reason)
         else:

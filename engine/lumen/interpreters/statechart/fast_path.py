@@ -11,6 +11,7 @@ from math import prod
 from typing import Any
 
 from lumen.interpreters.statechart.chart import CompiledTransition
+from lumen.interpreters.statechart.command_ids import result_of
 from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, MicrostepPlanner, make_room
 from lumen.interpreters.statechart.step_code import WrittenStep
 from lumen.interpreters.statechart.step_writer import StepWriter
@@ -51,7 +52,7 @@ class FastPaths:
         """
         name, names = event.name, snapshot.configuration
         if ".command." in name:
-            return self._answered(snapshot, name)
+            return whole if result_of(event.data) is not None else self._answered(snapshot, name)
         if name in (ARRIVED, LEFT, SHARED_EVENT) or name.startswith(CONTROLLER_EVENT):
             return whole
         make_room(self.paths)

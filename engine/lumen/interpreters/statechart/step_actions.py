@@ -30,7 +30,8 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
-from lumen.language.commands import GoTo, Language
+from lumen.language.added_verbs import is_template
+from lumen.language.commands import Do, GoTo, Language
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import nanoseconds
 
@@ -146,6 +147,8 @@ class ActionText(StepText):
                 self.scope = None
             case GoTo(to) if "{{" in to:
                 return f"GoTo({self.filled(to, sight)})"
+            case Do() if is_template(action):
+                raise NotPlainError
         return self.constant(action)
 
     def begin(self, action: Action, node: StateNode, known: Certain) -> str:

@@ -1,13 +1,14 @@
 """A real NAO or Pepper behind the `Robot` seam."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from lumen.errors import RobotLostError
 from lumen.interpreters.bounds import nearest_angles
+from lumen.language.added_verbs import added_verbs
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.ports import Aim, Battery, Live, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import parts_of
@@ -23,6 +24,7 @@ from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
 from lumen.robots.naoqi.skills import NaoqiSkills
 from lumen.robots.naoqi.walking_area import WalkingArea
+from lumen.robots.skill_runner import SkillRunner
 
 
 class NaoqiRobot:
@@ -53,7 +55,8 @@ class NaoqiRobot:
         self._alerts = HealthAlerts()
         self._events: list[Event] = []
         self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
-        self._executor = Executor(self._begin, lambda command: parts_of(command, body))
+        self._skill_runner = SkillRunner()
+        self._executor = Executor(self._begin, lambda command: parts_of(command, body), self._skill_runner.begin)
         self._part = part_of(body)
         self._life = NaoqiLife(self._session, self._executor.owner, body)
         self._aimed: NaoqiCall = NaoqiCall()
@@ -91,11 +94,16 @@ class NaoqiRobot:
     def begun(self) -> Sequence[str]:
         return self._executor.begun()
 
+    @property
+    def verbs(self) -> Collection[str]:
+        return added_verbs()
+
     def read(self, sense: Sense) -> Reading | None:
         return self._senses[sense].newest
 
     def close(self) -> None:
         """End what the robot does, let go of its senses, and end the threads; it stays as it stands."""
+        self._skill_runner.close()
         self._reconnector.close()
         for sense in self._senses.values():
             sense.close()
@@ -105,7 +113,7 @@ class NaoqiRobot:
             self._sensors.end()
         self._session.close()
 
-    def _begin(self, command: RobotCommand, now: float) -> CallSequence:
+    def _begin(self, command: NativeCommand, now: float) -> CallSequence:
         if not self._session.ready:
             raise RobotLostError(CONNECTION_LOST)
         command = self._bounds.fit(command)
@@ -148,7 +156,7 @@ class NaoqiRobot:
     def _fall(self, name: str, now: float) -> None:
         """Its commands end as the fall begins; `fallen` is raised once it is over."""
         self._skills.fallen = True
-        self._executor.fail("the robot fell")
+        self._executor.fail("the robot fell", fallen=True)
         if name == FALLEN:
             self._area.fell()
             self._events.append(Event("fallen", {}, now))

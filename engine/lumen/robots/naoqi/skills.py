@@ -8,7 +8,7 @@ from typing import assert_never
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.robots import Body
-from lumen.ports import Aim, Live, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, NativeCommand, Perform, Record
 from lumen.robots.command_table import parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.joint_ways import LOOK_SPEED
@@ -48,7 +48,7 @@ class NaoqiSkills:
         self.fallen = False
         self.body_language = False
 
-    def begin(self, command: RobotCommand, now: float) -> CallSequence:
+    def begin(self, command: NativeCommand, now: float) -> CallSequence:
         """The command under way. Raises RobotError where the robot can't."""
         match command:
             case Say():

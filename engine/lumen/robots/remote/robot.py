@@ -12,7 +12,7 @@ from typing import Any
 from lumen.errors import BadCommandError, BusError
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
-from lumen.language.events import CUE, MISSED, ROBOT_EVENTS, Event
+from lumen.language.events import CUE, MISSED, RESULT, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Live, Message, Perform, Reading, RobotCommand, Sense
 from lumen.robots.command_bounds import CommandBounds
@@ -230,13 +230,13 @@ class RemoteRobot:
     def _hear(self, message: Message) -> None:
         match message.body:
             case {"id": str(whole), "state": str(state)}:
-                self._report(whole, state, str(message.body.get("reason", "")))
+                self._report(whole, state, str(message.body.get("reason", "")), message.body.get("result"))
             case {"name": str(name)} if name in (*ROBOT_EVENTS, CUE) and message.key == key_of(
                 self._project, NOTICED_ROUTE
             ):
                 self._events.append(Event(name, message.body.get("data"), self._clock()))
 
-    def _report(self, whole: str, state: str, reason: str) -> None:
+    def _report(self, whole: str, state: str, reason: str, result: Any = None) -> None:
         pending = self._pending.get(whole)
         if pending is None:
             if whole in self._forsaken and state in (ACCEPTED, STARTED):
@@ -247,13 +247,15 @@ class RemoteRobot:
             self._begun.append(pending.id)
         pending.heard = True
         if state in _ENDS:
-            self._end(whole, _ENDS[state], reason or (_FORGOTTEN if state == UNKNOWN_COMMAND else ""))
+            self._end(whole, _ENDS[state], reason or (_FORGOTTEN if state == UNKNOWN_COMMAND else ""), result)
 
-    def _end(self, whole: str, kind: str, reason: str = "") -> None:
+    def _end(self, whole: str, kind: str, reason: str = "", result: Any = None) -> None:
         pending = self._pending.pop(whole)
-        data = {"reason": reason} if kind in ("error", "lost") else None
+        data: dict[str, Any] | None = {"reason": reason} if kind in ("error", "lost") else None
         if kind == "done" and reason:
             data = {MISSED: reason}
+        elif kind == "done" and isinstance(result, dict):
+            data = {RESULT: result}
         self._events.append(Event(f"{kind}.command.{pending.id}", data, self._clock()))
 
     def _chase(self) -> None:

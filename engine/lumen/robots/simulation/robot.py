@@ -10,6 +10,7 @@ import numpy as np
 from lumen.errors import RobotRefusedError, UsageError
 from lumen.interpreters.life import vigour
 from lumen.interpreters.projection import centring
+from lumen.language.added_verbs import added_verbs
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
@@ -19,7 +20,7 @@ from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Joints, Live, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.executor import Activity, Executor
@@ -46,6 +47,7 @@ from lumen.robots.simulation.tactile_sensors import TactileSensors
 from lumen.robots.simulation.visitor_figure import VisitorFigure
 from lumen.robots.simulation.wheels import Wheels
 from lumen.robots.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
+from lumen.robots.skill_runner import SkillRunner
 
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""
@@ -107,7 +109,8 @@ class SimulatedRobot:
         self._skills = SimulatedSkills(
             self.world, self.motors, self.lights, self.base, self._sensors, posture, self._notice
         )
-        self._executor = Executor(self._begin, self._skills.parts)
+        self._skill_runner = SkillRunner()
+        self._executor = Executor(self._begin, self._skills.parts, self._skill_runner.begin)
         self.figure = figure or VisitorFigure(self.world.model, self.world.data)
         self._camera = RobotCamera(self.world, body.camera) if body.camera and body.roles.eyes.camera else None
         self._events: list[Event] = []
@@ -188,6 +191,10 @@ class SimulatedRobot:
     def begun(self) -> Sequence[str]:
         return self._executor.begun()
 
+    @property
+    def verbs(self) -> Collection[str]:
+        return added_verbs()
+
     def read(self, sense: Sense) -> Reading | None:
         now = self.time
         match sense:
@@ -207,6 +214,7 @@ class SimulatedRobot:
                 return Battery(now, self.condition.percentage, self.condition.plugged, self.condition.charging)
 
     def close(self) -> None:
+        self._skill_runner.close()
         if self._camera:
             self._camera.close()
 
@@ -252,7 +260,7 @@ class SimulatedRobot:
     def _notice(self, event: Event) -> None:
         self._events.append(event)
 
-    def _begin(self, command: RobotCommand, now: float) -> Activity:
+    def _begin(self, command: NativeCommand, now: float) -> Activity:
         if self.condition.empty and not isinstance(command, Rest):
             raise RobotRefusedError("the battery is empty: plug the robot in")
         activity = self._skills.begin(self._bounds.fit(command), now)
@@ -307,7 +315,7 @@ class SimulatedRobot:
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN_TILT and upright and not self.fallen:
             self._skills.fall(now)
-            self._executor.fail("the robot fell")
+            self._executor.fail("the robot fell", fallen=True)
             self._events.append(Event("fallen", {}, now))
         self._skills.lie(now)
         if self._ticks % _CONDITION_EVERY == 0:

@@ -8,7 +8,7 @@ from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, standing
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.roles import BaseKind
-from lumen.ports import Aim, Live, Perform, Record, RobotCommand
+from lumen.ports import Aim, Live, NativeCommand, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.cues import EventSink
@@ -104,7 +104,7 @@ class SimulatedSkills:
         """The part of the body that a joint belongs to."""
         return self._part.get(joint, "")
 
-    def begin(self, command: RobotCommand, now: float) -> Activity:
+    def begin(self, command: NativeCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
         if row_of(command).moves and not isinstance(command, Wake | Posture):
             self._ready()

@@ -1,0 +1,96 @@
+"""The verbs that features add: their rows, the schemas of their data in the YAML, and their results."""
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from lumen.feature import VerbRow, table
+from lumen.language.commands import BodyCommand, Do
+from lumen.language.diagnostics import NodePath
+from lumen.language.events import RESULT
+
+
+@cache
+def added_verbs() -> Mapping[str, VerbRow]:
+    """Return the verbs of all features by name."""
+    return table("verbs")
+
+
+def argument_schema(row: VerbRow) -> dict[str, Any]:
+    """Return the JSON Schema of the arguments; properties that it does not name are refused unless it allows them."""
+    return {"additionalProperties": False, **row.arguments, "type": "object"}
+
+
+def written_schema(row: VerbRow) -> dict[str, Any]:
+    """Return the JSON Schema of the verb's data in the YAML: its arguments, or the short form."""
+    whole, short = argument_schema(row), short_argument(row)
+    about = {"description": row.description} if row.description else {}
+    if not row.arguments.get("properties"):
+        return {**about, "enum": [None, True]}
+    if short:
+        return {**about, "if": {"type": "object"}, "then": whole, "else": row.arguments["properties"][short]}
+    if not row.arguments.get("required"):
+        return {**about, "if": {"type": "object"}, "then": whole, "else": {"enum": [None, True]}}
+    return {**whole, **about}
+
+
+def short_argument(row: VerbRow) -> str:
+    """Return the name of the argument that the short form gives; empty for a verb without a short form."""
+    required, properties = row.arguments.get("required", ()), row.arguments.get("properties", {})
+    only = required[0] if len(required) == 1 else ""
+    return only if only in properties and properties[only].get("type") not in (None, "object") else ""
+
+
+def arguments_of(row: VerbRow, data: Any) -> dict[str, Any]:
+    """Return the arguments that the YAML's data mean, with the defaults of those that are left out."""
+    short = short_argument(row)
+    given = data if isinstance(data, Mapping) else {short: data} if short else {}
+    all = {**_defaults(row.arguments), **given}
+    order = [name for name in row.arguments.get("properties", {}) if name in all]
+    return {name: all[name] for name in (*order, *(name for name in all if name not in order))}
+
+
+def default_result(row: VerbRow) -> dict[str, Any]:
+    """Return the result of a verb that no code performs: the defaults of its schema."""
+    return _defaults(row.result)
+
+
+def usual_result(command: BodyCommand | None) -> dict[str, Any] | None:
+    """Return the data of `done.command.ID` of a command that ends as usual."""
+    row = added_verbs().get(command.skill) if isinstance(command, Do) else None
+    result = default_result(row) if row else None
+    return {RESULT: result} if result else None
+
+
+def texts_in(value: Any, path: NodePath = ()) -> Iterator[tuple[NodePath, str]]:
+    """Iterate over the texts in JSON data, each with its path."""
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from texts_in(item, (*path, key))
+    elif isinstance(value, list | tuple):
+        for i, item in enumerate(value):
+            yield from texts_in(item, (*path, i))
+
+
+def with_texts(value: Any, change: Callable[[str, NodePath], str], path: NodePath = ()) -> Any:
+    """Return JSON data with each text changed; `change` gets the text and its path."""
+    match value:
+        case str():
+            return change(value, path)
+        case Mapping():
+            return {key: with_texts(item, change, (*path, key)) for key, item in value.items()}
+        case list() | tuple():
+            return [with_texts(item, change, (*path, i)) for i, item in enumerate(value)]
+    return value
+
+
+def is_template(command: Do) -> bool:
+    """Return True if texts of the arguments contain `{{ expression }}`."""
+    return any("{{" in text for _, text in texts_in(command.arguments))
+
+
+def _defaults(schema: Mapping[str, Any]) -> dict[str, Any]:
+    properties = schema.get("properties", {})
+    return {name: inner["default"] for name, inner in properties.items() if "default" in inner}

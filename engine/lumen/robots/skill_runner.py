@@ -1,0 +1,96 @@
+"""Verbs of features: their performers run in threads that no tick, and no stop, waits for."""
+
+import logging
+from collections.abc import Mapping
+from threading import Condition
+from typing import Any
+
+from lumen.errors import RobotError, RobotFailedError, RobotRefusedError
+from lumen.feature import VerbRow, resolve
+from lumen.language.commands import Do
+from lumen.loading.schema import faults
+from lumen.ports import SkillPerformer
+from lumen.robots.command_table import added_verb
+from lumen.upkeep.threads import WatchedThread
+
+_log = logging.getLogger(__name__)
+
+
+class SkillRunner:
+    """Begins performers; one that has not returned after it was cancelled is not begun again until it has."""
+
+    def __init__(self) -> None:
+        self._calls: list[RunningSkill] = []
+
+    def begin(self, command: Do, now: float) -> "RunningSkill":
+        """Begin a verb at `now` [s]. Raises RobotError if no feature has it, or if its last call does not end."""
+        verb = added_verb(command)
+        self._calls = [call for call in self._calls if call.thread.is_alive()]
+        if any(call.skill == command.skill and call.cancelled for call in self._calls):
+            raise RobotRefusedError(f"`{command.skill}` was cancelled and has not ended yet: try again later")
+        call = RunningSkill(command, verb, now)
+        self._calls.append(call)
+        call.thread.start()
+        return call
+
+    def close(self) -> None:
+        """Cancel all calls; they end by themselves."""
+        for call in self._calls:
+            call.end()
+
+
+class RunningSkill:
+    """A verb under way: an activity for the robot, a `SkillCall` for the performer."""
+
+    def __init__(self, command: Do, verb: VerbRow, now: float) -> None:
+        self.skill, self.arguments = command.skill, command.arguments
+        self.cancelled = False
+        self.result: Mapping[str, Any] = {}
+        self.thread = WatchedThread(f"lumen-skill-{command.skill}", self._run)
+        self._verb, self._now = verb, now
+        self._left = self._over = False
+        self._failure = ""
+        self._changed = Condition()
+
+    def advance(self, now: float) -> bool:
+        """Let the performer live until `now` [s]; return True once it has ended or was cancelled."""
+        with self._changed:
+            self._now = now
+            self._changed.notify_all()
+            if self._left:
+                return True
+            if failure := self._failure or self.thread.lost:
+                raise RobotFailedError(failure)
+            return self._over
+
+    def cancel(self) -> None:
+        """Have the robot wait for it no more, and the performer end early if its row does not forbid that."""
+        self._left = True
+        if self._verb.cancel:
+            self.end()
+
+    def end(self) -> None:
+        """Let the performer end early."""
+        with self._changed:
+            self.cancelled = True
+            self._changed.notify_all()
+
+    def wait(self, seconds: float) -> bool:
+        with self._changed:
+            until = self._now + seconds
+            self._changed.wait_for(lambda: self.cancelled or self._now >= until)
+            return not self.cancelled
+
+    def _run(self) -> None:
+        try:
+            performer: SkillPerformer = resolve(self._verb.performer)
+            result, failure = dict(performer.perform(self) or {}), ""
+            for fault in faults(result, self._verb.result):
+                failure = f"`{self.skill}` returned something wrong: {fault.message}"
+        except RobotError as error:
+            result, failure = {}, str(error)
+        except Exception as error:  # a feature's fault costs its verb
+            _log.exception("the performer of `%s` failed", self.skill)
+            result, failure = {}, f"`{self.skill}` failed: {error!r}"
+        with self._changed:
+            self.result, self._failure, self._over = result, failure, True

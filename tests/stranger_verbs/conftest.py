@@ -1,0 +1,29 @@
+"""The package that teaches robots to blink, installed into a folder of its own for the tests of this folder."""
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from written_distribution import on_path, write_distribution
+
+from tests import ROOT
+from tests.scanning import matching
+
+HERE = ROOT / "tests/stranger_verbs"
+
+
+@pytest.fixture(autouse=True)
+def blinker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    source = HERE / "distribution"
+    files = {path.relative_to(source).as_posix(): path.read_text("utf-8") for path in matching(source, "**/*.py")}
+    write_distribution(tmp_path / "packages", "lumen-blinker", "lumen_blinker:FEATURE", files)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "packages"))  # for processes that a test starts
+    with on_path(tmp_path / "packages"):
+        yield
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A project whose robot blinks."""
+    return Path(shutil.copytree(HERE / "project", tmp_path / "project"))

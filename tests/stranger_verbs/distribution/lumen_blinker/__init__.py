@@ -1,0 +1,29 @@
+"""The manifest of a package that teaches robots to blink."""
+
+from lumen.feature import Feature, VerbRow
+
+EYES = {"enum": ["left", "right", "both"], "default": "both", "description": "Which eyes."}
+TIMES = {"type": "integer", "minimum": 1, "description": "How often."}
+
+FEATURE = Feature(
+    name="blinker",
+    verbs={
+        "blink": VerbRow(
+            performer="lumen_blinker.blinking",
+            description="Blink with the eyes.",
+            arguments={"required": ["times"], "properties": {"times": TIMES, "eye": EYES, "for": {"type": "string"}}},
+            result={"type": "object", "properties": {"blinked": {"type": "integer", "default": 2}}},
+            takes="{{ times * 0.5 }}s",
+            parts=("head",),
+        ),
+        "wiggle": VerbRow(performer="lumen_blinker.performers:WAITS", takes="2s", parts=("head", "arms"), moves=True),
+        "hum": VerbRow(performer="lumen_blinker.performers:WAITS", takes="5s", cancel=False),
+        "stall": VerbRow(performer="lumen_blinker.performers:STALLS"),
+        "break": VerbRow(performer="lumen_blinker.performers:BREAKS"),
+        "refuse": VerbRow(performer="lumen_blinker.performers:REFUSES"),
+        "misreport": VerbRow(
+            performer="lumen_blinker.performers:MISREPORTS", result={"properties": {"blinked": {"type": "integer"}}}
+        ),
+        "vanish": VerbRow(performer="lumen_blinker.missing"),
+    },
+)

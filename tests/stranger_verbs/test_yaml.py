@@ -1,0 +1,157 @@
+"""A verb of a package in the YAML: in lint, in the editor, in diffs, in stories and in replay."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.formats.behavior_data import plain_action
+from lumen.interpreters.added_verbs import time_taken
+from lumen.interpreters.changes.actions import described
+from lumen.interpreters.explaining.words import of_deed
+from lumen.language.actions import Action
+from lumen.language.commands import Do, Start
+from lumen.language.events import RESULT, Event
+from lumen.loading.files import read_files
+from lumen.loading.schema import load_schema
+from lumen.lsp.schemas import description_at, keys_at, values_at
+from lumen.rules import check_files
+from lumen.statechart import Machine, initial, step
+from tests.stranger_verbs.conftest import HERE
+from tests.tables import for_each
+
+BLINK = Do("blink", {"times": 3, "eye": "both"})
+
+
+def action(data: Any) -> Action:
+    """Return the action that the loader makes of this data."""
+    return machine({"do": [data]}).states["a"].do[0].action
+
+
+def machine(state: dict[str, Any]) -> Machine:
+    context = {"eye": "left", "blinked": 0}
+    return Machine.from_dict({"id": "m", "context": context, "states": {"a": state, "b": {}}}, "m")
+
+
+def findings(project: Path, old: str, new: str) -> list[str]:
+    """Return the findings of lint after a text of the project's behaviour is replaced."""
+    text = (HERE / "project/behaviors/blinking.yaml").read_text("utf-8")
+    assert old in text
+    (project / "behaviors/blinking.yaml").write_text(text.replace(old, new, 1), "utf-8")
+    found = check_files(project, read_files(project))[1]
+    return [f"{each.code} | {each.message} | {each.hint}" for each in found]
+
+
+@for_each(
+    ("data", "arguments"),
+    [
+        ({"blink": 3}, {"times": 3, "eye": "both"}),
+        ({"blink": {"eye": "left", "times": 1}}, {"times": 1, "eye": "left"}),
+        ({"wiggle": True}, {}),
+        ({"wiggle": None}, {}),
+    ],
+)
+def test_a_verb_is_read_with_its_short_form_and_its_defaults(data: dict[str, Any], arguments: dict[str, Any]) -> None:
+    (verb,) = data
+    read = action(data)
+    assert read == Do(verb, arguments)
+    assert list(read.arguments) == list(arguments)
+    assert action(plain_action(read)) == read
+
+
+def test_it_reads_well_in_transcripts_and_diffs() -> None:
+    assert of_deed(BLINK) == "does blink with times 3, eye both"
+    assert described(BLINK) == "does `blink` with times 3, eye both"
+    assert of_deed(Do("wiggle", {})) == "does wiggle"
+
+
+def test_how_long_it_takes_is_computed_from_its_arguments() -> None:
+    assert [time_taken(Do("blink", {"times": times})) for times in (1, 3)] == [0.5, 1.5]
+    assert time_taken(Do("wiggle", {})) == 2.0
+
+
+def test_a_sound_project_has_no_findings(project: Path) -> None:
+    assert findings(project, "blink: 2", "blink: 2") == []
+
+
+@for_each(
+    ("old", "new", "finding"),
+    [
+        ("blink: 2", "blnk: 2", "unknown-key | `blnk` is not a key of `entry` | did you mean `blink`?"),
+        ("blink: 2", "blink: 0", "wrong-value | `blink` is 0, but should be at least 1 | How often"),
+        ("eye: left", "eyes: left", "unknown-key | `eyes` is not a key of `blink` | did you mean `eye`?"),
+        ("times: 3, ", "", "missing-key | `blink` needs the key `times` | How often"),
+        ("wiggle: true", "wiggle: {far: 2}", "wrong-value | `wiggle` can't be `{'far': 2}` | allowed: `true`"),
+        (
+            "onDone: {target: greeted",
+            "after: {2s: waiting}\n    onDone: {target: greeted",
+            "cut-short | `greeting` is left after 2 s, but its `do` takes about 2.2 s | write at least 3s",
+        ),
+        (
+            "context.who",
+            "context.whom",
+            "unknown-context-key | the context has no `whom` | did you mean `who`? `context` has `blinked`, `who`",
+        ),
+    ],
+)
+def test_lint_reports_what_is_wrong_with_it(project: Path, old: str, new: str, finding: str) -> None:
+    assert findings(project, old, new)[:1] == [finding]
+
+
+def test_the_editor_completes_it_and_describes_it() -> None:
+    entry = ("states", "waiting", "entry")
+    assert {"blink", "wiggle", "say"} <= keys_at("behavior", entry).keys()
+    assert set(keys_at("behavior", (*entry, "blink"))) == {"times", "eye", "for"}
+    assert values_at("behavior", (*entry, "blink", "eye")) == ["left", "right", "both"]
+    assert description_at("behavior", (*entry, "blink")) == "Blink with the eyes."
+    assert description_at("behavior", (*entry, "blink", "times")) == "How often."
+
+
+def test_the_schemas_of_behaviours_and_stories_contain_it() -> None:
+    assert "blink" in load_schema("behavior")["$defs"]["action"]["properties"]
+    assert "blink" in load_schema("story")["properties"]["robot"]["propertyNames"]["enum"]
+
+
+def test_a_step_fills_in_its_arguments() -> None:
+    state = {"entry": {"blink": {"times": 1, "for": "{{ context.eye }} eye"}}}
+    (start,) = initial(machine(state)).commands
+    assert start == Start("c1", Do("blink", {"times": 1, "eye": "both", "for": "left eye"}))
+
+
+def test_the_end_of_a_do_brings_its_result_also_the_second_and_third_time() -> None:
+    assign = {"assign": {"blinked": "event.data.blinked"}}
+    told = machine({"do": {"blink": 2}, "onDone": {"target": ".", "actions": assign}})
+    taken = initial(told)
+    for number in range(1, 5):
+        taken = step(told, taken.snapshot, Event(f"done.command.d{number}", {RESULT: {"blinked": number}}, 1.0))
+        assert taken.snapshot.context["blinked"] == number
+        assert [command.id for command in taken.commands] == [f"d{number + 1}"]
+
+
+@pytest.mark.process
+def test_a_story_performs_it_as_long_as_it_takes_with_the_result_of_its_schema(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(project), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
+    lines = [line.split(maxsplit=2) for line in capsys.readouterr().out.splitlines() if line[:3] == " 0:"]
+    assert ["0:00.9", "robot", "does blink with times 3, eye left, for Budi"] in lines
+    assert ["0:04.5", "state", "greeted  (done)"] in lines
+
+
+@pytest.mark.process
+def test_a_run_is_replayed_exactly_by_the_results_in_its_journal(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(project), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
+    assert main(["replay", "--project", str(project)]) == 0
+    assert "1 the same" in capsys.readouterr().out
+
+
+@for_each(("behaves", "exit_code"), [("fails", 1), ("hangs", 1), ("500ms", 0)])
+def test_a_story_can_let_it_fail_hang_or_take_another_time(project: Path, behaves: str, exit_code: int) -> None:
+    story = project / "behaviors/stories/visitor.yaml"
+    text = (HERE / "project/behaviors/stories/visitor.yaml").read_text("utf-8")
+    story.write_text(f"{text}robot: {json.dumps({'blink': behaves})}\n", "utf-8")
+    assert main(["test", str(project)]) == exit_code
