@@ -66,6 +66,9 @@ def test_its_performer_waits_by_the_robots_clock_and_returns_a_result(executor: 
         ("break", "`break` failed: ZeroDivisionError('by zero')"),
         ("refuse", "the eyelids stick"),
         ("misreport", "`misreport` returned something wrong: `blinked` should be a whole number, not a text"),
+        ("exit", "`exit` failed: SystemExit(3)"),
+        ("count", "`count` returned 3: return an object with names and values"),
+        ("spoil", "`spoil` returned something that is not JSON data: Object of type set is not JSON serializable"),
         ("vanish", "`vanish` failed: ModuleNotFoundError(\"No module named 'lumen_blinker.missing'\")"),
     ],
 )

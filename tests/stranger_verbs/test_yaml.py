@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from written_distribution import on_path, write_distribution
 
 from lumen.cli.main import main
 from lumen.formats.behavior_data import plain_action
@@ -155,3 +156,44 @@ def test_a_story_can_let_it_fail_hang_or_take_another_time(project: Path, behave
     text = (HERE / "project/behaviors/stories/visitor.yaml").read_text("utf-8")
     story.write_text(f"{text}robot: {json.dumps({'blink': behaves})}\n", "utf-8")
     assert main(["test", str(project)]) == exit_code
+
+
+@for_each(
+    ("row", "fault"),
+    [
+        ('"say": VerbRow(performer="a")', "its verb `say` is ignored: a verb of Lumen has that name"),
+        (
+            '"hop": VerbRow(performer="a", arguments={"required": 3})',
+            "its verb `hop` is ignored: `arguments` is not a JSON Schema",
+        ),
+        (
+            '"hop": VerbRow(performer="a", result={"properties": {"x": {"type": "metre"}}})',
+            "its verb `hop` is ignored: `result` is not a JSON Schema",
+        ),
+        (
+            '"hop": VerbRow(performer="a", takes="long")',
+            "its verb `hop` is ignored: `takes` is `long`, which is no duration",
+        ),
+        (
+            '"hop": VerbRow(performer="a", takes="{{ hops( }}s")',
+            "its verb `hop` is ignored: `takes` is faulty: the expression ends too early",
+        ),
+    ],
+)
+def test_a_row_that_cannot_be_used_is_a_finding_and_the_rest_goes_on(
+    project: Path, tmp_path: Path, row: str, fault: str
+) -> None:
+    manifest = f"from lumen.feature import Feature, VerbRow\nFEATURE = Feature(name='hopper', verbs={{{row}}})\n"
+    write_distribution(tmp_path / "more", "lumen-hopper", "lumen_hopper:FEATURE", {"lumen_hopper.py": manifest})
+    with on_path(tmp_path / "more"):
+        (finding,) = findings(project, "blink: 2", "blink: 2")
+    assert finding.startswith(f"broken-feature | the installed package `lumen-hopper` 1.0 is faulty: {fault}")
+
+
+def test_a_body_without_its_parts_leaves_it_out(project: Path) -> None:
+    main = project / "lumen.yaml"
+    main.write_text(main.read_text("utf-8").replace("model: nao", "model: lantern"), "utf-8")
+    found = [finding for finding in findings(project, "wiggle", "tiptoe") if "tiptoe" in finding]
+    assert found == [
+        "left-out | Lantern has no legs, so it leaves out `tiptoe` | add joints to `legs` under `parts` of its body"
+    ]

@@ -1,12 +1,42 @@
-"""The durations of the verbs that features add."""
+"""The verbs that features add: which rows can be used, and how long the verbs take."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 
 from lumen.errors import BadCommandError, ExpressionError
+from lumen.feature import Feature, VerbRow, rows
 from lumen.interpreters.expressions import Scope, compile_template, split_template, substituted
-from lumen.language.added_verbs import added_verbs
+from lumen.interpreters.json_schema import JsonSchema
+from lumen.language.added_verbs import added_verbs, argument_schema
 from lumen.language.commands import Do
 from lumen.language.durations import seconds
+from lumen.language.verbs import is_built_in
+
+
+@cache
+def usable_verbs() -> Mapping[str, VerbRow]:
+    """Return the verbs that the YAML can use: a faulty row would make its schema unsound."""
+    return {name: row for name, row in added_verbs().items() if not _fault(name, row)}
+
+
+def faulty_verbs() -> Iterator[tuple[Feature, str]]:
+    """Iterate over the rows that can't be used: the feature of each, and what is wrong with it."""
+    for feature, (name, row) in rows("verbs"):
+        if fault := _fault(name, row):
+            yield feature, f"its verb `{name}` is ignored: {fault}"
+
+
+def _fault(name: str, row: VerbRow) -> str:
+    if is_built_in(name):
+        return "a verb of Lumen has that name"
+    for field, schema in (("arguments", argument_schema(row)), ("result", row.result)):
+        if not JsonSchema(schema).is_sound:
+            return f"`{field}` is not a JSON Schema"
+    try:
+        computed = _duration(row, row.arguments.get("properties", ()))
+    except ExpressionError as error:
+        return f"`takes` is faulty: {error}"
+    return "" if computed or seconds(row.takes) is not None else f"`takes` is `{row.takes}`, which is no duration"
 
 
 def time_taken(command: Do) -> float:
@@ -16,16 +46,23 @@ def time_taken(command: Do) -> float:
     """
     if (row := added_verbs().get(command.skill)) is None:
         raise BadCommandError(f"no feature here has a verb `{command.skill}`")
-    names = {name: f"context.{name}" for name in (*row.arguments.get("properties", ()), *command.arguments)}
     try:
-        parts = split_template(row.takes)
-        holes = [part if isinstance(part, str) else _hole(part.source, names) for part in parts]
-        text = compile_template("".join(holes))(Scope(context=command.arguments))
+        compute = _duration(row, (*row.arguments.get("properties", ()), *command.arguments))
+        text = compute(Scope(context=command.arguments)) if compute else row.takes
     except ExpressionError as error:
         raise BadCommandError(f"how long `{command.skill}` takes is not known: {error}") from None
     if (found := seconds(text)) is None:
         raise BadCommandError(f"how long `{command.skill}` takes is not known: `{text}` is no duration such as `2s`")
     return found
+
+
+def _duration(row: VerbRow, names: Iterable[str]) -> Callable[[Scope], str] | None:
+    """Return what computes `takes` from arguments of these names; None if it contains no expression."""
+    parts = split_template(row.takes)
+    variables = {name: f"context.{name}" for name in names}
+    if all(isinstance(part, str) for part in parts):
+        return None
+    return compile_template("".join(part if isinstance(part, str) else _hole(part.source, variables) for part in parts))
 
 
 def _hole(source: str, names: Mapping[str, str]) -> str:

@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from lumen.language.commands import GoTo, Leds, Look, Move, Track, Walk
+from lumen.language.added_verbs import added_verbs
+from lumen.language.commands import Do, GoTo, Leds, Look, Move, Track, Walk
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, JOINT_PATHS, BaseKind
@@ -30,7 +31,15 @@ def lack_of(command: object, body: Body) -> Lack | None:
             names = ", ".join(f"`{group}`" for group in colours)
             wanted = f"`lights: {{{next(iter(colours))}: […]}}`"
             return Lack(f"{body.name} has no lights {names}", _ADD.format(wanted))
+        case Do(skill) if missing := [part for part in _needed(skill) if body.parts.get(part) == ()]:
+            return Lack(f"{body.name} has no {missing[0]}", f"add joints to `{missing[0]}` under `parts` of its body")
     return None
+
+
+def _needed(skill: str) -> tuple[str, ...]:
+    """Return the parts of the body that a verb of a feature needs."""
+    row = added_verbs().get(skill)
+    return row.parts if row else ()
 
 
 def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:

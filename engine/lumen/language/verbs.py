@@ -245,6 +245,11 @@ def _listed(arguments: Mapping[str, Any]) -> str:
     return f" with {listed}" if listed else ""
 
 
+def is_built_in(name: str) -> bool:
+    """Return True if the YAML has a verb of that name that comes with Lumen."""
+    return name in ("then", "else", *COMPUTED.values()) or any(verb.name == name for verb in VERBS)
+
+
 def names_in(action: Action, kind: str) -> Iterator[str]:
     """The names of that kind of thing (`motion`, `posture`, …) that an action holds in fields of its own."""
     verb = _BY_COMMAND.get(type(action))

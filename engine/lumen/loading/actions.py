@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, assert_never
 
 from lumen.feature import VerbRow
+from lumen.interpreters.added_verbs import usable_verbs
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -21,7 +22,7 @@ from lumen.language.actions import (
     Wait,
     context_key,
 )
-from lumen.language.added_verbs import added_verbs, arguments_of, with_texts
+from lumen.language.added_verbs import arguments_of, with_texts
 from lumen.language.commands import Do, SaysGestures, VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.durations import duration_hint
@@ -83,7 +84,7 @@ class Actions:
             return read(self, data, where)
         if row := verb_named(verb, data):
             return self._command(row, data, where)
-        added = added_verbs().get(verb)
+        added = usable_verbs().get(verb)
         return self._do(verb, added, data, where) if added else None
 
     def _do(self, verb: str, row: VerbRow, data: Any, where: NodePath) -> Do | None:

@@ -7,8 +7,9 @@ from functools import cache, partial
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.interpreters.added_verbs import usable_verbs
 from lumen.interpreters.json_schema import JsonSchema
-from lumen.language.added_verbs import added_verbs, written_schema
+from lumen.language.added_verbs import written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
@@ -81,11 +82,10 @@ def load_schema(kind: str) -> Any:
         return with_sections(schema)
     if kind == "behavior":
         known = schema["$defs"]["action"]["properties"]
-        for name, row in added_verbs().items():
-            known.setdefault(name, written_schema(row))
+        known |= {name: written_schema(row) for name, row in usable_verbs().items()}
     elif kind == "story":
         performed = schema["properties"]["robot"]["propertyNames"]["enum"]
-        performed += [name for name in added_verbs() if name not in performed]
+        performed += usable_verbs()
     return schema
 
 

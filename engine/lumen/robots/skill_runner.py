@@ -1,5 +1,6 @@
 """Verbs of features: their performers run in threads that no tick, and no stop, waits for."""
 
+import json
 import logging
 from collections.abc import Mapping
 from threading import Condition
@@ -84,13 +85,23 @@ class RunningSkill:
     def _run(self) -> None:
         try:
             performer: SkillPerformer = resolve(self._verb.performer)
-            result, failure = dict(performer.perform(self) or {}), ""
-            for fault in faults(result, self._verb.result):
-                failure = f"`{self.skill}` returned something wrong: {fault.message}"
+            result, failure = self._checked(performer.perform(self)), ""
         except RobotError as error:
             result, failure = {}, str(error)
-        except Exception as error:  # a feature's fault costs its verb
+        except BaseException as error:  # whatever it is, it must not begin again
             _log.exception("the performer of `%s` failed", self.skill)
             result, failure = {}, f"`{self.skill}` failed: {error!r}"
         with self._changed:
             self.result, self._failure, self._over = result, failure, True
+
+    def _checked(self, returned: Any) -> Mapping[str, Any]:
+        """Return a result as the journal keeps it. Raises RobotFailedError if it does not fit the schema of the row."""
+        try:
+            result = {} if returned is None else json.loads(json.dumps(returned, allow_nan=False))
+        except (TypeError, ValueError) as error:
+            raise RobotFailedError(f"`{self.skill}` returned something that is not JSON data: {error}") from error
+        if not isinstance(result, dict):
+            raise RobotFailedError(f"`{self.skill}` returned {result!r}: return an object with names and values")
+        for fault in faults(result, self._verb.result):
+            raise RobotFailedError(f"`{self.skill}` returned something wrong: {fault.message}")
+        return result

@@ -6,6 +6,7 @@ from time import monotonic
 
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.replay_report import ReplayReport
+from lumen.errors import BadCommandError
 from lumen.interpreters.changes import live
 from lumen.interpreters.replay.against import SAME, VisitVerdict, played_against
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
@@ -97,7 +98,10 @@ def takes(project: Project, command: BodyCommand) -> float:
         return motion.duration if motion else USUAL_DURATION
     if type(command) not in _KNOWN:
         return USUAL_DURATION
-    return float(row_of(command).duration(command))  # type: ignore[arg-type]  # one of the table
+    try:
+        return float(row_of(command).duration(command))  # type: ignore[arg-type]  # one of the table
+    except BadCommandError:  # a row of a feature that gives no duration
+        return USUAL_DURATION
 
 
 _KNOWN = {row.command for row in COMMANDS}

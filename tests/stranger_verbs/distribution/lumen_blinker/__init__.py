@@ -17,6 +17,7 @@ FEATURE = Feature(
             parts=("head",),
         ),
         "wiggle": VerbRow(performer="lumen_blinker.performers:WAITS", takes="2s", parts=("head", "arms"), moves=True),
+        "tiptoe": VerbRow(performer="lumen_blinker.performers:WAITS", parts=("legs",), moves=True),
         "hum": VerbRow(performer="lumen_blinker.performers:WAITS", takes="5s", cancel=False),
         "stall": VerbRow(performer="lumen_blinker.performers:STALLS"),
         "break": VerbRow(performer="lumen_blinker.performers:BREAKS"),
@@ -24,6 +25,9 @@ FEATURE = Feature(
         "misreport": VerbRow(
             performer="lumen_blinker.performers:MISREPORTS", result={"properties": {"blinked": {"type": "integer"}}}
         ),
+        "exit": VerbRow(performer="lumen_blinker.performers:EXITS"),
+        "count": VerbRow(performer="lumen_blinker.performers:COUNTS"),
+        "spoil": VerbRow(performer="lumen_blinker.performers:SPOILS"),
         "vanish": VerbRow(performer="lumen_blinker.missing"),
     },
 )

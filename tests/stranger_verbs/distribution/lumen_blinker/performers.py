@@ -1,6 +1,6 @@
 """Performers with manners of their own."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from threading import Event
 from typing import Any
 
@@ -16,10 +16,10 @@ CALLS: list[SkillCall] = []
 class Performer:
     """Performs by a function."""
 
-    def __init__(self, act: Callable[[SkillCall], Mapping[str, Any] | None]) -> None:
+    def __init__(self, act: Callable[[SkillCall], Any]) -> None:
         self._act = act
 
-    def perform(self, call: SkillCall) -> Mapping[str, Any] | None:
+    def perform(self, call: SkillCall) -> Any:
         CALLS.append(call)
         return self._act(call)
 
@@ -40,5 +40,10 @@ def _refuse(call: SkillCall) -> None:
     raise RobotFailedError("the eyelids stick")
 
 
+def _exit(call: SkillCall) -> None:
+    raise SystemExit(3)
+
+
 WAITS, STALLS, BREAKS, REFUSES = Performer(_wait), Performer(_stall), Performer(_break), Performer(_refuse)
+EXITS, COUNTS, SPOILS = Performer(_exit), Performer(lambda call: 3), Performer(lambda call: {"eyes": {1, 2}})
 MISREPORTS = Performer(lambda call: {"blinked": "twice"})
