@@ -150,12 +150,55 @@ def test_a_run_is_replayed_exactly_by_the_results_in_its_journal(
     assert "1 the same" in capsys.readouterr().out
 
 
-@for_each(("behaves", "exit_code"), [("fails", 1), ("hangs", 1), ("500ms", 0)])
-def test_a_story_can_let_it_fail_hang_or_take_another_time(project: Path, behaves: str, exit_code: int) -> None:
-    story = project / "behaviors/stories/visitor.yaml"
-    text = (HERE / "project/behaviors/stories/visitor.yaml").read_text("utf-8")
-    story.write_text(f"{text}robot: {json.dumps({'blink': behaves})}\n", "utf-8")
-    assert main(["test", str(project)]) == exit_code
+def failure_of(project: Path, expected: str, robot: object = None) -> str:
+    """Return why a story fails that expects this of the greeted visitor; empty if it passes."""
+    story = f"steps: [{{visitor: arrives}}, {{expect: {expected}}}]\nrobot: {json.dumps(robot or {})}\n"
+    (project / "behaviors/stories/visitor.yaml").write_text(story, "utf-8")
+    report = project / "report.json"
+    main(["test", str(project), "--format", "json", "-o", str(report)])
+    (row,) = json.loads(report.read_text("utf-8"))["stories"]
+    found = row.get("failure", {})
+    return f"{found.get('expected', '')}: {found.get('was', '')}" if found else ""
+
+
+@for_each(
+    ("robot", "failure"),
+    [
+        ({"blink": "500ms"}, ""),
+        ({"blink": {"takes": "500ms", "result": {"blinked": 2}}}, ""),
+        ({"blink": {"result": {"blinked": 1}}}, "blinked = 2 within 30 s: it is 1"),
+        ({"blink": "hangs"}, "state `greeted`"),
+        ({"blink": "fails"}, "state `greeted`"),
+    ],
+)
+def test_a_story_says_how_it_ends(project: Path, robot: object, failure: str) -> None:
+    found = failure_of(project, "{state: greeted, context: {blinked: 2}}", robot)
+    assert found[: len(failure)] == failure if failure else not found
+
+
+@for_each(
+    ("did", "failure"),
+    [
+        ("blink", ""),
+        ("{blink: 3}", ""),
+        ("{blink: {eye: left, for: Budi}}", ""),
+        ("{blink: {eye: right}}", "the robot to finish `blink` with {'eye': 'right'}"),
+        ("wiggle", "the robot to finish `wiggle`"),
+    ],
+)
+def test_a_story_expects_it(project: Path, did: str, failure: str) -> None:
+    found = failure_of(project, f"{{state: greeted, did: {did}}}")
+    assert found[: len(failure)] == failure if failure else not found
+
+
+@pytest.mark.process
+def test_a_story_of_a_recorded_visit_contains_its_result(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(project), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
+    capsys.readouterr()
+    assert main(["story", "--project", str(project), "-o", str(tmp_path / "visit.yaml")]) == 0
+    assert "robot: {blink: {result: {blinked: 2}}}" in (tmp_path / "visit.yaml").read_text("utf-8")
 
 
 @for_each(

@@ -66,7 +66,7 @@ def set_up(
     if kind == "recording":
         from lumen.robots.recording import RecordingRobot
 
-        recording = RecordingRobot(project.body, story.robot if story else None)
+        recording = RecordingRobot(project.body, *((story.robot, story.results) if story else ()))
         return Setup(recording, SimulatedClock(recording.advance, pace), recording)
     if kind == "naoqi":
         from lumen.robots.naoqi import NaoqiRobot, PhysicalHall

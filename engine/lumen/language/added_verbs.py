@@ -1,6 +1,7 @@
 """The verbs that features add: their rows, the schemas of their data in the YAML, and their results."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -43,11 +44,25 @@ def short_argument(row: VerbRow) -> str:
 
 def arguments_of(row: VerbRow, data: Any) -> dict[str, Any]:
     """Return the arguments that the YAML's data mean, with the defaults of those that are left out."""
-    short = short_argument(row)
-    given = data if isinstance(data, Mapping) else {short: data} if short else {}
-    all = {**_defaults(row.arguments), **given}
+    all = {**_defaults(row.arguments), **given_arguments(row, data)}
     order = [name for name in row.arguments.get("properties", {}) if name in all]
     return {name: all[name] for name in (*order, *(name for name in all if name not in order))}
+
+
+def given_arguments(row: VerbRow, data: Any) -> Mapping[str, Any]:
+    """Return the arguments that the YAML's data name: a map, or the value of the short form."""
+    short = short_argument(row)
+    return data if isinstance(data, Mapping) else {short: data} if short else {}
+
+
+def expected_schema(row: VerbRow) -> dict[str, Any]:
+    """Return the JSON Schema of some of a verb's arguments, as a story expects them."""
+    return written_schema(replace(row, arguments={**row.arguments, "required": []})) | _short_form(row)
+
+
+def _short_form(row: VerbRow) -> dict[str, Any]:
+    short = short_argument(row)
+    return {"else": row.arguments["properties"][short]} if short else {}
 
 
 def default_result(row: VerbRow) -> dict[str, Any]:

@@ -112,14 +112,17 @@ class Expect:
     """`expect:`: all of this holds, or comes to hold `within` [s], else the story fails.
 
     `states` are active together; `said` is part of a text said and `said_exactly` the whole of one, `played` a motion
-    finished, `published` a route on which a message was sent whose body has at least what `body` has (None: any), all
-    since the last `expect` that held; `context` maps keys to values, `place` is where the robot is, by its odometry.
+    finished, `did` a verb of a feature finished that had at least these `arguments`, `published` a route on which a
+    message was sent whose body has at least what `body` has (None: any), all since the last `expect` that held;
+    `context` maps keys to values, `place` is where the robot is, by its odometry.
     """
 
     states: tuple[str, ...] = ()
     said: str | None = None
     said_exactly: str | None = None
     played: str | None = None
+    did: str | None = None
+    arguments: Mapping[str, Any] = field(default_factory=dict)
     published: str | None = None
     body: Any = None
     context: Mapping[str, Any] = field(default_factory=dict)
@@ -156,8 +159,9 @@ class StoryStep:
 class Story:
     """A story, and how the world is while it plays.
 
-    `robot` maps a verb to `fails`, `hangs` or its duration [s]; `clock` is the time of day at its start;
-    the states in `never` must never be entered, and its `properties` hold beside those of the behaviour.
+    `robot` maps a verb to `fails`, `hangs` or its duration [s], `results` a verb of a feature to its result; `clock` is
+    the time of day at its start; the states in `never` must never be entered, and its `properties` hold beside those of
+    the behaviour.
     """
 
     name: str
@@ -168,5 +172,6 @@ class Story:
     clock: Schedule | None = None
     context: Mapping[str, Any] = field(default_factory=dict)
     robot: Mapping[str, str | float] = field(default_factory=dict)
+    results: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     never: tuple[str, ...] = ()
     properties: tuple[Property, ...] = ()

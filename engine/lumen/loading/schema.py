@@ -7,9 +7,10 @@ from functools import cache, partial
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.feature import VerbRow
 from lumen.interpreters.added_verbs import usable_verbs
 from lumen.interpreters.json_schema import JsonSchema
-from lumen.language.added_verbs import written_schema
+from lumen.language.added_verbs import expected_schema, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
@@ -86,7 +87,36 @@ def load_schema(kind: str) -> Any:
     elif kind == "story":
         performed = schema["properties"]["robot"]["propertyNames"]["enum"]
         performed += usable_verbs()
+        schema["properties"]["robot"]["properties"] = {name: _performance(row) for name, row in usable_verbs().items()}
+        if verbs := usable_verbs():
+            schema["$defs"]["step"]["properties"]["expect"]["properties"]["did"] = _did(verbs)
     return schema
+
+
+def _performance(row: VerbRow) -> dict[str, Any]:
+    """How the recording robot performs a verb of a feature in a story."""
+    result = {"description": "What it returns.", **row.result, "type": "object"}
+    return {
+        "description": "`fails`, `hangs`, a duration, or how long it takes and what it returns",
+        "type": ["string", "object"],
+        "minProperties": 1,
+        "additionalProperties": False,
+        "properties": {"takes": {"$ref": "#/$defs/duration"}, "result": result},
+    }
+
+
+def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:
+    """A verb of a feature in an expectation."""
+    return {
+        "description": "A verb of an installed package that it finished since then; maybe with some of its arguments.",
+        "type": ["string", "object"],
+        "if": {"type": "string"},
+        "then": {"enum": list(verbs)},
+        "minProperties": 1,
+        "maxProperties": 1,
+        "additionalProperties": False,
+        "properties": {name: expected_schema(row) for name, row in verbs.items()},
+    }
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
+from lumen.interpreters.added_verbs import usable_verbs
+from lumen.language.added_verbs import given_arguments
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.stories import (
@@ -49,10 +51,26 @@ def build_story(data: Any, report: DocumentReport, *, name: str) -> Story | None
         language=data.get("language", ""),
         clock=_moment(data["at"], report, ("at",)) if "at" in data else None,
         context=data.get("context", {}),
-        robot={verb: _performance(how, report, ("robot", verb)) for verb, how in data.get("robot", {}).items()},
+        robot=_performances(data.get("robot", {}), report),
+        results={
+            verb: how["result"]
+            for verb, how in data.get("robot", {}).items()
+            if isinstance(how, Mapping) and "result" in how
+        },
         never=tuple(data.get("never", ())),
         properties=build_properties(data, report, unbound_conditions(report)),
     )
+
+
+def _performances(data: Mapping[str, Any], report: DocumentReport) -> dict[str, str | float]:
+    """`fails`, `hangs` or a duration [s] by verb; a map has the duration under `takes`."""
+    found = {}
+    for verb, how in data.items():
+        if not isinstance(how, Mapping):
+            found[verb] = _performance(how, report, ("robot", verb))
+        elif "takes" in how:
+            found[verb] = _performance(how["takes"], report, ("robot", verb, "takes"))
+    return found
 
 
 def _performance(how: str, report: DocumentReport, where: NodePath) -> str | float:
@@ -128,15 +146,25 @@ def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorActio
     return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
 
 
+def _did(data: Any) -> dict[str, Mapping[str, Any]]:
+    """The verb of a feature in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, and its arguments."""
+    if isinstance(data, str):
+        return {data: {}}
+    return {verb: given_arguments(usable_verbs()[verb], given) for verb, given in data.items()}
+
+
 def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Expect:
     states, published = body.get("state", ()), body.get("published")
     message = published if isinstance(published, Mapping) else {"route": published}
+    did = _did(body.get("did", {}))
     within = duration(body, "within", report, where)
     return Expect(
         states=(states,) if isinstance(states, str) else tuple(states),
         said=body.get("said"),
         said_exactly=body.get("said_exactly"),
         played=body.get("played"),
+        did=next(iter(did), None),
+        arguments=next(iter(did.values()), {}),
         published=message["route"],
         body=message.get("body"),
         context=body.get("context", {}),

@@ -90,16 +90,21 @@ class _Walking(_Lasting):
 class RecordingRobot:
     """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
 
-    `behaves` maps a verb to `fails`, `hangs` or another duration [s]. `performed` lists (time [s], command) in the
-    order begun. `advance` is its passing of time; the head goes where commands say, so that
-    faces move in its camera.
+    `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` a verb of a feature to its result (else
+    it is made of the defaults of its schema). `performed` lists (time [s], command) in the order begun. `advance` is
+    its passing of time; the head goes where commands say, so that faces move in its camera.
     """
 
-    def __init__(self, body: Body, behaves: Mapping[str, str | float] | None = None) -> None:
+    def __init__(
+        self,
+        body: Body,
+        behaves: Mapping[str, str | float] | None = None,
+        results: Mapping[str, Mapping[str, Any]] | None = None,
+    ) -> None:
         self.body = body
         self.performed: list[tuple[float, RobotCommand]] = []
         self.time = 0.0
-        self._behaves = behaves or {}
+        self._behaves, self._results = behaves or {}, results or {}
         self._angles = dict(body.postures["Stand"])
         self._pressed: set[str] = set()
         self._plugged = False
@@ -226,7 +231,7 @@ class RecordingRobot:
         if isinstance(command, Record):
             return SilentRecording(command, until, self._notice)
         if isinstance(command, Do):
-            return _Skill(until, default_result(added_verb(command)))
+            return _Skill(until, self._results.get(command.skill, default_result(added_verb(command))))
         return _Lasting(until)
 
     def _offsets(self) -> Mapping[str, float]:

@@ -11,7 +11,7 @@ from lumen.interpreters.statechart.property_monitor import Violation, monitors
 from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
 from lumen.language.approvals import Autonomy
 from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
-from lumen.language.commands import Ask, Cancel, Command, Play, Publish, Say, Start
+from lumen.language.commands import Ask, Cancel, Command, Do, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import FALLEN, Event
 from lumen.language.hours import Schedule
@@ -153,6 +153,8 @@ class StoryPlayer(Observer):
                 self._witness.asked = id
             case Start(id, Play(motion)):
                 self._witness.playing[id] = motion
+            case Start(id, Do() as done):
+                self._witness.doing[id] = done
             case Cancel(id) if id == self._witness.asked:
                 self._witness.asked = ""
             case Publish(route, body):
@@ -162,9 +164,11 @@ class StoryPlayer(Observer):
         if event.name == FALLEN and not self._falls:
             self.fail(UnmetExpectation("the robot to stay on its feet", "it fell"))
         if event.name.startswith("done.command."):
-            motion = self._witness.playing.pop(event.name.removeprefix("done.command."), None)
-            if motion:
+            id = event.name.removeprefix("done.command.")
+            if motion := self._witness.playing.pop(id, None):
                 self._witness.played.append(motion)
+            if done := self._witness.doing.pop(id, None):
+                self._witness.did.append(done)
 
     def troubled(self, trouble: RunTrouble) -> None:
         expected = self._falls if trouble.kind == "fall" else self._errors if trouble.kind == "do" else False

@@ -6,6 +6,7 @@ from difflib import SequenceMatcher
 from functools import partial
 from typing import Any, NamedTuple
 
+from lumen.language.commands import Do
 from lumen.language.events import FALLEN, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect, Happen, Story
@@ -23,7 +24,7 @@ class UnmetExpectation(NamedTuple):
 @dataclass
 class StoryObservations:
     """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
-    played and published; `asked` is the question that nobody has answered yet, by its id.
+    played, done and published; `asked` is the question that nobody has answered yet, by its id.
     """
 
     states: frozenset[str] = frozenset()
@@ -31,8 +32,10 @@ class StoryObservations:
     place: str = ""
     said: list[str] = field(default_factory=list)
     played: list[str] = field(default_factory=list)
+    did: list[Do] = field(default_factory=list)
     published: list[tuple[str, Any]] = field(default_factory=list)
     playing: dict[str, str] = field(default_factory=dict)
+    doing: dict[str, Do] = field(default_factory=dict)
     asked: str = ""
 
     def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:
@@ -51,9 +54,17 @@ class StoryObservations:
             yield UnmetExpectation(f"to hear exactly “{whole}”", f"it said {_texts(self.said, whole)}")
         if expected.played is not None and expected.played not in self.played:
             yield UnmetExpectation(f"the motion `{expected.played}`", f"it played {listed(self.played)}")
-        for lack in (self._unsent(expected), self._unlike(expected.context)):
+        for lack in (self._undone(expected), self._unsent(expected), self._unlike(expected.context)):
             if lack:
                 yield lack
+
+    def _undone(self, expected: Expect) -> UnmetExpectation | None:
+        verb, wanted = expected.did, expected.arguments
+        if verb is None or any(done.skill == verb and _holds(done.arguments, wanted) for done in self.did):
+            return None
+        with_arguments = f" with {dict(wanted)!r}" if wanted else ""
+        did = "; ".join(f"`{done.skill}` with {dict(done.arguments)!r}" for done in self.did)
+        return UnmetExpectation(f"the robot to finish `{verb}`{with_arguments}", f"it finished {did or 'nothing'}")
 
     def _unsent(self, expected: Expect) -> UnmetExpectation | None:
         route, body = expected.published, expected.body
@@ -75,7 +86,7 @@ class StoryObservations:
             self.asked = self.asked if event.data and event.data.get("filler") else ""
 
     def forget(self) -> None:
-        self.said, self.played, self.published = [], [], []
+        self.said, self.played, self.did, self.published = [], [], [], []
 
 
 def expects_fall(story: Story, machine: MachineDefinition) -> bool:

@@ -32,7 +32,9 @@ USUAL_WITHIN = 30.0
 def story_text(story: Story, remarks: list[str]) -> str:
     """The YAML of a story; `remarks` are comments on top."""
     lines = [HEAD, *(f"# {remark}" for remark in remarks), f"title: {flow(story.title)}"]
-    robot = {verb: how if isinstance(how, str) else f"{how:g}s" for verb, how in story.robot.items()}
+    robot: dict[str, Any] = {verb: how if isinstance(how, str) else f"{how:g}s" for verb, how in story.robot.items()}
+    for verb, result in story.results.items():
+        robot[verb] = {**({"takes": robot[verb]} if verb in robot else {}), "result": dict(result)}
     top: Mapping[str, Any] = {
         "behavior": story.behavior,
         "language": story.language,
@@ -93,6 +95,7 @@ def _expected(wanted: Expect) -> dict[str, Any]:
         "said": wanted.said,
         "said_exactly": wanted.said_exactly,
         "played": wanted.played,
+        "did": {wanted.did: dict(wanted.arguments)} if wanted.did and wanted.arguments else wanted.did,
         "published": published,
         "within": None if wanted.within == USUAL_WITHIN else f"{wanted.within:g}s",
     }

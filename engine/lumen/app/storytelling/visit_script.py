@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from lumen.interpreters.added_verbs import usable_verbs
 from lumen.interpreters.replay.entries import JournalInput
 from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.interpreters.statechart.command_ids import result_of
 from lumen.language.command_data import started
 from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event
@@ -65,7 +67,7 @@ def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, s
             kinds.setdefault(kind, []).append((how, entry.event.at - since))
         for command in entry.commands:
             if row := started(command):
-                begun[row[0]] = row[1].lower(), entry.event.at
+                begun[row[0]] = _verb(row), entry.event.at
     found: dict[str, str | float] = {}
     for kind, answers in kinds.items():
         hows = {how for how, _ in answers}
@@ -78,7 +80,24 @@ def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, s
             found[kind] = min(took)  # what waits for another one ends later
     if hanging:
         found |= {kind: "hangs" for kind, _ in begun.values() if kind not in kinds}
-    return {kind: how for kind, how in found.items() if kind in COMMANDED}
+    return {kind: how for kind, how in found.items() if kind in COMMANDED or kind in usable_verbs()}
+
+
+def results(visit: RecordedVisit) -> dict[str, Mapping[str, Any]]:
+    """What verbs of features returned, as `robot:` of a story says it: the first result of each."""
+    begun, found = dict[str, str](), dict[str, Mapping[str, Any]]()
+    for entry in visit.inputs:
+        how, _, id = entry.event.name.partition(".command.")
+        if how == "done" and id in begun and (result := result_of(entry.event.data)) is not None:
+            found.setdefault(begun[id], result)
+        begun |= {row[0]: _verb(row) for command in entry.commands if (row := started(command)) and row[1] == "Do"}
+    return found
+
+
+def _verb(begun: tuple[str, str, Mapping[str, Any]]) -> str:
+    """The verb of a command in the journal; for built-in verbs its class in small letters."""
+    _, kind, said = begun
+    return str(said.get("skill")) if kind == "Do" else kind.lower()
 
 
 def _done(entry: JournalInput, project: Project, *, faces: bool) -> Iterator[TimedAction]:

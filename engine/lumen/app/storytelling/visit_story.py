@@ -9,7 +9,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from lumen.app.storytelling.rendition import Rendition, TickNotes, played, told
-from lumen.app.storytelling.visit_script import TimedAction, broken, script
+from lumen.app.storytelling.visit_script import TimedAction, broken, results, script
 from lumen.errors import LumenError, UsageError
 from lumen.interpreters.replay.visits import RecordedVisit
 from lumen.interpreters.statechart import Snapshot, deserialize, initial
@@ -78,7 +78,8 @@ def visit_story(
             row._replace(action=_without(row.action, renamed)) for row in script(visit, project, faces=way.faces)
         ]
         robot = broken(visit, hanging=way.hanging, lasting=way.lasting)
-        draft = replace(blank, robot=robot, steps=(*approved, *_draft(acts, visit, clocked=way.clocked)))
+        steps = (*approved, *_draft(acts, visit, clocked=way.clocked))
+        draft = replace(blank, robot=robot, results=results(visit), steps=steps)
         if not draft.steps or draft in tried:
             continue
         tried.append(draft)
