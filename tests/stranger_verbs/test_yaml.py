@@ -8,18 +8,20 @@ import pytest
 from written_distribution import on_path, write_distribution
 
 from lumen.cli.main import main
+from lumen.console.entry_words import told_of
 from lumen.formats.behavior_data import plain_action
 from lumen.interpreters.added_verbs import time_taken
 from lumen.interpreters.changes.actions import described
 from lumen.interpreters.explaining.words import of_deed
 from lumen.language.actions import Action
+from lumen.language.command_data import command_data
 from lumen.language.commands import Do, Start
 from lumen.language.events import RESULT, Event
 from lumen.loading.files import read_files
 from lumen.loading.schema import load_schema
 from lumen.lsp.schemas import description_at, keys_at, values_at
 from lumen.rules import check_files
-from lumen.statechart import Machine, initial, step
+from lumen.statechart import Machine, deserialize, initial, serialize, step
 from tests.stranger_verbs.conftest import HERE
 from tests.tables import for_each
 
@@ -240,3 +242,16 @@ def test_a_body_without_its_parts_leaves_it_out(project: Path) -> None:
     assert found == [
         "left-out | Lantern has no legs, so it leaves out `tiptoe` | add joints to `legs` under `parts` of its body"
     ]
+
+
+def test_the_console_shows_it_in_the_journal() -> None:
+    commands = [command_data(Start("d1", BLINK)), command_data(Start("d2", Do("wiggle", {})))]
+    assert told_of({"heard": "face", "commands": commands})["text"] == "face: blink times 3, eye both, wiggle"
+
+
+@for_each(("resume", "begins"), [("again", [Start("d2", BLINK)]), ("after", []), ("", [])])
+def test_one_that_the_robot_forgot_is_resumed_as_its_state_says(resume: str, begins: list[Start]) -> None:
+    told = machine({"do": {"blink": 3}, **({"resume": resume} if resume else {})})
+    kept = json.loads(json.dumps(serialize(told, initial(told).snapshot)))
+    taken = step(told, deserialize(told, kept), Event("lost.command.d1", {"reason": "it restarted"}, 1.0))
+    assert list(taken.commands) == begins

@@ -166,6 +166,9 @@ def _did(entry: Mapping[str, Any], words: EntryPhrases) -> Iterator[str]:
         match said:
             case {"text": str(text)} if kind == "Say":
                 yield words.says.format(text)
+            case {"skill": str(skill)} if kind == "Do":
+                arguments = said.get("arguments", {})
+                yield f"{skill} {', '.join(f'{name} {value}' for name, value in arguments.items())}".strip()
             case {"motion": str(motion)}:
                 yield words.plays.format(motion)
             case {"posture": str(posture)} | {"name": str(posture)}:

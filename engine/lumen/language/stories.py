@@ -114,7 +114,7 @@ class Expect:
     `states` are active together; `said` is part of a text said and `said_exactly` the whole of one, `played` a motion
     finished, `did` a verb of a feature finished that had at least these `arguments`, `published` a route on which a
     message was sent whose body has at least what `body` has (None: any), all since the last `expect` that held;
-    `context` maps keys to values, `place` is where the robot is, by its odometry.
+    `context` maps keys to values, `place` is the robot's, by its odometry.
     """
 
     states: tuple[str, ...] = ()

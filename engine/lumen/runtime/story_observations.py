@@ -24,7 +24,7 @@ class UnmetExpectation(NamedTuple):
 @dataclass
 class StoryObservations:
     """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
-    played, done and published; `asked` is the question that nobody has answered yet, by its id.
+    played, done and published; `asked` is the id of the question that has no answer yet.
     """
 
     states: frozenset[str] = frozenset()

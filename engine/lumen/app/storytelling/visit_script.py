@@ -84,7 +84,7 @@ def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, s
 
 
 def results(visit: RecordedVisit) -> dict[str, Mapping[str, Any]]:
-    """What verbs of features returned, as `robot:` of a story says it: the first result of each."""
+    """Return the first result of each verb of a feature, for `robot:` of a story."""
     begun, found = dict[str, str](), dict[str, Mapping[str, Any]]()
     for entry in visit.inputs:
         how, _, id = entry.event.name.partition(".command.")
