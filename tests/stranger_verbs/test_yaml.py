@@ -72,6 +72,7 @@ def test_it_reads_well_in_transcripts_and_diffs() -> None:
 
 def test_how_long_it_takes_is_computed_from_its_arguments() -> None:
     assert [time_taken(Do("blink", {"times": times})) for times in (1, 3)] == [0.5, 1.5]
+    assert time_taken(Do("squint", {"length": "300ms"})) == 0.3
     assert time_taken(Do("wiggle", {})) == 2.0
 
 
@@ -85,12 +86,22 @@ def test_a_sound_project_has_no_findings(project: Path) -> None:
         ("blink: 2", "blnk: 2", "unknown-key | `blnk` is not a key of `entry` | did you mean `blink`?"),
         ("blink: 2", "blink: 0", "wrong-value | `blink` is 0, but should be at least 1 | How often"),
         ("eye: left", "eyes: left", "unknown-key | `eyes` is not a key of `blink` | did you mean `eye`?"),
+        (
+            "blink: 2",
+            "squint: soon",
+            "bad-duration | `soon` is not a duration | write a number and its unit, such as `500ms`, `20s` or `2min`",
+        ),
         ("times: 3, ", "", "missing-key | `blink` needs the key `times` | How often"),
         ("wiggle: true", "wiggle: {far: 2}", "wrong-value | `wiggle` can't be `{'far': 2}` | allowed: `true`"),
         (
             "onDone: {target: greeted",
             "after: {2s: waiting}\n    onDone: {target: greeted",
             "cut-short | `greeting` is left after 2 s, but its `do` takes about 2.2 s | write at least 3s",
+        ),
+        (
+            "event.data.blinked",
+            "event.data.blinks",
+            "unknown-field | `event.data` has no `blinks` | did you mean `blinked`?",
         ),
         (
             "context.who",

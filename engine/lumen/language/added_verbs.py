@@ -70,6 +70,17 @@ def default_result(row: VerbRow) -> dict[str, Any]:
     return _defaults(row.result)
 
 
+def whole_result(row: VerbRow, returned: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a verb returned, with the defaults of what it left out."""
+    return {**default_result(row), **returned}
+
+
+def result_schema(row: VerbRow) -> dict[str, Any]:
+    """Return the JSON Schema of a whole result, which has every property with a default."""
+    required = (*row.result.get("required", ()), *default_result(row))
+    return {**row.result, "type": "object", "required": list(dict.fromkeys(required))}
+
+
 def usual_result(command: BodyCommand | None) -> dict[str, Any] | None:
     """Return the data of `done.command.ID` of a command that ends as usual."""
     row = added_verbs().get(command.skill) if isinstance(command, Do) else None

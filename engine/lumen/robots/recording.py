@@ -8,7 +8,7 @@ from typing import Any
 from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
-from lumen.language.added_verbs import added_verbs, default_result
+from lumen.language.added_verbs import added_verbs, whole_result
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Do, Look, Move, Posture, Say, Walk
 from lumen.language.diagnostics import did_you_mean
@@ -231,7 +231,7 @@ class RecordingRobot:
         if isinstance(command, Record):
             return SilentRecording(command, until, self._notice)
         if isinstance(command, Do):
-            return _Skill(until, self._results.get(command.skill, default_result(added_verb(command))))
+            return _Skill(until, whole_result(added_verb(command), self._results.get(command.skill, {})))
         return _Lasting(until)
 
     def _offsets(self) -> Mapping[str, float]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from lumen.errors import RobotError, RobotFailedError, RobotRefusedError
 from lumen.feature import VerbRow, resolve
+from lumen.language.added_verbs import whole_result
 from lumen.language.commands import Do
 from lumen.loading.schema import faults
 from lumen.ports import SkillPerformer
@@ -104,4 +105,4 @@ class RunningSkill:
             raise RobotFailedError(f"`{self.skill}` returned {result!r}: return an object with names and values")
         for fault in faults(result, self._verb.result):
             raise RobotFailedError(f"`{self.skill}` returned something wrong: {fault.message}")
-        return result
+        return whole_result(self._verb, result)

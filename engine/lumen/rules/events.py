@@ -3,8 +3,10 @@
 from collections.abc import Iterator, Mapping, Set
 from typing import Any
 
-from lumen.language.actions import Raise, Send
+from lumen.language.actions import Assign, CancelSend, LogText, PlacedAction, PublishBody, Raise, Send
+from lumen.language.added_verbs import added_verbs, result_schema
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
+from lumen.language.commands import Do
 from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
@@ -28,6 +30,9 @@ BUILT_IN_FAMILIES = (
     "cancelled.command.", "error.execution", "error.communication",
 )  # fmt: skip
 """Events that the engine raises by itself, or the beginnings of their names."""
+
+_INSTANT = (Assign, CancelSend, LogText, PublishBody, Raise, Send)
+"""The actions that a `do` does not wait for."""
 
 _REASON = {"type": "object", "properties": {"reason": {"type": "string"}}, "required": ["reason"]}
 
@@ -66,14 +71,27 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
 
 
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:
-    """The event of an `onDone` or `onError` of an invoke, with the schema of its data; None for other transitions."""
-    for invoke in machine.states[transition.source].invoke:
+    """The event of an `onDone` or `onError` of an invoke, with the schema of its data; None for other transitions.
+
+    Also that of a `do` which ends with a verb of a feature that has a result.
+    """
+    state = machine.states[transition.source]
+    if transition.event == f"done.do.{state.name}" and (result := _result(state.do)):
+        return {transition.event: result}
+    for invoke in state.invoke:
         if transition.event == f"error.invoke.{invoke.id}":
             return {transition.event: _REASON}
         if transition.event == f"done.invoke.{invoke.id}":
             other = machine.invoked.get(invoke.behavior)
             return {transition.event: _output(other) if other else None}
     return None
+
+
+def _result(block: tuple[PlacedAction, ...]) -> Mapping[str, Any] | None:
+    """The JSON Schema of what the last action that takes time returns; None if it is no verb with a result."""
+    last = next((step.action for step in reversed(block) if not isinstance(step.action, _INSTANT)), None)
+    row = added_verbs().get(last.skill) if isinstance(last, Do) else None
+    return result_schema(row) if row and row.result else None
 
 
 def _output(machine: MachineDefinition) -> Mapping[str, Any] | None:

@@ -16,6 +16,11 @@ FEATURE = Feature(
             takes="{{ times * 0.5 }}s",
             parts=("head",),
         ),
+        "squint": VerbRow(
+            performer="lumen_blinker.performers:WAITS",
+            arguments={"required": ["length"], "properties": {"length": {"type": "string", "format": "duration"}}},
+            takes="{{ length }}",
+        ),
         "wiggle": VerbRow(performer="lumen_blinker.performers:WAITS", takes="2s", parts=("head", "arms"), moves=True),
         "tiptoe": VerbRow(performer="lumen_blinker.performers:WAITS", parts=("legs",), moves=True),
         "hum": VerbRow(performer="lumen_blinker.performers:WAITS", takes="5s", cancel=False),
