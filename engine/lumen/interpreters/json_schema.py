@@ -54,11 +54,6 @@ class JsonSchema:
         except ValueError:  # half a surrogate pair, a key that is no text
             return False
 
-    @property
-    def is_sound(self) -> bool:
-        """Whether it is a JSON Schema that jsonschema-rs accepts."""
-        return self._quick is not None
-
     def errors(self, data: Any) -> "Iterator[ValidationError]":
         """What is wrong with the data; raises RecursionError where schema or data lead on and on."""
         if deeper_than(MAX_DATA_DEPTH, data):
