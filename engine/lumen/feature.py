@@ -19,19 +19,19 @@ API = 1
 
 BUILT_IN = (
     "lumen.features.core:FEATURE",
+    "lumen.features.simulation:FEATURE",
+    "lumen.features.alerts:FEATURE",
     "lumen.features.show:FEATURE",
+    "lumen.features.journal:FEATURE",
     "lumen.features.recording:FEATURE",
+    "lumen.features.reload:FEATURE",
     "lumen.features.console:FEATURE",
     "lumen.features.fleet:FEATURE",
-    "lumen.features.alerts:FEATURE",
     "lumen.features.formats_charts:FEATURE",
     "lumen.features.formats_motion:FEATURE",
     "lumen.features.formats_fuzzy:FEATURE",
     "lumen.features.formats_robots:FEATURE",
     "lumen.features.formats_routes:FEATURE",
-    "lumen.features.journal:FEATURE",
-    "lumen.features.reload:FEATURE",
-    "lumen.features.simulation:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
 

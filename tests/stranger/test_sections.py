@@ -232,7 +232,7 @@ def test_a_section_that_can_not_be_read_is_one_finding_that_names_its_package(ca
             'risk="great"',
             "no risk `great`: choose one of cosmetic, behavior, motion, wiring, restart",
         ),
-        ("Section(\n", "dict(\n", "`lamp` of its `sections` is no `Section`"),
+        ("Section(\n", "dict(\n", "which is no `Section`"),
     ],
 )
 def test_a_wrong_row_is_a_fault_of_the_manifest(right: str, wrong: str, told: str, installed: Installed) -> None:
