@@ -6,7 +6,7 @@ FEATURE = Feature(
     name="alerts",
     rules=("lumen.rules.alerts:check",),
     subcommands={
-        "alerts": Subcommand("send a test alert to every recipient", "lumen.cli.alerts", after="fleet"),
+        "alerts": Subcommand("send a test alert to every recipient", "lumen.cli.alerts", after="doctor"),
     },
     sections={
         "alerts": Section(

@@ -81,16 +81,20 @@ def load_schema(kind: str) -> Any:
         raise LumenError(f"Lumen's own {file} can't be read ({error}): reinstall Lumen, or restore the file") from None
     if kind == MAIN_KIND:
         return with_sections(schema)
-    if kind == "behavior":
-        known = schema["$defs"]["action"]["properties"]
-        known |= {name: written_schema(row) for name, row in usable_verbs().items()}
-    elif kind == "story":
-        performed = schema["properties"]["robot"]["propertyNames"]["enum"]
-        performed += usable_verbs()
-        schema["properties"]["robot"]["properties"] = {name: _performance(row) for name, row in usable_verbs().items()}
-        if verbs := usable_verbs():
-            schema["$defs"]["step"]["properties"]["expect"]["properties"]["did"] = _did(verbs)
+    if verbs := usable_verbs():
+        _add_verbs(schema, kind, verbs)
     return schema
+
+
+def _add_verbs(schema: Any, kind: str, verbs: Mapping[str, VerbRow]) -> None:
+    """Add the verbs of features to the schema of behaviours or of stories."""
+    if kind == "behavior":
+        schema["$defs"]["action"]["properties"] |= {name: written_schema(row) for name, row in verbs.items()}
+    elif kind == "story":
+        robot = schema["properties"]["robot"]
+        robot["propertyNames"]["enum"] += verbs
+        robot["properties"] = {name: _performance(row) for name, row in verbs.items()}
+        schema["$defs"]["step"]["properties"]["expect"]["properties"]["did"] = _did(verbs)
 
 
 def _performance(row: VerbRow) -> dict[str, Any]:
