@@ -6,7 +6,6 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 
-from lumen.app.compose import compose
 from lumen.app.house import House
 from lumen.app.house_setup import set_up_house
 from lumen.app.parts.visitor import VisitorPart
@@ -18,7 +17,7 @@ from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, period_of
-from lumen.cli.run_plan import RobotRun, heed_signals, leave, plan_of
+from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
 from lumen.clocks.following import FollowingClock
@@ -53,7 +52,7 @@ class HouseRun:
         self.made: dict[str, Services] = {}
         with ExitStack() as undo:
             for name in robots:
-                self.made[name] = compose(self._plan(name))
+                self.made[name] = compose_or_hint(self._plan(name), bus_hint(options) if parts else "")
                 undo.callback(self.made[name].node.close)
             undo.pop_all()
         self.house = House(self.made, self._lose, together=self.story is not None)

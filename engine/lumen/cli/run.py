@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
-from lumen.app.compose import begin, claim, compose
+from lumen.app.compose import begin, claim
 from lumen.app.loudspeaker import Loudspeaker, Sounds
 from lumen.app.making.showing import FilmPlan
 from lumen.app.node import Node
@@ -26,12 +26,12 @@ from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import GREETING, Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, language_of, period_of
-from lumen.cli.run_plan import RobotRun, heed_signals, leave, plan_of, running
+from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of, running
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.clocks.following import FollowingClock
-from lumen.errors import BusUnreachableError, UsageError
+from lumen.errors import UsageError
 from lumen.language.stories import Story
 from lumen.loading.broken_features import broken_features
 from lumen.loading.running_project import is_substituted, project_to_run
@@ -188,8 +188,7 @@ def _processes(
     transcript = Transcript(clock.now, lambda: running(made, project).machine, unread=lambda: leave(made))
     more = {"record": options.record, "greeting": PROCESS_GREETING}
     plan = plan_of(options, one, parts, url, setup, clock, transcript, **more)
-    hint = "" if options.only else ", or use --bus memory://"
-    with _heard(options, one, setup), _composed(plan, made, hint) as services:
+    with _heard(options, one, setup), _composed(plan, made, bus_hint(options)) as services:
         place, what = url.rpartition("@")[2], ", ".join(parts)
         print(f"{project.name}: {what} of {project.robot}, on {place}, ready after {ready():.1f} s.")
         begin([services])
@@ -212,14 +211,8 @@ def _summed_up(node: Node, lived: float, troubles: Sequence[str]) -> RunVerdict:
 
 @contextmanager
 def _composed(plan: Plan, made: list[Services], hint: str = "") -> Iterator[Services]:
-    """Compose an exhibition that claims what it is, ends at its end, and obeys signals; it is put into `made`.
-
-    `hint` ends the message of an error about a bus that can't be reached.
-    """
-    try:
-        services = compose(plan)
-    except BusUnreachableError as error:
-        raise BusUnreachableError(f"{error}{hint}") if hint else error from None
+    """Compose an exhibition that claims what it is, ends at its end, and obeys signals; it is put into `made`."""
+    services = compose_or_hint(plan, hint)
     made.append(services)
     heed_signals(made)
     try:

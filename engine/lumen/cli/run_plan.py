@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from lumen.app.compose import compose
 from lumen.app.making.modules import ModulesPlan
 from lumen.app.narrator import Narrator
 from lumen.app.plan import Plan
@@ -14,6 +15,7 @@ from lumen.app.run_start import WHOLE
 from lumen.app.services import Services
 from lumen.app.setup import Setup
 from lumen.cli.run_choices import alert_desk, language_of
+from lumen.errors import BusUnreachableError
 from lumen.language.console_settings import ConsoleSettings
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -52,6 +54,19 @@ def heed_signals(made: Sequence[Services]) -> None:
 
     signal.signal(signal.SIGINT, lambda *_: interrupt())
     signal.signal(signal.SIGTERM, lambda *_: leave(made))
+
+
+def bus_hint(options: argparse.Namespace) -> str:
+    """Return the end of the message if a bus can't be reached that is only needed for a remote robot."""
+    return "" if options.only else ", or use --bus memory://"
+
+
+def compose_or_hint(plan: Plan, hint: str) -> Services:
+    """Compose an exhibition; `hint` ends the message if its bus can't be reached. Raises what `compose` raises."""
+    try:
+        return compose(plan)
+    except BusUnreachableError as error:
+        raise BusUnreachableError(f"{error}{hint}") if hint else error from None
 
 
 def plan_of(
