@@ -1,6 +1,7 @@
 """What was looked at beside the files of a project: what is kept of them holds as long as all of it is as it was."""
 
 import os
+import stat
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -21,10 +22,18 @@ class Looks:
         self._began = time.time_ns()
         self._paths: dict[str, Seen] = {}
         self._packages: dict[str, str] = {}
+        self._folders: dict[str, str] = {}
+        """Where folders lead that were looked into."""
 
-    def at(self, path: Path) -> None:
-        """Say that what comes out depends on what is at this path: a file, which ones are in a folder, or nothing."""
-        self._paths.setdefault(os.path.abspath(path), _seen(path))
+    def at(self, path: Path) -> str:
+        """Say that what comes out depends on what is at this path: a file, which ones are in a folder, or nothing.
+
+        Return where the path leads, empty for a name that no file can have.
+        """
+        name = os.path.abspath(path)
+        if name not in self._paths:
+            self._paths[name] = _seen(path, self._folders)
+        return str(self._paths[name][0])
 
     def package_file(self, mjcf: str) -> Path | None:
         """The file of an installed package that `mjcf` names, None where there is none; it is looked at."""
@@ -54,18 +63,34 @@ class Looks:
 
 def unchanged(looks: Mapping[str, Mapping[str, Sequence[str | int]]]) -> bool:
     """Whether everything is as it was when these looks, as JSON, were taken."""
-    return all(list(_seen(Path(path))) == list(seen) for path, seen in looks["paths"].items()) and all(
+    folders: dict[str, str] = {}
+    return all(list(_seen(Path(path), folders)) == list(seen) for path, seen in looks["paths"].items()) and all(
         str(package_file(mjcf) or "") == found for mjcf, found in looks["packages"].items()
     )
 
 
-def _seen(path: Path) -> Seen:
-    """Of what can't be asked about, or is not there, only where it would be."""
+def _seen(path: Path, folders: dict[str, str]) -> Seen:
+    """Of what can't be asked about, or is not there, only where it would be; `folders` remembers where they lead."""
     try:
-        real = os.path.realpath(path)
+        real = _real(path, folders)
         status = os.stat(real)
     except ValueError:  # a name with a NUL
         return ("",)
     except OSError:
         return (real,)
     return real, status.st_dev, status.st_ino, status.st_mode, status.st_size, status.st_mtime_ns, status.st_ctime_ns
+
+
+def _real(path: Path, folders: dict[str, str]) -> str:
+    """Return where a path leads. What is no link is looked at once, not each of the folders around it."""
+    if not path.is_absolute() or ".." in path.parts or not path.name:
+        return os.path.realpath(path)
+    folder = str(path.parent)
+    if folder not in folders:
+        folders[folder] = os.path.realpath(folder)
+    real = os.path.join(folders[folder], path.name)
+    try:
+        linked = stat.S_ISLNK(os.lstat(real).st_mode)
+    except OSError:  # nothing is there
+        return real
+    return os.path.realpath(real) if linked else real

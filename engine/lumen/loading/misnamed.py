@@ -49,7 +49,15 @@ def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
 def _listed(root: Path, folder: str) -> list[str]:
     """The names in a folder of the project; none if the folder is outside of the project."""
     try:
-        inside = (root / folder).resolve().is_relative_to(root.resolve())
-        return sorted(os.listdir(root / folder)) if inside else []
+        listed = sorted(os.listdir(root / folder))
+        return listed if _is_inside(root, folder) else []
     except (OSError, RuntimeError):  # the latter for links in a circle
         return []
+
+
+def _is_inside(root: Path, folder: str) -> bool:
+    """Whether a folder lies in the project, wherever links lead."""
+    parts = PurePosixPath(folder).parts
+    if not any((root / "/".join(parts[: i + 1])).is_symlink() for i in range(len(parts))):
+        return True
+    return (root / folder).resolve().is_relative_to(root.resolve())

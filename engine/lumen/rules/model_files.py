@@ -16,9 +16,8 @@ def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
         return True
     if draft.root is None:
         return False
-    draft.looks.at(draft.root / path)
-    project = os.path.realpath(draft.root)
-    return not os.path.realpath(os.path.join(project, path)).startswith(project.rstrip(os.sep) + os.sep)
+    real, project = draft.looks.at(draft.root / path), draft.looks.at(draft.root)
+    return not real.startswith(project.rstrip(os.sep) + os.sep)
 
 
 def missing(draft: ProjectDraft, folder: str, name: str) -> str:

@@ -177,6 +177,9 @@ _OPENS = {")": "(", "]": "[", "}": "{"}
 _EMPTY = "remove the empty alternative; put an optional part in [ ]"
 
 
-def slots_of(phrase: str) -> Iterator[Slot]:
+@lru_cache(maxsize=8192)
+def slots_of(phrase: str) -> tuple[Slot, ...]:
     """The slots of a phrase."""
-    yield from dict.fromkeys(part for form in forms(phrase) for part in form.parts if isinstance(part, Slot))
+    if "{" not in phrase:
+        return ()
+    return tuple(dict.fromkeys(part for form in forms(phrase) for part in form.parts if isinstance(part, Slot)))
