@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Collection, Sequence
 from contextlib import suppress
+from typing import Any
 
 import lumen
 from lumen.cli.intermixed import Help, Intermixed
@@ -40,8 +41,14 @@ def subcommands() -> dict[str, Subcommand]:
 def command_line(wanted: Collection[str]) -> Suggesting:
     """Return the parser of the command line. Only the wanted verbs have their options: each is imported for that.
 
-    Raises LumenError if a wanted one was installed beside Lumen and can't be imported.
+    The others share a parser without options, because making one for each takes as long as all the rest. Raises
+    LumenError if a wanted one was installed beside Lumen and can't be imported.
     """
+    bare = Intermixed(prog="lumen", formatter_class=Help)
+
+    def parser_of(**given: Any) -> Suggesting:
+        return Intermixed(**given) if given["prog"].rpartition(" ")[2] in wanted else bare
+
     parser = Suggesting(
         prog="lumen",
         description="Describe the behaviour of a humanoid robot in YAML, and run it.",
@@ -49,7 +56,8 @@ def command_line(wanted: Collection[str]) -> Suggesting:
         formatter_class=Help,
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=Intermixed, prog="lumen")
+    made: Any = parser_of  # argparse calls it; its types name a class
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=made, prog="lumen")
     for verb, row in subcommands().items():
         command = verbs.add_parser(
             verb, help=row.summary, description=row.summary[0].upper() + row.summary[1:] + ".", formatter_class=Help
@@ -78,10 +86,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not arguments:
         command_line(()).print_help()
         return 2
+    verb = next((word for word in arguments if not word.startswith("-")), "")
     try:
-        parser = command_line(arguments[:1])
+        parser = command_line((verb,))
     except LumenError as error:
-        complain(f"lumen {arguments[0]}: {error}")
+        complain(f"lumen {verb}: {error}")
         return 2
     options = parse(parser, arguments)
     code = _run(options)
