@@ -45,13 +45,16 @@ class Abstraction:
             isinstance(n, FunctionCall) and n.function == "size" for use in uses for n, _ in walk(use.tree)
         )
         self._language = any(re.search(r"\b(state\.language|in_language)\b", t) for t in _guards(machine))
+        self._sorted: dict[frozenset[str], tuple[str, ...]] = {}
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
     def key(self, snapshot: Snapshot) -> ConfigurationKey:
-        live = self._liveness.of(snapshot.configuration, snapshot.history) | self._always_live
+        live = self._liveness.of(snapshot.configuration, snapshot.history)
+        if live not in self._sorted:
+            self._sorted[live] = tuple(sorted(live | self._always_live))
         return (
             snapshot.configuration,
-            tuple((k, self._known(k, snapshot.context.get(k))) for k in sorted(live)),
+            tuple((k, self._known(k, snapshot.context.get(k))) for k in self._sorted[live]),
             tuple(sorted((t.event if t.kind != "wait" else "", t.state, t.kind, t.to) for t in snapshot.timers)),
             tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
             tuple(self._remembered(snapshot)),

@@ -29,14 +29,17 @@ class Liveness:
         self._live = self._solve(leaves)
         names_of = {s.name: s.path for s in machine.states.values() if s.path}
         self._by_name = {name: self._live.get(path, frozenset()) for name, path in names_of.items()}
+        self._without_history: dict[frozenset[str], frozenset[str]] = {}
 
     def of(self, configuration: frozenset[str], history: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
         """The keys that can still matter in a configuration, of which each history remembers these paths."""
-        again = (path for name, paths in history.items() if self._histories[name] & configuration for path in paths)
-        leaves = (leaf for path in again for leaf in self._below(path))
-        return frozenset().union(
-            *(self._by_name[name] for name in configuration), *(self._live.get(leaf, frozenset()) for leaf in leaves)
-        )
+        live = self._without_history.get(configuration)
+        if live is None:
+            live = frozenset().union(*(self._by_name[name] for name in configuration))
+            self._without_history[configuration] = live
+        again = [path for name, paths in history.items() if self._histories[name] & configuration for path in paths]
+        leaves = [leaf for path in again for leaf in self._below(path)]
+        return live.union(*(self._live.get(leaf, frozenset()) for leaf in leaves)) if leaves else live
 
     def _read(self, state: State) -> frozenset[str]:
         uses = (use for use in of_state(state) if not use.key or use.key in self.keys)

@@ -86,7 +86,7 @@ class StimulusFinder:
         self._machine, self._events = machine, events
         self._compiled = compiled(machine)
         self._known: dict[tuple[Any, ...], tuple[Any, ...]] = {}
-        self._keys: dict[tuple[Any, ...], tuple[frozenset[str], ...]] = {}
+        self._keys: dict[tuple[Any, ...], tuple[tuple[str, ...], ...]] = {}
 
     def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Stimulus]:
         """The stimuli of a snapshot; `commands` are those started so far, by id."""
@@ -125,7 +125,7 @@ class StimulusFinder:
         known = (
             *transitions,
             *entries,
-            *(repr(one.context.get(key)) for one, keys in compared for key in sorted(keys)),
+            *(repr(one.context.get(key)) for one, keys in compared for key in keys),
         )
         if known not in self._known:
             self._known[known] = tuple(self._sorts(name, heard))
@@ -161,8 +161,12 @@ def _uses(heard: HeardTransition) -> Iterator[ExpressionUse]:
 
 
 def loop_keys(machine: MachineDefinition) -> frozenset[str]:
-    """The keys of the context that hold the entry of a `for`."""
-    return frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
+    """The keys of the context that hold the entry of a `for`, found on first use and kept beside the definition."""
+    found: frozenset[str] | None = machine.__dict__.get("_loop_keys")
+    if found is None:
+        found = frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
+        object.__setattr__(machine, "_loop_keys", found)  # frozen, and the same for all who hold it
+    return found
 
 
 def _arrival(command: BodyCommand | None, snapshot: Snapshot) -> Event | None:
@@ -236,11 +240,11 @@ def _compared(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[Expressio
             yield tree
 
 
-def _compared_keys(heard: HeardTransition) -> frozenset[str]:
-    """The keys of the context that a transition compares with the event's data."""
+def _compared_keys(heard: HeardTransition) -> tuple[str, ...]:
+    """The keys of the context that a transition compares with the event's data, sorted."""
     loops = loop_keys(heard.machine)
     found = (names(node).context for use in _uses(heard) for node in _compared(use.tree, loops))
-    return frozenset().union(*found)
+    return tuple(sorted(frozenset().union(*found)))
 
 
 def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:

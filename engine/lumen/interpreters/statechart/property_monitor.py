@@ -1,6 +1,6 @@
 """Watches a run for what has to be so: a safety property at every step, a bounded response by its deadline."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
@@ -68,7 +68,8 @@ def monitors(machine: MachineDefinition, properties: Iterable[Property]) -> list
 
 def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot) -> bool:
     """Whether a condition is true where a behaviour stands; what has no value does not hold."""
-    names = snapshot.configuration | {machine.states[path].path for path in _paths(machine, snapshot)}
+    paths = _paths_by_alias(machine)
+    names = snapshot.configuration | {paths[name] for name in snapshot.configuration if name in paths}
     scope = Scope(
         context=snapshot.context,
         state={"path": "", "language": snapshot.language, "place": snapshot.place},
@@ -98,6 +99,10 @@ def _broken(property: Property, at: float) -> Violation:
     return Violation(property, f"`{condition}` did not hold at {at:g} s")
 
 
-def _paths(machine: MachineDefinition, snapshot: Snapshot) -> Iterable[str]:
-    by_name = {state.name: path for path, state in machine.states.items() if state.alias}
-    return (by_name[name] for name in snapshot.configuration if name in by_name)
+def _paths_by_alias(machine: MachineDefinition) -> Mapping[str, str]:
+    """The path of each state that has an alias, found on first use and kept beside the definition."""
+    found: Mapping[str, str] | None = machine.__dict__.get("_paths_by_alias")
+    if found is None:
+        found = {state.alias: path for path, state in machine.states.items() if state.alias}
+        object.__setattr__(machine, "_paths_by_alias", found)  # frozen, and the same for all who hold it
+    return found
