@@ -64,6 +64,7 @@ def test_visits_with_other_files_keep_their_numbers(played: Path, visits: int, m
     assert there == here
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_two_processes_report_what_one_does(played: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shared, "VISITS", 1)

@@ -25,6 +25,8 @@ KIT = WorkKit({}, {"models/mesh.stl": b"solid"})
 TASKS = [(number,) for number in range(6)]
 
 
+@pytest.mark.once
+@pytest.mark.process
 @pytest.mark.slow
 def test_two_processes_do_what_one_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
@@ -40,6 +42,7 @@ def test_one_task_or_one_worker_takes_no_other_process() -> None:
     assert list(Workers(8).results(process, KIT, [])) == []
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_what_a_dead_worker_was_at_is_done_again_and_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     tasks = [(number, str(tmp_path / "died")) for number in range(6)]
@@ -49,6 +52,7 @@ def test_what_a_dead_worker_was_at_is_done_again_and_told(tmp_path: Path, caplog
     assert told.endswith((" tasks", " 1 task"))
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_a_crew_stays_for_one_round_after_the_other_also_when_one_dies(tmp_path: Path) -> None:
     squares = [(number, number**2) for number in range(6)]
@@ -68,6 +72,7 @@ def test_a_crew_of_one_is_this_process() -> None:
         assert {found for round in range(2) for _, found in crew.results(TASKS)} == {os.getpid()}
 
 
+@pytest.mark.process
 @pytest.mark.slow
 def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
@@ -121,6 +126,7 @@ def test_whatever_ends_it_leaves_no_process_and_no_folder(
     assert left(tmp_path) == []
 
 
+@pytest.mark.process
 def test_sigterm_ends_workers_also_where_the_program_ignores_it() -> None:
     before = signal.signal(signal.SIGTERM, signal.SIG_IGN)
     try:
