@@ -1,6 +1,6 @@
 """Print what the tests cost in processor time: by folder, the twenty dearest, and all of a run.
 
-    python scripts/test_cost.py [--suite test|rest|all] [--markdown] [-- PYTEST_ARGUMENTS]
+    python scripts/test_cost.py [--suite test|rest|all] [--markdown] [--report FILE] [-- PYTEST_ARGUMENTS]
 
 Processor time, since machines and what else they do differ by a factor of three on the wall. A test's share is what its
 worker, and the processes that the worker waited for, used meanwhile; what is shared (collecting, the one browser, the
@@ -26,10 +26,11 @@ def main() -> int:
     parser.add_argument("--suite", choices=("test", "rest", "all"), default="test")
     parser.add_argument("--workers", default=str(os.cpu_count() or 1), help="of pytest-xdist; 0 for none")
     parser.add_argument("--markdown", action="store_true", help="print tables for a document")
+    parser.add_argument("--report", type=Path, metavar="FILE", help="keep what each test costs, as JUnit's XML")
     parser.add_argument("arguments", nargs="*", help="for pytest")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder) / "report.xml"
+        report = given.report or Path(folder) / "report.xml"
         how = ["-n", given.workers, "--dist", "loadgroup", "--no-loadscope-reorder", "--suite", given.suite]
         beside = ["sh", str(Path(__file__).with_name("with_packages.sh"))]
         command = [
@@ -43,7 +44,9 @@ def main() -> int:
             f"--junitxml={report}",
             *given.arguments,
         ]
-        run = measured(command)
+        # As the Makefile does: else each of the processes that tests start compiles everything again.
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+        run = measured(command, environment)
         if not report.exists():
             return run.code
         costs = read(report)
