@@ -32,8 +32,28 @@ BUILT_IN = (
     "lumen.features.formats_fuzzy:FEATURE",
     "lumen.features.formats_robots:FEATURE",
     "lumen.features.formats_routes:FEATURE",
+    "lumen.features.visitors:FEATURE",
+    "lumen.features.eyes:FEATURE",
+    "lumen.features.ears:FEATURE",
+    "lumen.features.voice:FEATURE",
+    "lumen.features.social:FEATURE",
+    "lumen.features.answers:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleRow:
+    """A module: a program on the bus beside the behaviour, such as the eyes.
+
+    `module` is the import string of a subclass of `lumen.modules.module.Module`. `description` and `options` (a JSON
+    Schema for each option) describe the module's settings in lumen.yaml; schemas/lumen.schema.json has those of
+    Lumen's own modules.
+    """
+
+    module: str
+    description: str = ""
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -221,6 +241,7 @@ class Feature:
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
     verbs: Mapping[str, VerbRow] = field(default_factory=dict)
     """Verbs of the YAML that the robot performs, by their names."""
+    modules: Mapping[str, ModuleRow] = field(default_factory=dict)
 
 
 class FeatureFault(NamedTuple):

@@ -193,7 +193,7 @@ class Robot(Protocol):
 
     `start` is answered through `poll` by `done.command.ID`, `error.command.ID` (data: `{"reason": …}`) or
     `cancelled.command.ID`; `Aim` and `Live` are not answered. `poll` also returns what the robot noticed by itself
-    (`ROBOT_EVENTS`), each event with `at` [s] on the robot's clock.
+    (`robot_events`), each event with `at` [s] on the robot's clock.
     """
 
     def start(self, id: str, command: RobotCommand) -> None: ...

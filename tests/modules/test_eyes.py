@@ -21,7 +21,7 @@ from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import ModuleError
-from lumen.language.modules import MODULES
+from lumen.language.modules import module_names
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.modules.eyes import Eyes
@@ -265,7 +265,7 @@ def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -
     finally:
         show.close()
     faces = [b for key, b in seen if key.endswith("detection")]
-    assert not [who for _, who, _ in lines.lines if who in MODULES]
+    assert not [who for _, who, _ in lines.lines if who in module_names()]
     assert len(faces) == sum(key.endswith("tracking") for key, _ in seen) > 10
     assert max(distances[:50]) > 60.0
     assert max(distances[-25:]) < 12.0

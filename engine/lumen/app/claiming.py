@@ -5,15 +5,12 @@ from typing import Any
 
 from lumen.buses.validated import ValidatedBus
 from lumen.errors import BusUnreachableError, UsageError
-from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, Bus
-from lumen.runtime.presence import BRAIN, MOTION, PRESENCE_ROUTE, ROBOT_PART, Presence, where_it_runs
+from lumen.runtime.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
 
 CLAIM_DURATION = 0.8
 """How long a process asks whether somebody is already what it wants to be [s]."""
-ALONE = (ROBOT_PART, BRAIN, MOTION, *MODULES)
-"""Of these there is one for each robot; visitors may be many."""
 CLAIM_INTERVAL = 0.02
 """How often it looks for answers [s]."""
 
@@ -25,7 +22,7 @@ def presence_of(project: Project, bus: Bus, parts: tuple[str, ...], more: Callab
 
 def refuse_rivals(presence: Presence) -> None:
     """Raises UsageError where another process is what this one wants to be."""
-    for part in ALONE:
+    for part in unique_parts():
         if part in presence.parts and (rival := presence.rival(part)):
             raise UsageError(
                 f"{where_it_runs(rival)} is already the {part} of {presence.robot} on this bus:"
@@ -36,7 +33,7 @@ def refuse_rivals(presence: Presence) -> None:
 def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
     """Raises BusUnreachableError if a rival could not answer because the broker accepts no messages."""
     if (broker := bus.ability(BlockableBus)) and broker.blocked:
-        parts = " or ".join(part for part in ALONE if part in presence.parts)
+        parts = " or ".join(part for part in unique_parts() if part in presence.parts)
         raise BusUnreachableError(
             f"the broker is short of {broker.blocked} and accepts no messages, so Lumen can't check whether another"
             f" process is the {parts} of {presence.robot}: start again when"

@@ -11,7 +11,7 @@ import yaml
 from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
 from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import Place
-from lumen.language.events import ROBOT_EVENTS
+from lumen.language.events import robot_events
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.runtime.coverage import Gap, described
@@ -86,7 +86,7 @@ def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
     """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
     pressed = {button.event: None for state in machine.states.values() for button in state.buttons}
-    return {**controller_events(project.controllers.values()), **ROBOT_EVENTS, **routes, **pressed, **machine.events}
+    return {**controller_events(project.controllers.values()), **robot_events(), **routes, **pressed, **machine.events}
 
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:

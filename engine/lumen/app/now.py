@@ -10,7 +10,7 @@ from lumen.interpreters.explaining.pressing import ShownButton, shown_buttons
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.approvals import Autonomy
 from lumen.language.diagnostics import NodePath
-from lumen.language.events import ROBOT_EVENTS
+from lumen.language.events import robot_events
 from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.projects import Project
@@ -151,7 +151,7 @@ def _names(transition: Transition, declared: set[str]) -> Iterator[str]:
         yield from declared
         return
     prefix = event.removesuffix(".*")
-    below = [name for name in (*declared, *ROBOT_EVENTS) if name.startswith(f"{prefix}.")]
+    below = [name for name in (*declared, *robot_events()) if name.startswith(f"{prefix}.")]
     yield from below
     if prefix == event or not below:
         yield prefix

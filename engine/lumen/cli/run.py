@@ -39,7 +39,7 @@ from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
-from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.runtime.presence import BRAIN, ROBOT_PART, all_parts
 from lumen.upkeep.heap import give_back
 
 PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
@@ -71,8 +71,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--only",
         metavar="PARTS",
-        help="run only these parts, separated by commas: robot, brain, motion, visitor, memory, eyes, ears, voice,"
-        " social, show, answers",
+        help=f"run only these parts, separated by commas: {', '.join(all_parts())}",
     )
     add("--robot-url", metavar="URL", help="with --robot naoqi: the robot's address (default: tcp://nao.local:9559)")
     add("--speed", choices=SPEEDS, default="1", help="speed of simulated time, as a multiple of real time (default: 1)")

@@ -1,6 +1,6 @@
 """Lamps, screens and sounds of a hall."""
 
-from lumen.feature import Feature, Section
+from lumen.feature import Feature, ModuleRow, Section
 
 FEATURE = Feature(
     name="show",
@@ -12,4 +12,5 @@ FEATURE = Feature(
             risk="wiring",
         )
     },
+    modules={"show": ModuleRow("lumen.modules.show:ShowControl")},
 )

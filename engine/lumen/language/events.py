@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from lumen.language.causes import Cause
-from lumen.language.modules import MODULES
+from lumen.language.modules import module_names
 
 
 class Event(NamedTuple):
@@ -65,7 +65,7 @@ CLOCK_SET = "clock set"
 Its data is when time 0 was by that clock, `epoch` [s since 1970, in UTC], and the `timezone` where it hangs.
 """
 
-ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
+_ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),
     "released": _object(sensor={"type": "string"}),
     FALLEN: _object(),
@@ -82,10 +82,17 @@ ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "motion.back": _object(seconds={"type": "number"}),
     "stop": _said_by(),
     "resume": _said_by(),
-    **{f"{module}.{what}": _object(seconds={"type": "number"}) for module in MODULES for what in ("lost", "back")},
 }
-"""Events that every robot raises by itself, with the JSON Schema of their data; no behaviour has to declare them.
 
-Where parts of the exhibition run in processes of their own, `robot`, `motion` and the other modules may be lost and
-come back.
-"""
+
+def robot_events() -> Mapping[str, Mapping[str, object]]:
+    """Return the events that every robot raises by itself, each with the JSON Schema of its data.
+
+    No behaviour has to declare them. If parts of the exhibition run in processes of their own, `robot`, `motion` and
+    the modules can be lost and come back.
+    """
+    gone = _object(seconds={"type": "number"})
+    return {
+        **_ROBOT_EVENTS,
+        **{f"{module}.{what}": gone for module in module_names() for what in ("lost", "back")},
+    }

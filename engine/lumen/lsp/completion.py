@@ -9,7 +9,7 @@ from lumen.interpreters.talk.patterns import TYPES, slots_of
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
-from lumen.language.events import ROBOT_EVENTS
+from lumen.language.events import robot_events
 from lumen.language.routes import Route
 from lumen.loading.lending import shipped_message
 from lumen.loading.outline import THIS
@@ -232,7 +232,7 @@ class _Completion:
         names = dict.fromkeys(w.name for w in uses if w.defines or not waits or w.place.file == self.file)
         yield from ((name, "") for name in names)
         if waits:
-            yield from ((name, "the robot's") for name in ROBOT_EVENTS if name not in names)
+            yield from ((name, "the robot's") for name in robot_events() if name not in names)
             routed = (route for route in self.routes().values() if route.event and route.event not in names)
             yield from ((route.event, f"from the route `{route.name}`") for route in routed)
             yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
@@ -282,7 +282,7 @@ class _Completion:
         """The events of routes, of the robot and of the file, each with the schema of its data."""
         own = self.index.documents.get(self.file)
         yield from ((route.event, self.schema(name)) for name, route in self.routes().items())
-        yield from ROBOT_EVENTS.items()
+        yield from robot_events().items()
         events = own.data.get("events") if own and isinstance(own.data, dict) else None
         yield from events.items() if isinstance(events, dict) else ()
 

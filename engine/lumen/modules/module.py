@@ -6,7 +6,8 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
+from pathlib import Path
+from typing import Any, Self
 
 from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
@@ -53,6 +54,14 @@ class Module:
         self._told: set[str] = set()
         self._undo: list[Callable[[], None]] = []
         self._thread = WatchedThread(f"lumen-{self.name}", self._run)
+
+    @classmethod
+    def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        """Return a module for an exhibition, not yet begun; `folder` is for its files, None if nothing may last.
+
+        Raises ModuleError if it lacks something that it needs.
+        """
+        return cls(project, bus, tell)
 
     def hears(self) -> Mapping[str, MessageHandler]:
         """The routes that it listens on, and what it does with a message of each."""

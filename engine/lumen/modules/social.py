@@ -5,6 +5,7 @@ import os
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Self
 
 from lumen.errors import ModuleError
 from lumen.language.iso_time import iso_time
@@ -28,6 +29,10 @@ class Social(Module):
     """
 
     name = SOCIAL
+
+    @classmethod
+    def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        return cls(project, bus, tell, folder and folder / POSTS_FILE)
 
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None], file: Path | None) -> None:
         super().__init__(project, bus, tell)

@@ -9,7 +9,7 @@ from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.commands import Do
 from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
-from lumen.language.events import ROBOT_EVENTS
+from lumen.language.events import robot_events
 from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
@@ -67,7 +67,7 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
             schema = draft.messages.get(route.schema)
             found[route.event] = schema if found.get(route.event, schema) == schema else None
     pressed = {b.event: None for other in draft.behaviors.values() for s in other.states.values() for b in s.buttons}
-    return {**pressed, **controller_events(draft.controllers.values()), **ROBOT_EVENTS, **found, **machine.events}
+    return {**pressed, **controller_events(draft.controllers.values()), **robot_events(), **found, **machine.events}
 
 
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from lumen.errors import BusError
 from lumen.language.events import Event
-from lumen.language.modules import MODULES
+from lumen.language.modules import module_names
 from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Bus, Message
 
@@ -31,6 +31,16 @@ MAX_PEERS = 100
 ASKS, HERE, LEAVES = "asks", "here", "leaves"
 
 _log = logging.getLogger(__name__)
+
+
+def all_parts() -> tuple[str, ...]:
+    """Return the parts that a process can be, modules last."""
+    return (*PROCESS_PARTS, *module_names())
+
+
+def unique_parts() -> tuple[str, ...]:
+    """Return the parts of which each robot has one, unlike visitors."""
+    return tuple(part for part in all_parts() if part != VISITOR)
 
 
 @dataclass
@@ -178,7 +188,7 @@ class Presence:
     def _changes(self, now: float) -> list[Event]:
         """What of the robot, the motion module and the others has gone or come back since the last look."""
         events = []
-        for part in (ROBOT_PART, MOTION, *MODULES):
+        for part in (ROBOT_PART, MOTION, *module_names()):
             if part in self.parts:
                 continue
             here = self.find(part) is not None

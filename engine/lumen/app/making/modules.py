@@ -9,7 +9,7 @@ from lumen.app.parts.part import Part
 from lumen.app.parts.robot import RobotPart
 from lumen.app.services import Services
 from lumen.errors import LumenError
-from lumen.language.modules import EYES, MODULES
+from lumen.language.modules import EYES, module_names
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
 
 
@@ -27,7 +27,7 @@ class ModulesPlan:
 def modules(services: Services) -> list[Part]:
     """Make the modules that `lumen.yaml` wants here, or those that this process is."""
     here = [name for name, said in services.project.modules.items() if said.here]
-    wanted = [role for role in services.plan.roles if role in MODULES] if services.plan.roles else here
+    wanted = [role for role in services.plan.roles if role in module_names()] if services.plan.roles else here
     begun = [part for name in wanted if (part := _module(services, name))]
     if not services.plan.roles:
         _share(services, [part.name for part in begun])

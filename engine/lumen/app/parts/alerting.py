@@ -14,17 +14,14 @@ from lumen.interpreters.statechart import Step
 from lumen.language.alerts import Alerts
 from lumen.language.commands import Command
 from lumen.language.events import Event
-from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, UsesBroker
 from lumen.runtime.loop import Observer
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
+from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence, unique_parts
 from lumen.runtime.resuming import FreshStart, Resumption
 
 BROKER_PATIENCE = 5.0
 """How long a broker may be away before that is told [s]: it comes back from a restart within that."""
-PARTS = (ROBOT_PART, BRAIN, MOTION, *MODULES)
-"""What can be lost."""
 BRAIN_PATIENCE = 5.0
 """How long a robot's brain may be [s]."""
 
@@ -170,9 +167,9 @@ def told_of(event: Event) -> tuple[str, str, str] | None:
     """
     part, _, what = event.name.partition(".")
     match part, what:
-        case _, "lost" if part in PARTS:
+        case _, "lost" if part in unique_parts():
             return "lost", f"the {part} no longer responds", part
-        case _, "back" if part in PARTS:
+        case _, "back" if part in unique_parts():
             return "lost", f"the {part} is back after {_number(event, 'seconds')} s", event.name
         case "battery", "low":
             return "battery", f"its battery is at {_number(event, 'percentage')} %", ""

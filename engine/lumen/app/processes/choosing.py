@@ -2,10 +2,7 @@
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.modules import MODULES
-from lumen.runtime.presence import PROCESS_PARTS, ROBOT_PART
-
-ALL = (*PROCESS_PARTS, *MODULES)
+from lumen.runtime.presence import PROCESS_PARTS, ROBOT_PART, all_parts
 
 
 def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
@@ -13,11 +10,12 @@ def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
     if only is None:
         return tuple(part for part in PROCESS_PARTS if part != ROBOT_PART) if robot == "remote" else ()
     parts = tuple(dict.fromkeys(word.strip() for word in only.split(",") if word.strip()))
+    known = all_parts()
     for part in parts:
-        if part not in ALL:
-            raise UsageError(f"there is no part `{part}`: {did_you_mean(part, ALL, 'there are')}")
+        if part not in known:
+            raise UsageError(f"there is no part `{part}`: {did_you_mean(part, known, 'there are')}")
     if not parts:
-        raise UsageError(f"--only must be one or more of {', '.join(ALL)}")
+        raise UsageError(f"--only must be one or more of {', '.join(known)}")
     if robot == "remote" and ROBOT_PART in parts:
         raise UsageError(
             "the robot can't be both local and remote: leave out --robot remote, or remove `robot` from --only"

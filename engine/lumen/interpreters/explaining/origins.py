@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from lumen.interpreters.explaining.history import RecordedStep
 from lumen.interpreters.explaining.links import LinkKind
 from lumen.language.causes import Cause
-from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.events import Event, robot_events
 
 
 class EventOrigin(NamedTuple):
@@ -30,7 +30,7 @@ def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
     if project and rows:
         key = rows[0].key_for(project.robot)
         return EventOrigin("message", f"a message on {key}", "", {"key": key})
-    if event.name in ROBOT_EVENTS:
+    if event.name in robot_events():
         return EventOrigin("event", "the robot detected it")
     return None
 

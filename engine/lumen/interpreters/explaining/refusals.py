@@ -22,7 +22,7 @@ from lumen.interpreters.statechart.values import Snapshot
 from lumen.interpreters.talk.hearing import said_in
 from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.diagnostics import Place
-from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.events import Event, robot_events
 from lumen.language.machines import MachineDefinition, Transition
 
 Because = Literal["inactive", "no-event", "preempted", "unheard", "guard"]
@@ -172,7 +172,7 @@ def _coming(
         return {"wait": round(event.at - standing.snapshot.at, 3)}
     inner = within(standing.snapshot, owner)
     for name in _names(machine, wanted.event):
-        schema = machine.events.get(name, ROBOT_EVENTS.get(name))
+        schema = machine.events.get(name, robot_events().get(name))
         trees = [parse_expression(wanted.guard.source)] if wanted.guard else []
         context = inner.context if inner else {}
         tried: Iterable[Any] = samples(machine, schema, trees, context)
@@ -206,7 +206,7 @@ def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
     if descriptor.startswith(("done.", "error.")) or not descriptor:
         return
     prefix = descriptor.removesuffix("*").removesuffix(".")
-    known = [n for n in (*machine.events, *ROBOT_EVENTS) if not prefix or n == prefix or n.startswith(f"{prefix}.")]
+    known = [n for n in (*machine.events, *robot_events()) if not prefix or n == prefix or n.startswith(f"{prefix}.")]
     yield from ([prefix] if prefix and prefix not in known else [])
     yield from (known or ([] if prefix else ["anything"]))
 

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Mapping
 from math import degrees, tan
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from lumen.errors import ModuleError
 from lumen.language.modules import EYES
@@ -44,6 +44,10 @@ class Eyes(Module):
     """
 
     name = EYES
+
+    @classmethod
+    def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        return cls(project, bus, tell, folder and folder / FACES_FILE)
 
     def __init__(
         self,

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from lumen.errors import ModuleError
 from lumen.language.modules import MEMORY, VISITOR_KEY
@@ -35,6 +35,10 @@ class Memory(Module):
     """
 
     name = MEMORY
+
+    @classmethod
+    def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        return cls(project, bus, tell, folder and folder / DATABASE_FILE)
 
     def __init__(
         self,

@@ -8,7 +8,7 @@ from math import isfinite
 from typing import Any
 
 from lumen.errors import BusError, LumenError
-from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.events import Event, robot_events
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Hall, Message, Robot
@@ -106,7 +106,7 @@ class RobotHost(CommandListener):
                 hall.sound()
             case {"plugged": bool(plugged)}:
                 hall.plug(plugged)
-            case {"event": str(name)} if name in ROBOT_EVENTS:
+            case {"event": str(name)} if name in robot_events():
                 self.notice(Event(name, body.get("data"), now))
             case _:
                 _log.warning("an action of the visitor was refused: unknown action %s", str(body)[:80])

@@ -12,7 +12,7 @@ from typing import Any
 from lumen.errors import BadCommandError, BusError
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
-from lumen.language.events import CUE, MISSED, RESULT, ROBOT_EVENTS, Event
+from lumen.language.events import CUE, MISSED, RESULT, Event, robot_events
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Live, Message, Perform, Reading, RobotCommand, Sense
 from lumen.robots.command_bounds import CommandBounds
@@ -231,7 +231,7 @@ class RemoteRobot:
         match message.body:
             case {"id": str(whole), "state": str(state)}:
                 self._report(whole, state, str(message.body.get("reason", "")), message.body.get("result"))
-            case {"name": str(name)} if name in (*ROBOT_EVENTS, CUE) and message.key == key_of(
+            case {"name": str(name)} if name in (*robot_events(), CUE) and message.key == key_of(
                 self._project, NOTICED_ROUTE
             ):
                 self._events.append(Event(name, message.body.get("data"), self._clock()))

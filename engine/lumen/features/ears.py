@@ -1,0 +1,5 @@
+"""Speech recognition."""
+
+from lumen.feature import Feature, ModuleRow
+
+FEATURE = Feature(name="ears", modules={"ears": ModuleRow("lumen.modules.ears:Ears")})

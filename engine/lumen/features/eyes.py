@@ -1,0 +1,5 @@
+"""Faces and people in the images of a camera."""
+
+from lumen.feature import Feature, ModuleRow
+
+FEATURE = Feature(name="eyes", modules={"eyes": ModuleRow("lumen.modules.eyes:Eyes")})

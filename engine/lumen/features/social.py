@@ -1,0 +1,5 @@
+"""Posts of social media."""
+
+from lumen.feature import Feature, ModuleRow
+
+FEATURE = Feature(name="social", modules={"social": ModuleRow("lumen.modules.social:Social")})

@@ -1,0 +1,5 @@
+"""A voice for texts on the bus."""
+
+from lumen.feature import Feature, ModuleRow
+
+FEATURE = Feature(name="voice", modules={"voice": ModuleRow("lumen.modules.voice:Voice")})
