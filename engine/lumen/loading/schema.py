@@ -18,6 +18,7 @@ from lumen.loading.document import TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.misindented import KeyNames, key_names, misindented
 from lumen.loading.misplaced import misplaced
+from lumen.loading.module_schemas import add_modules
 from lumen.loading.packaged import schema_folder
 from lumen.loading.project_folders import MAIN_KIND
 from lumen.loading.pruning import prune
@@ -73,13 +74,14 @@ def misfits(kind: str, text: str) -> int | None:
 
 
 def load_schema(kind: str) -> Any:
-    """Return the JSON Schema of a kind of file, as data, with the sections and the verbs that features add."""
+    """Return the JSON Schema of a kind of file, as data, with what features add to it."""
     file = schema_folder() / f"{kind}.schema.json"
     try:
         schema = json.loads(file.read_bytes())
     except (OSError, ValueError) as error:
         raise LumenError(f"Lumen's own {file} can't be read ({error}): reinstall Lumen, or restore the file") from None
     if kind == MAIN_KIND:
+        add_modules(schema)
         return with_sections(schema)
     if verbs := usable_verbs():
         _add_verbs(schema, kind, verbs)
