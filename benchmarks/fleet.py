@@ -25,10 +25,10 @@ from tests.guarded import run_guarded
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
-from lumen.app.house_setup import set_up_house
 from lumen.app.node import NAP
 from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
+from lumen.app.setup import set_up_house
 from lumen.language.events import Event
 from lumen.ports import Message
 from lumen.runtime.loop import TICK_PERIOD

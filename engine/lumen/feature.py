@@ -38,8 +38,52 @@ BUILT_IN = (
     "lumen.features.voice:FEATURE",
     "lumen.features.social:FEATURE",
     "lumen.features.answers:FEATURE",
+    "lumen.features.naoqi:FEATURE",
+    "lumen.features.robots:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotOption:
+    """An option of `lumen run` that only some robots take: `--robot-NAME`, whose value is a text.
+
+    Raises ValueError for a name that no option can have.
+    """
+
+    name: str
+    metavar: str
+    help: str
+
+    def __post_init__(self) -> None:
+        if self.name == "name" or not self.name.isidentifier():
+            raise ValueError(f"no robot can have an option `--robot-{self.name}`: choose another word")
+
+    @property
+    def flag(self) -> str:
+        return f"--robot-{self.name.replace('_', '-')}"
+
+    @property
+    def destination(self) -> str:
+        """The name of the value among those of a command line."""
+        return f"robot_{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRow:
+    """A robot that performs an exhibition: `lumen run --robot NAME`, `lumen.open(robot="NAME")`.
+
+    `set_up` is the import string of a function from a `RobotRequest` to a `Setup` (both in `lumen.app.setup`); empty if
+    the robot is in a process of its own. `set_up_house` is for several robots at once: from a mapping of requests by
+    the robots' names to one of setups; if it is empty, `set_up` is called for each. `real_time`: its time can't be
+    hurried. `bounded`: it keeps within the limits and speeds of its body itself; Lumen does that for others.
+    """
+
+    set_up: str = ""
+    set_up_house: str = ""
+    real_time: bool = False
+    bounded: bool = False
+    options: tuple[RobotOption, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,6 +286,7 @@ class Feature:
     verbs: Mapping[str, VerbRow] = field(default_factory=dict)
     """Verbs of the YAML that the robot performs, by their names."""
     modules: Mapping[str, ModuleRow] = field(default_factory=dict)
+    robots: Mapping[str, RobotRow] = field(default_factory=dict)
 
 
 class FeatureFault(NamedTuple):

@@ -10,10 +10,9 @@ import lumen
 from lumen.app import node as naps
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
-from lumen.app.house_setup import set_up_house
 from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
-from lumen.app.setup import Setup, set_up
+from lumen.app.setup import Setup, set_up, set_up_house
 from lumen.clocks import bell
 from lumen.clocks.real import RealClock
 from lumen.language.events import Event

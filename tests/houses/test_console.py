@@ -11,9 +11,9 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
-from lumen.app.house_setup import set_up_house
 from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.setup import set_up_house
 from tests.console.pages import Served
 from tests.console.viewer import Viewer
 from tests.waiting import HANG, until

@@ -9,8 +9,8 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
-from lumen.app.house_setup import set_up_house
 from lumen.app.plan import Plan
+from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.ports import Bus, Message
 from lumen.rules import check

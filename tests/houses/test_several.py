@@ -10,11 +10,11 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
-from lumen.app.house_setup import set_up_house
 from lumen.app.one_robot import one_robot, robots_of
 from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
+from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.errors import LumenError, RobotModelError, UsageError
 from lumen.interpreters.statechart import Step

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
-from lumen.app.setup import Setup, set_up, set_up_with
+from lumen.app.setup import Setup, runs_in_real_time, set_up, set_up_with
 from lumen.app.stories import stories_of
 from lumen.errors import UsageError
 from lumen.language.projects import Project
@@ -26,10 +26,10 @@ def open(
 ) -> Exhibition:
     """The exhibition of a project, begun: `path` is its folder, without one the project here or above.
 
-    `robot` is one of `recording`, `simulation`, `naoqi` and `none`, or an object that is one (`lumen.ports.Robot`);
-    `bus` is an address (`memory://`, `amqp://…`) or an open bus, which the exhibition closes at its end. Time is that
-    of the robot's own world, `speed` times real time or as fast as it can (`max`); with a `clock` it is what that one
-    says. `story` is a scripted visitor. Use it in a `with` block, or `close` it.
+    `robot` is the name of a robot, such as `recording`, `simulation`, `naoqi` or `none`, or an object that is one
+    (`lumen.ports.Robot`); `bus` is an address (`memory://`, `amqp://…`) or an open bus, which the exhibition closes at
+    its end. Time is that of the robot's own world, `speed` times real time or as fast as it can (`max`); with a `clock`
+    it is what that one says. `story` is a scripted visitor. Use it in a `with` block, or `close` it.
 
     Raises UsageError for a name that is none, ProjectError for files with errors, BusError and RobotError where those
     can't be reached.
@@ -64,6 +64,6 @@ def _setup(project: Project, robot: str | Robot, clock: Clock | None, speed: str
         raise UsageError(f'`speed` must be a multiple of real time or "max", not `{speed}`') from None
     if not isinstance(robot, str):
         return set_up_with(BoundedRobot(robot, project.body), clock, pace)
-    real = robot in ("naoqi", "none")
-    setup = set_up(robot, project, "1" if real and speed == "max" else speed, story)
+    hurried = "1" if speed == "max" and runs_in_real_time(robot) else speed
+    setup = set_up(robot, project, hurried, story)
     return setup if clock is None else set_up_with(setup.robot, clock)

@@ -1,24 +1,23 @@
-"""Who plays: the robot, its clock and the hall around it, chosen by name."""
+"""The robot of an exhibition with its clock and the hall around it, chosen by name."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import UsageError
+from lumen.feature import RobotOption, RobotRow, resolve, table
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.lending import model_files
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, MeetsVisitors, Robot
-from lumen.robots.bounded_robot import ability
+from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.runtime.tracking import TrackingService
 
-ROBOTS = ("simulation", "naoqi", "recording", "remote", "none")
 SPEEDS = ("1", "4", "max")
-NAO = "nao.local"
 VOICES = ("none", "espeak")
+NO_OPTIONS: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True)
@@ -42,48 +41,108 @@ class Setup:
             self.clock.hurry()
 
 
+@dataclass(frozen=True)
+class RobotRequest:
+    """What a robot is set up for.
+
+    `speed` is one of `SPEEDS`. `imperfections` replace the project's, None for none. `options` are those of the robot's
+    row that were given, by their names.
+    """
+
+    project: Project
+    speed: str
+    story: Story | None = None
+    imperfections: Imperfections | None = None
+    options: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def pace(self) -> float | None:
+        """The multiple of real time; None for as fast as possible."""
+        return None if self.speed == "max" else float(self.speed)
+
+    @property
+    def lacking(self) -> Imperfections:
+        """The imperfections of a simulated robot."""
+        return self.imperfections or self.project.section(Imperfections)
+
+
+SetsUp = Callable[[RobotRequest], Setup]
+SetsUpHouse = Callable[[Mapping[str, RobotRequest]], dict[str, Setup]]
+
+
 def set_up(
     kind: str,
     project: Project,
     speed: str,
     story: Story | None = None,
-    url: str | None = None,
     imperfections: Imperfections | None = None,
+    options: Mapping[str, str] = NO_OPTIONS,
 ) -> Setup:
-    """The robot of that name, on its feet.
+    """Return the robot of that name, on its feet; `options` are those of its row that were given.
 
-    `url` is where a real one is, `imperfections` are other than the project's.
+    Raises UsageError if there is no such robot here, or if it does not go with what was asked.
     """
-    if url and kind != "naoqi":
-        raise UsageError("--robot-url needs --robot naoqi")
-    pace = None if speed == "max" else float(speed)
-    if kind == "simulation":
-        from lumen.robots.simulation import SimulatedRobot, available
+    return _alone(_row(kind, options), RobotRequest(project, speed, story, imperfections, options))
 
-        lacking = imperfections or project.section(Imperfections)
-        simulated = SimulatedRobot(project.body, *model_files(project), imperfections=lacking, stage=project.stage)
-        return Setup(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
-    if kind == "recording":
-        from lumen.robots.recording import RecordingRobot
 
-        recording = RecordingRobot(project.body, *((story.robot, story.results) if story else ()))
-        return Setup(recording, SimulatedClock(recording.advance, pace), recording)
-    if kind == "naoqi":
-        from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
+def set_up_house(
+    kind: str,
+    projects: Mapping[str, Project],
+    speed: str,
+    stories: Mapping[str, Story | None],
+    imperfections: Imperfections | None = None,
+) -> dict[str, Setup]:
+    """Return several robots of that kind, on their feet, by the names of their projects.
 
-        if speed != "1":
-            raise UsageError("a real robot runs in real time: leave out --speed")
-        if story:
-            raise UsageError("a story needs a simulated visitor: leave out --robot naoqi")
-        clock = RealClock()
-        return Setup(NaoqiRobot(project.body, url or NAO, clock.now, stage=project.stage), clock, PhysicalHall())
-    if kind == "none":
-        from lumen.robots.none import NoRobot
+    Raises UsageError as `set_up` does, or if there can't be several.
+    """
+    row = _row(kind)
+    requests = {n: RobotRequest(project, speed, stories[n], imperfections) for n, project in projects.items()}
+    if row.set_up_house:
+        together: SetsUpHouse = resolve(row.set_up_house)
+        return {name: _bounded(row, setup, projects[name]) for name, setup in together(requests).items()}
+    return {name: _alone(row, request) for name, request in requests.items()}
 
-        if speed != "1":
-            raise UsageError("without a robot there is nothing to simulate: leave out --speed")
-        return Setup(NoRobot(), RealClock(), None)
-    raise UsageError(f"no robot `{kind}`: there are {', '.join(ROBOTS)}")
+
+def _alone(row: RobotRow, request: RobotRequest) -> Setup:
+    found: SetsUp = resolve(row.set_up)
+    return _bounded(row, found(request), request.project)
+
+
+def _bounded(row: RobotRow, setup: Setup, project: Project) -> Setup:
+    return setup if row.bounded else replace(setup, robot=BoundedRobot(setup.robot, project.body))
+
+
+def robot_names() -> tuple[str, ...]:
+    """Return the names of all robots."""
+    return tuple(table("robots"))
+
+
+def runs_in_real_time(kind: str) -> bool:
+    """Return whether the time of the robot of that name can't be hurried."""
+    robots: Mapping[str, RobotRow] = table("robots")
+    return kind in robots and robots[kind].real_time
+
+
+def robot_options() -> tuple[RobotOption, ...]:
+    """Return the options that some robots take, one of each name."""
+    found: dict[str, RobotOption] = {}
+    for row in table("robots").values():
+        for option in row.options:
+            found.setdefault(option.name, option)
+    return tuple(found.values())
+
+
+def _row(kind: str, options: Mapping[str, str] = NO_OPTIONS) -> RobotRow:
+    robots: Mapping[str, RobotRow] = table("robots")
+    taken = {option.name for option in robots[kind].options} if kind in robots else set()
+    for other, row in robots.items():
+        for option in row.options:
+            if option.name in options and option.name not in taken:
+                raise UsageError(f"{option.flag} needs --robot {other}")
+    if kind not in robots or not robots[kind].set_up:
+        raise UsageError(f"no robot `{kind}`: there are {', '.join(robots)}")
+    return robots[kind]
 
 
 def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = None) -> Setup:

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 
 from lumen.app.house import House
-from lumen.app.house_setup import set_up_house
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.plan import Plan
 from lumen.app.run_start import BegunRun
 from lumen.app.services import Services
-from lumen.app.setup import Setup
+from lumen.app.setup import Setup, robot_options, set_up_house
 from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
@@ -26,9 +25,6 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.runtime.presence import BRAIN, ROBOT_PART
-
-ALONE = ("model", "robot_url", "video", "record", "sound")
-"""Options that are about one robot."""
 
 
 class HouseRun:
@@ -133,8 +129,9 @@ class HouseRun:
 
 def check_house(options: argparse.Namespace, parts: Sequence[str]) -> None:
     """Raises UsageError for what is about one robot, or does not go with processes."""
-    for name in ALONE:
-        if getattr(options, name, None):
+    own = (option.destination for option in robot_options())
+    for name in ("model", *own, "video", "record", "sound"):
+        if vars(options)[name]:
             flag = name.replace("_", "-")
             raise UsageError(f"--{flag} works with only one robot: choose it with `--robot-name NAME`")
     if options.voice != "none":

@@ -36,9 +36,11 @@ def imperfections_of(text: str | None) -> Imperfections | None:
 
 def set_up_robot(options: argparse.Namespace, project: "Project", story: "Story | None") -> "Setup":
     """The robot that the options of `lumen run` ask for; raises UsageError where they do not go together."""
-    from lumen.app.setup import set_up  # only who has a robot waits for it
+    from lumen.app.setup import robot_options, set_up  # only who has a robot waits for it
 
     lacking = imperfections_of(options.imperfections)
     if lacking and options.robot != "simulation":
         raise UsageError("--imperfections needs the simulated robot: leave out --robot")
-    return set_up(options.robot, project, options.speed, story, options.robot_url, lacking)
+    given = {option.name: vars(options)[option.destination] for option in robot_options()}
+    named = {name: value for name, value in given.items() if value}
+    return set_up(options.robot, project, options.speed, story, lacking, named)

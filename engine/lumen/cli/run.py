@@ -16,7 +16,7 @@ from lumen.app.processes.choosing import parts_of
 from lumen.app.reload.reloader import MODES
 from lumen.app.run_start import BegunRun, started
 from lumen.app.services import Services
-from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup
+from lumen.app.setup import SPEEDS, VOICES, Setup, robot_names, robot_options
 from lumen.app.stories import home_of
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
@@ -64,7 +64,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--robot-name", metavar="NAMES", help="robots in `robots:`, separated by commas (default: all)")
     add(
         "--robot",
-        choices=ROBOTS,
+        choices=robot_names(),
         default="simulation",
         help="the robot that performs the exhibition (default: simulation)",
     )
@@ -73,7 +73,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="PARTS",
         help=f"run only these parts, separated by commas: {', '.join(all_parts())}",
     )
-    add("--robot-url", metavar="URL", help="with --robot naoqi: the robot's address (default: tcp://nao.local:9559)")
+    for option in robot_options():
+        add(option.flag, metavar=option.metavar, help=option.help)
     add("--speed", choices=SPEEDS, default="1", help="speed of simulated time, as a multiple of real time (default: 1)")
     add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml)")
     add("--for", dest="period", metavar="60s", help="end after this much simulated time")

@@ -1,6 +1,6 @@
 """The robot under physics."""
 
-from lumen.feature import Feature, Section
+from lumen.feature import Feature, RobotRow, Section
 
 FEATURE = Feature(
     name="simulation",
@@ -10,6 +10,12 @@ FEATURE = Feature(
             title="the robot's imperfections",
             risk="restart",
             of_house=True,
+        )
+    },
+    extras=("simulation",),
+    robots={
+        "simulation": RobotRow(
+            "lumen.app.robots.simulated:set_up", "lumen.app.robots.simulated:set_up_house", bounded=True
         )
     },
 )

@@ -1,0 +1,13 @@
+"""An exhibition without a robot."""
+
+from lumen.app.setup import RobotRequest, Setup
+from lumen.clocks.real import RealClock
+from lumen.errors import UsageError
+from lumen.robots.none import NoRobot
+
+
+def set_up(request: RobotRequest) -> Setup:
+    """Return a robot that performs nothing, in real time."""
+    if request.speed != "1":
+        raise UsageError("without a robot there is nothing to simulate: leave out --speed")
+    return Setup(NoRobot(), RealClock(), None)

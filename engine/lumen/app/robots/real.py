@@ -1,0 +1,26 @@
+"""A real robot with NAOqi."""
+
+from collections.abc import Mapping
+
+from lumen.app.setup import RobotRequest, Setup
+from lumen.clocks.real import RealClock
+from lumen.errors import UsageError
+from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
+
+NAO = "nao.local"
+
+
+def set_up(request: RobotRequest) -> Setup:
+    """Return the robot at the address that the option `url` names. Raises UsageError for a story."""
+    if request.speed != "1":
+        raise UsageError("a real robot runs in real time: leave out --speed")
+    if request.story:
+        raise UsageError("a story needs a simulated visitor: leave out --robot naoqi")
+    project, clock = request.project, RealClock()
+    url = request.options.get("url", NAO)
+    return Setup(NaoqiRobot(project.body, url, clock.now, stage=project.stage), clock, PhysicalHall())
+
+
+def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
+    """Raise UsageError: one process has one connection."""
+    raise UsageError("each real robot needs its own process: pass `--robot-name NAME` and `--robot-url URL`")

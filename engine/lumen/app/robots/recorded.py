@@ -1,0 +1,12 @@
+"""A robot that records the commands that it is given."""
+
+from lumen.app.setup import RobotRequest, Setup
+from lumen.clocks.simulated import SimulatedClock
+from lumen.robots.recording import RecordingRobot
+
+
+def set_up(request: RobotRequest) -> Setup:
+    """Return a robot in simulated time, with the faults and results of the story's `robot:`."""
+    story = request.story
+    robot = RecordingRobot(request.project.body, *((story.robot, story.results) if story else ()))
+    return Setup(robot, SimulatedClock(robot.advance, request.pace), robot)
